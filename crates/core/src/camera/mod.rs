@@ -1,0 +1,343 @@
+//! Camera models by COLMAP's names: from a point in the camera's axes to a pixel and back.
+//!
+//! A pixel's centre has integer coordinates; the first pixel's centre is (0, 0). Every model first distorts the
+//! direction into the plane of unit focal length (one file a model), then scales: `u = fx a + cx`, `v = fy b + cy`.
+
+mod opencv;
+mod opencv_fisheye;
+
+use glam::{DVec2, DVec3};
+
+pub use self::{opencv::Opencv, opencv_fisheye::OpencvFisheye};
+use crate::pose::CameraPose;
+
+/// The largest angle from the optical axis that a pinhole can take, radians: tan 89° is 57 focal lengths.
+const PINHOLE_MAX_ANGLE_RAD: f64 = 89.0 * std::f64::consts::PI / 180.0;
+
+/// How a direction becomes a place in the plane of unit focal length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Distortion {
+    /// COLMAP `PINHOLE`: none.
+    Pinhole,
+    /// COLMAP `OPENCV`: Brown–Conrady.
+    Opencv(Opencv),
+    /// COLMAP `OPENCV_FISHEYE`: Kannala–Brandt.
+    OpencvFisheye(OpencvFisheye),
+}
+
+impl Distortion {
+    /// The model's name in COLMAP and nerfstudio.
+    pub fn colmap_name(&self) -> &'static str {
+        match self {
+            Self::Pinhole => "PINHOLE",
+            Self::Opencv(_) => "OPENCV",
+            Self::OpencvFisheye(_) => "OPENCV_FISHEYE",
+        }
+    }
+
+    /// The distortion's parameters, in the order of the model's file format.
+    pub fn parameters(&self) -> Vec<f64> {
+        match self {
+            Self::Pinhole => Vec::new(),
+            Self::Opencv(model) => vec![model.k1, model.k2, model.p1, model.p2, model.k3],
+            Self::OpencvFisheye(model) => model.k.to_vec(),
+        }
+    }
+
+    /// The angle from the optical axis at which the distortion polynomial stops growing, radians.
+    fn natural_max_angle_rad(&self) -> f64 {
+        match self {
+            Self::Pinhole => PINHOLE_MAX_ANGLE_RAD,
+            Self::Opencv(model) => model.max_angle_rad(),
+            Self::OpencvFisheye(model) => model.max_angle_rad(),
+        }
+    }
+
+    /// Place in the plane of unit focal length.
+    fn distort(&self, point_in_camera: DVec3) -> DVec2 {
+        match self {
+            Self::Pinhole => point_in_camera.truncate() / point_in_camera.z,
+            Self::Opencv(model) => model.distort(point_in_camera.truncate() / point_in_camera.z),
+            Self::OpencvFisheye(model) => model.distort(point_in_camera),
+        }
+    }
+
+    /// Rows: gradients of the two plane coordinates with respect to the point in the camera's axes.
+    fn distort_gradients(&self, point_in_camera: DVec3) -> [DVec3; 2] {
+        let perspective = || {
+            let (x, y, z) = point_in_camera.into();
+            [DVec3::new(1.0 / z, 0.0, -x / (z * z)), DVec3::new(0.0, 1.0 / z, -y / (z * z))]
+        };
+        match self {
+            Self::Pinhole => perspective(),
+            Self::Opencv(model) => {
+                let [dx, dy] = perspective();
+                model
+                    .distort_gradients(point_in_camera.truncate() / point_in_camera.z)
+                    .map(|row| row.x * dx + row.y * dy)
+            }
+            Self::OpencvFisheye(model) => model.distort_gradients(point_in_camera),
+        }
+    }
+
+    /// Change of the plane coordinates with each parameter, in the order of [`Distortion::parameters`].
+    fn parameter_gradients(&self, point_in_camera: DVec3) -> Vec<DVec2> {
+        match self {
+            Self::Pinhole => Vec::new(),
+            Self::Opencv(model) => {
+                model.parameter_gradients(point_in_camera.truncate() / point_in_camera.z).to_vec()
+            }
+            Self::OpencvFisheye(model) => model.parameter_gradients(point_in_camera).to_vec(),
+        }
+    }
+
+    /// The direction (not normalised) seen at a place in the plane of unit focal length, up to the angle given.
+    fn undistort(&self, place: DVec2, max_angle_rad: f64) -> Option<DVec3> {
+        match self {
+            Self::Pinhole => Some(place.extend(1.0)),
+            Self::Opencv(model) => {
+                model.undistort(place, max_angle_rad).map(|undistorted| undistorted.extend(1.0))
+            }
+            Self::OpencvFisheye(model) => model.undistort(place, max_angle_rad),
+        }
+    }
+}
+
+/// The circle outside which the picture of a fisheye is black.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ImageCircle {
+    /// Centre, pixels from the left.
+    pub cx: f64,
+    /// Centre, pixels from the top.
+    pub cy: f64,
+    /// Radius, pixels.
+    pub radius: f64,
+}
+
+impl ImageCircle {
+    /// Whether a pixel lies inside.
+    pub fn contains(&self, pixel: DVec2) -> bool {
+        pixel.distance_squared(DVec2::new(self.cx, self.cy)) <= self.radius * self.radius
+    }
+}
+
+/// Why a point in space has no pixel.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum NoPixel {
+    /// The point is not a finite triple of numbers, or lies in the projection centre.
+    #[error("the point has no direction from the camera")]
+    NoDirection,
+    /// The direction is farther from the optical axis than the model is valid.
+    #[error("{angle_rad:.3} rad from the optical axis, the camera is valid up to {max_angle_rad:.3} rad")]
+    BeyondMaxAngle {
+        /// Angle between the direction and the optical axis.
+        angle_rad: f64,
+        /// The camera's largest valid angle.
+        max_angle_rad: f64,
+    },
+    /// The pixel would lie outside the picture.
+    #[error("pixel ({:.1}, {:.1}) is outside the picture", .pixel.x, .pixel.y)]
+    OutsideImage {
+        /// Where it would be.
+        pixel: DVec2,
+    },
+    /// The pixel lies in the black outside the lens's image circle.
+    #[error("pixel ({:.1}, {:.1}) is outside the lens's image circle", .pixel.x, .pixel.y)]
+    OutsideImageCircle {
+        /// Where it would be.
+        pixel: DVec2,
+    },
+}
+
+/// Why a pixel has no ray, or no point on the ground.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum NoRay {
+    /// No direction within the camera's largest valid angle is seen at the pixel.
+    #[error("no direction within the camera's valid angle is seen at this pixel")]
+    BeyondMaxAngle,
+    /// The ray does not meet the ground: it points at or above the horizon.
+    #[error("the ray points at or above the horizon")]
+    AboveHorizon,
+}
+
+/// A camera whose parameters cannot be used.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum InvalidCamera {
+    /// Width or height is zero or too large to hold in memory.
+    #[error("width and height must be between 1 and 32768 pixels, not {width} x {height}")]
+    Size {
+        /// Pixels.
+        width: u32,
+        /// Pixels.
+        height: u32,
+    },
+    /// A focal length is not a positive number.
+    #[error("fx and fy must be positive numbers of pixels, not {fx} and {fy}")]
+    FocalLength {
+        /// Pixels.
+        fx: f64,
+        /// Pixels.
+        fy: f64,
+    },
+    /// A parameter is NaN or infinite.
+    #[error("{name} is not a finite number")]
+    NotFinite {
+        /// The parameter.
+        name: &'static str,
+    },
+    /// The distortion polynomial falls from the optical axis on, or the angle given is no angle.
+    #[error(
+        "max_angle_rad is {max_angle_rad}: it must be above 0 and at most where the distortion polynomial stops growing ({natural_rad:.4})"
+    )]
+    MaxAngle {
+        /// As given.
+        max_angle_rad: f64,
+        /// Where the polynomial stops growing.
+        natural_rad: f64,
+    },
+}
+
+/// Intrinsic parameters of a camera: COLMAP's model, the picture's size and the range in which the model holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Camera {
+    /// Focal length along the rows, pixels.
+    pub fx: f64,
+    /// Focal length along the columns, pixels.
+    pub fy: f64,
+    /// Principal point, pixels from the first pixel's centre.
+    pub cx: f64,
+    /// Principal point, pixels from the first pixel's centre.
+    pub cy: f64,
+    /// The lens.
+    pub distortion: Distortion,
+    /// Width of the picture, pixels.
+    pub width: u32,
+    /// Height of the picture, pixels.
+    pub height: u32,
+    /// Directions farther from the optical axis have no pixel, radians.
+    max_angle_rad: f64,
+    /// Outside it the picture is black.
+    pub image_circle: Option<ImageCircle>,
+}
+
+impl Camera {
+    /// A camera of this size, `[fx, fy, cx, cy]` in pixels and lens, valid up to where its polynomial stops growing.
+    pub fn new(
+        [width, height]: [u32; 2],
+        [fx, fy, cx, cy]: [f64; 4],
+        distortion: Distortion,
+    ) -> Result<Self, InvalidCamera> {
+        if !(1..=32768).contains(&width) || !(1..=32768).contains(&height) {
+            return Err(InvalidCamera::Size { width, height });
+        }
+        for (name, value) in [("fx", fx), ("fy", fy), ("cx", cx), ("cy", cy)] {
+            if !value.is_finite() {
+                return Err(InvalidCamera::NotFinite { name });
+            }
+        }
+        if distortion.parameters().iter().any(|value| !value.is_finite()) {
+            return Err(InvalidCamera::NotFinite { name: "distortion" });
+        }
+        if fx <= 0.0 || fy <= 0.0 {
+            return Err(InvalidCamera::FocalLength { fx, fy });
+        }
+        let max_angle_rad = distortion.natural_max_angle_rad();
+        Ok(Self { fx, fy, cx, cy, distortion, width, height, max_angle_rad, image_circle: None })
+    }
+
+    /// The same camera, valid only up to this angle from the optical axis, radians.
+    pub fn with_max_angle_rad(self, max_angle_rad: f64) -> Result<Self, InvalidCamera> {
+        let natural_rad = self.distortion.natural_max_angle_rad();
+        if !(max_angle_rad > 0.0 && max_angle_rad <= natural_rad) {
+            return Err(InvalidCamera::MaxAngle { max_angle_rad, natural_rad });
+        }
+        Ok(Self { max_angle_rad, ..self })
+    }
+
+    /// The same camera with a picture that is black outside this circle.
+    pub fn with_image_circle(self, image_circle: Option<ImageCircle>) -> Self {
+        Self { image_circle, ..self }
+    }
+
+    /// Directions farther from the optical axis than this have no pixel, radians.
+    pub fn max_angle_rad(&self) -> f64 {
+        self.max_angle_rad
+    }
+
+    /// The pixel at which a point in the camera's axes is seen.
+    pub fn project(&self, point_in_camera: DVec3) -> Result<DVec2, NoPixel> {
+        let pixel = self.project_unbounded(point_in_camera)?;
+        self.check_inside(pixel)?;
+        Ok(pixel)
+    }
+
+    /// As [`Camera::project`], but the pixel may lie outside the picture.
+    pub fn project_unbounded(&self, point_in_camera: DVec3) -> Result<DVec2, NoPixel> {
+        let angle_rad = point_in_camera.truncate().length().atan2(point_in_camera.z);
+        if !point_in_camera.is_finite() || point_in_camera == DVec3::ZERO {
+            return Err(NoPixel::NoDirection);
+        }
+        if angle_rad > self.max_angle_rad {
+            return Err(NoPixel::BeyondMaxAngle { angle_rad, max_angle_rad: self.max_angle_rad });
+        }
+        Ok(self.pixel_from_plane(self.distortion.distort(point_in_camera)))
+    }
+
+    /// As [`Camera::project`], with the gradients of u and v with respect to the point (pixels per metre).
+    pub fn project_with_gradients(&self, point_in_camera: DVec3) -> Result<(DVec2, [DVec3; 2]), NoPixel> {
+        let pixel = self.project(point_in_camera)?;
+        let [da, db] = self.distortion.distort_gradients(point_in_camera);
+        Ok((pixel, [self.fx * da, self.fy * db]))
+    }
+
+    /// Change of the pixel with each intrinsic parameter: fx, fy, cx, cy, then those of the distortion.
+    pub fn intrinsic_gradients(&self, point_in_camera: DVec3) -> Result<Vec<DVec2>, NoPixel> {
+        self.project(point_in_camera)?;
+        let plane = self.distortion.distort(point_in_camera);
+        let mut gradients = vec![DVec2::new(plane.x, 0.0), DVec2::new(0.0, plane.y), DVec2::X, DVec2::Y];
+        let focal = DVec2::new(self.fx, self.fy);
+        gradients.extend(self.distortion.parameter_gradients(point_in_camera).iter().map(|&g| g * focal));
+        Ok(gradients)
+    }
+
+    /// The unit direction, in the camera's axes, that is seen at a pixel.
+    pub fn unproject(&self, pixel: DVec2) -> Result<DVec3, NoRay> {
+        let place = DVec2::new((pixel.x - self.cx) / self.fx, (pixel.y - self.cy) / self.fy);
+        let direction = self.distortion.undistort(place, self.max_angle_rad).ok_or(NoRay::BeyondMaxAngle)?;
+        let direction = direction.try_normalize().ok_or(NoRay::BeyondMaxAngle)?;
+        // The round trip of the rim itself may end one rounding step beyond it.
+        let angle_rad = direction.truncate().length().atan2(direction.z);
+        if angle_rad > self.max_angle_rad + 1e-9 { Err(NoRay::BeyondMaxAngle) } else { Ok(direction) }
+    }
+
+    /// The point of the ground plane (z = 0, world axes, metres) that is seen at a pixel.
+    pub fn unproject_to_ground(&self, pose: CameraPose, pixel: DVec2) -> Result<DVec2, NoRay> {
+        let ray_in_world = pose.rotation_world_from_camera() * self.unproject(pixel)?;
+        if ray_in_world.z >= 0.0 {
+            return Err(NoRay::AboveHorizon);
+        }
+        let distance_m = -pose.height_m / ray_in_world.z;
+        Ok((pose.position_in_world() + distance_m * ray_in_world).truncate())
+    }
+
+    /// Whether a pixel lies in the picture and in the lens's image circle.
+    pub fn check_inside(&self, pixel: DVec2) -> Result<(), NoPixel> {
+        let inside = (0.0..=f64::from(self.width - 1)).contains(&pixel.x)
+            && (0.0..=f64::from(self.height - 1)).contains(&pixel.y);
+        if !inside {
+            return Err(NoPixel::OutsideImage { pixel });
+        }
+        match self.image_circle {
+            Some(circle) if !circle.contains(pixel) => Err(NoPixel::OutsideImageCircle { pixel }),
+            _ => Ok(()),
+        }
+    }
+
+    fn pixel_from_plane(&self, plane: DVec2) -> DVec2 {
+        DVec2::new(self.fx * plane.x + self.cx, self.fy * plane.y + self.cy)
+    }
+}
+
+#[cfg(test)]
+mod tests;

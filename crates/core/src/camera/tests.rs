@@ -1,0 +1,3 @@
+use super::Camera as _Camera;
+#[test]
+fn x() {}

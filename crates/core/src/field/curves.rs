@@ -1,0 +1,131 @@
+//! The field's white lines as curves on the ground (line centres), its marks and its goals.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+
+use super::FieldDimensions;
+
+/// The centre of a white line on the ground, world axes, metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Curve {
+    /// A straight line.
+    Segment {
+        /// One end.
+        from: DVec2,
+        /// The other end.
+        to: DVec2,
+    },
+    /// A full circle.
+    Circle {
+        /// Its centre.
+        center: DVec2,
+        /// Radius of the line's centre.
+        radius_m: f64,
+    },
+}
+
+impl Curve {
+    /// Length along the curve, metres.
+    pub fn length_m(&self) -> f64 {
+        match self {
+            Self::Segment { from, to } => from.distance(*to),
+            Self::Circle { radius_m, .. } => TAU * radius_m,
+        }
+    }
+
+    /// Point and unit tangent at a fraction (0–1) of the length.
+    pub fn at(&self, fraction: f64) -> (DVec2, DVec2) {
+        match self {
+            Self::Segment { from, to } => {
+                (from.lerp(*to, fraction), (*to - *from).try_normalize().unwrap_or(DVec2::X))
+            }
+            Self::Circle { center, radius_m } => {
+                let direction = DVec2::from_angle(TAU * fraction);
+                (*center + *radius_m * direction, direction.perp())
+            }
+        }
+    }
+
+    /// Distance of a point from the curve, metres.
+    pub fn distance_m(&self, point: DVec2) -> f64 {
+        match self {
+            Self::Segment { from, to } => {
+                let along = *to - *from;
+                let fraction = ((point - *from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+                point.distance(*from + fraction * along)
+            }
+            Self::Circle { center, radius_m } => (point.distance(*center) - radius_m).abs(),
+        }
+    }
+}
+
+/// An upright cylinder on the carpet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GoalPost {
+    /// Its axis on the ground, world axes, metres.
+    pub center: DVec2,
+    /// Metres.
+    pub radius_m: f64,
+    /// Above the carpet, metres.
+    pub height_m: f64,
+}
+
+/// A goal: two posts joined by a crossbar.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Goal {
+    /// Left and right post as seen from the field's centre.
+    pub posts: [GoalPost; 2],
+}
+
+impl FieldDimensions {
+    /// Centres of all white lines.
+    pub fn curves(&self) -> Vec<Curve> {
+        let (half_length, half_width) = (self.length_m / 2.0, self.width_m / 2.0);
+        let segment = |x0, y0, x1, y1| Curve::Segment { from: DVec2::new(x0, y0), to: DVec2::new(x1, y1) };
+        let mut curves = vec![
+            segment(-half_length, -half_width, half_length, -half_width),
+            segment(-half_length, half_width, half_length, half_width),
+            segment(-half_length, -half_width, -half_length, half_width),
+            segment(half_length, -half_width, half_length, half_width),
+            segment(0.0, -half_width, 0.0, half_width),
+        ];
+        let goal_area = Some((self.goal_area_length_m, self.goal_area_width_m));
+        let penalty_area = self.penalty_area_length_m.zip(self.penalty_area_width_m);
+        for (depth, width) in [goal_area, penalty_area].into_iter().flatten() {
+            if depth <= 0.0 || width <= 0.0 {
+                continue;
+            }
+            for side in [-1.0, 1.0] {
+                let (goal_line, front) = (side * half_length, side * (half_length - depth));
+                curves.push(segment(front, -width / 2.0, front, width / 2.0));
+                curves.push(segment(goal_line, -width / 2.0, front, -width / 2.0));
+                curves.push(segment(goal_line, width / 2.0, front, width / 2.0));
+            }
+        }
+        if self.center_circle_diameter_m > 0.0 {
+            curves.push(Curve::Circle { center: DVec2::ZERO, radius_m: self.center_circle_diameter_m / 2.0 });
+        }
+        curves
+    }
+
+    /// Centres of the penalty marks and of the centre mark.
+    pub fn marks(&self) -> [DVec2; 3] {
+        let x = self.length_m / 2.0 - self.penalty_mark_distance_m;
+        [DVec2::new(-x, 0.0), DVec2::ZERO, DVec2::new(x, 0.0)]
+    }
+
+    /// The goals at −x and at +x.
+    pub fn goals(&self) -> [Goal; 2] {
+        [-1.0, 1.0].map(|side| {
+            let radius_m = self.goal_post_diameter_m / 2.0;
+            let y = self.goal_width_m / 2.0 + radius_m;
+            let post = |y| GoalPost {
+                center: DVec2::new(side * self.length_m / 2.0, y),
+                radius_m,
+                height_m: self.goal_height_m + self.goal_post_diameter_m,
+            };
+            Goal { posts: [post(side * y), post(-side * y)] }
+        })
+    }
+}

@@ -1,0 +1,133 @@
+//! The numbers that describe a field, as `field.toml` holds them.
+
+use serde::{Deserialize, Serialize};
+
+/// Field sizes outside this range are a mistake in the file: the largest league field is 22 m long.
+const PLAUSIBLE_LENGTH_M: std::ops::RangeInclusive<f64> = 0.5..=200.0;
+
+/// Dimensions of a field, metres. Lengths between lines are measured between the lines' centres.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FieldDimensions {
+    /// What the field is called.
+    #[serde(default)]
+    pub name: String,
+    /// From goal line to goal line, along x.
+    pub length_m: f64,
+    /// From touch line to touch line, along y.
+    pub width_m: f64,
+    /// Width of the white lines.
+    pub line_width_m: f64,
+    /// Carpet outside the outermost lines.
+    pub border_strip_m: f64,
+    /// Depth of the goal area, along x.
+    pub goal_area_length_m: f64,
+    /// Width of the goal area, along y.
+    pub goal_area_width_m: f64,
+    /// From the goal line to the penalty mark.
+    pub penalty_mark_distance_m: f64,
+    /// Diameter of the centre circle.
+    pub center_circle_diameter_m: f64,
+    /// Between the inner sides of the posts.
+    pub goal_width_m: f64,
+    /// From the carpet to the lower side of the crossbar.
+    pub goal_height_m: f64,
+    /// Diameter of posts and crossbar.
+    pub goal_post_diameter_m: f64,
+    /// Depth of the penalty area, along x, where the field has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub penalty_area_length_m: Option<f64>,
+    /// Width of the penalty area, along y, where the field has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub penalty_area_width_m: Option<f64>,
+    /// sRGB colour (0–255) of the goal at +x, where the two goals differ in colour.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub goal_srgb_positive_x: Option<[u8; 3]>,
+    /// sRGB colour (0–255) of the goal at −x, where the two goals differ in colour.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub goal_srgb_negative_x: Option<[u8; 3]>,
+}
+
+/// A field whose dimensions contradict each other.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{name} is {value}: {rule}")]
+pub struct InvalidField {
+    /// The key in `field.toml`.
+    pub name: &'static str,
+    /// As given.
+    pub value: f64,
+    /// What it has to be.
+    pub rule: &'static str,
+}
+
+impl FieldDimensions {
+    /// Checks that the dimensions describe a field on which lines can be drawn.
+    pub fn validate(&self) -> Result<(), InvalidField> {
+        let check = |name, value: f64, valid: bool, rule| {
+            if value.is_finite() && valid { Ok(()) } else { Err(InvalidField { name, value, rule }) }
+        };
+        for (name, value) in [("length_m", self.length_m), ("width_m", self.width_m)] {
+            check(name, value, PLAUSIBLE_LENGTH_M.contains(&value), "must be between 0.5 and 200 metres")?;
+        }
+        let shorter = self.length_m.min(self.width_m);
+        let width = self.line_width_m;
+        check(
+            "line_width_m",
+            width,
+            width > 0.0 && width < shorter / 10.0,
+            "must be above 0 and below a tenth of the field",
+        )?;
+        let strip = self.border_strip_m;
+        check("border_strip_m", strip, (0.0..=20.0).contains(&strip), "must be between 0 and 20 metres")?;
+        let half = self.length_m / 2.0;
+        let fits_length = |value: f64| value >= 0.0 && value < half;
+        let fits_width = |value: f64| value >= 0.0 && value <= self.width_m;
+        let (length_rule, width_rule) = (
+            "must be 0 or more and below half the field's length",
+            "must be 0 or more and at most the field's width",
+        );
+        check(
+            "goal_area_length_m",
+            self.goal_area_length_m,
+            fits_length(self.goal_area_length_m),
+            length_rule,
+        )?;
+        check("goal_area_width_m", self.goal_area_width_m, fits_width(self.goal_area_width_m), width_rule)?;
+        check(
+            "penalty_mark_distance_m",
+            self.penalty_mark_distance_m,
+            fits_length(self.penalty_mark_distance_m),
+            length_rule,
+        )?;
+        check(
+            "center_circle_diameter_m",
+            self.center_circle_diameter_m,
+            self.center_circle_diameter_m >= 0.0 && self.center_circle_diameter_m <= shorter,
+            "must be 0 or more and fit into the field",
+        )?;
+        check("goal_width_m", self.goal_width_m, fits_width(self.goal_width_m), width_rule)?;
+        for (name, value) in
+            [("goal_height_m", self.goal_height_m), ("goal_post_diameter_m", self.goal_post_diameter_m)]
+        {
+            check(name, value, (0.0..=10.0).contains(&value), "must be between 0 and 10 metres")?;
+        }
+        match (self.penalty_area_length_m, self.penalty_area_width_m) {
+            (None, None) => Ok(()),
+            (Some(length), Some(width)) => {
+                check("penalty_area_length_m", length, fits_length(length), length_rule)?;
+                check("penalty_area_width_m", width, fits_width(width), width_rule)
+            }
+            (Some(value), None) => {
+                check("penalty_area_length_m", value, false, "needs penalty_area_width_m beside it")
+            }
+            (None, Some(value)) => {
+                check("penalty_area_width_m", value, false, "needs penalty_area_length_m beside it")
+            }
+        }
+    }
+
+    /// Half the carpet's extent along x and y, lines and border strip included, metres.
+    pub fn carpet_half_extent_m(&self) -> glam::DVec2 {
+        glam::DVec2::new(self.length_m, self.width_m) / 2.0 + self.border_strip_m + self.line_width_m / 2.0
+    }
+}

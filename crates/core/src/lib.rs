@@ -1,0 +1,8 @@
+//! Where a camera was when it took a picture of a soccer field: camera models, the field, recordings,
+//! preprocessing, observation models and the particle filter of Reality Sim, on the CPU.
+//!
+//! Metres, radians and seconds everywhere; the unit is part of the name. The frames are those of [`pose`].
+
+pub mod camera;
+pub mod field;
+pub mod pose;
