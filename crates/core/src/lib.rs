@@ -5,4 +5,7 @@
 
 pub mod camera;
 pub mod field;
+pub mod filter;
+pub mod observation;
 pub mod pose;
+pub mod preprocess;

@@ -1,0 +1,240 @@
+//! The inner loop of all scoring: ground points through a particle's pose and the lens to values of a texture.
+//!
+//! Sixteen points at a time, in plain arrays that the compiler turns into vector instructions; multiplications and
+//! additions are never fused, so that every processor gives the same bits.
+
+use super::lens::{KernelCamera, Lens};
+use crate::{pose::CameraPose, preprocess::Texture};
+
+/// Points handled together.
+pub(crate) const LANES: usize = 16;
+
+/// One value for each of sixteen points.
+pub(crate) type Lanes = [f32; LANES];
+
+/// Ground points in blocks of sixteen. The last block is filled up with NaN, which no camera sees.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct GroundPoints {
+    pub blocks: Vec<[Lanes; 2]>,
+}
+
+impl GroundPoints {
+    pub fn new(points: impl Iterator<Item = glam::DVec2>) -> Self {
+        let points: Vec<_> = points.collect();
+        let blocks = points
+            .chunks(LANES)
+            .map(|chunk| {
+                let mut block = [[f32::NAN; LANES]; 2];
+                for (lane, point) in chunk.iter().enumerate() {
+                    block[0][lane] = point.x as f32;
+                    block[1][lane] = point.y as f32;
+                }
+                block
+            })
+            .collect();
+        Self { blocks }
+    }
+}
+
+/// `camera = linear · ground + offset`: a pose for points with z = 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct CameraFromGround {
+    linear: [[f32; 2]; 3],
+    offset: [f32; 3],
+}
+
+impl CameraFromGround {
+    pub fn new(pose: CameraPose) -> Self {
+        let rotation = pose.rotation_world_from_camera();
+        let position = pose.position_in_world();
+        let axes = [rotation.x_axis, rotation.y_axis, rotation.z_axis];
+        Self {
+            linear: axes.map(|axis| [axis.x as f32, axis.y as f32]),
+            offset: axes.map(|axis| -axis.dot(position) as f32),
+        }
+    }
+}
+
+/// Pixels of sixteen ground points; `seen` is 1 where the point has a pixel, else 0.
+#[derive(Clone, Copy)]
+pub(crate) struct Pixels {
+    pub u: Lanes,
+    pub v: Lanes,
+    pub seen: Lanes,
+}
+
+/// Projects a block; `None` where the camera sees none of it.
+#[inline(always)]
+pub(crate) fn project_block(
+    camera: &KernelCamera,
+    pose: &CameraFromGround,
+    ground: &[Lanes; 2],
+) -> Option<Pixels> {
+    let mut place = [[0.0_f32; LANES]; 3];
+    for axis in 0..3 {
+        let [a, b] = pose.linear[axis];
+        let offset = pose.offset[axis];
+        for i in 0..LANES {
+            place[axis][i] = a * ground[0][i] + b * ground[1][i] + offset;
+        }
+    }
+    let [x, y, z] = place;
+    let mut inverse = [0.0_f32; LANES];
+    let mut cos = [0.0_f32; LANES];
+    let mut any = 0u32;
+    for i in 0..LANES {
+        inverse[i] = 1.0 / (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt();
+        cos[i] = z[i] * inverse[i];
+        any |= u32::from(cos[i] >= camera.min_cos);
+    }
+    if any == 0 {
+        return None;
+    }
+    let mut pixels = Pixels { u: [0.0; LANES], v: [0.0; LANES], seen: [0.0; LANES] };
+    match &camera.lens {
+        Lens::Radial { coefficients, scale, offset } => {
+            for i in 0..LANES {
+                let t = cos[i] * scale + offset;
+                let mut h = coefficients[coefficients.len() - 1];
+                for &c in coefficients[..coefficients.len() - 1].iter().rev() {
+                    h = h * t + c;
+                }
+                let s = h * inverse[i];
+                pixels.u[i] = camera.fx * (x[i] * s) + camera.cx;
+                pixels.v[i] = camera.fy * (y[i] * s) + camera.cy;
+            }
+        }
+        Lens::Perspective { distortion: [k1, k2, p1, p2, k3] } => {
+            for i in 0..LANES {
+                let depth = 1.0 / z[i];
+                let (a, b) = (x[i] * depth, y[i] * depth);
+                let r2 = a * a + b * b;
+                let radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+                let ab2 = 2.0 * a * b;
+                let da = a * radial + p1 * ab2 + p2 * (r2 + 2.0 * a * a);
+                let db = b * radial + p1 * (r2 + 2.0 * b * b) + p2 * ab2;
+                pixels.u[i] = camera.fx * da + camera.cx;
+                pixels.v[i] = camera.fy * db + camera.cy;
+            }
+        }
+    }
+    let [circle_u, circle_v, circle_r2] = camera.circle;
+    for i in 0..LANES {
+        let (u, v) = (pixels.u[i], pixels.v[i]);
+        let (du, dv) = (u - circle_u, v - circle_v);
+        let seen = (cos[i] >= camera.min_cos)
+            & (u >= 0.0)
+            & (u <= camera.max_u)
+            & (v >= 0.0)
+            & (v <= camera.max_v)
+            & (du * du + dv * dv <= circle_r2);
+        pixels.seen[i] = f32::from(u8::from(seen));
+    }
+    Some(pixels)
+}
+
+/// Bilinear values (0–255) at sixteen pixels; lanes that are not seen give some value of the picture.
+#[inline(always)]
+pub(crate) fn sample_block(texture: &Texture, pixels: &Pixels) -> Lanes {
+    /// Adding 2²³ leaves a float's integer part in the low bits of its mantissa.
+    const SHIFT: f32 = 8_388_608.0;
+    let (max_u, max_v) = ((texture.width - 1) as f32, (texture.height - 1) as f32);
+    let mut index = [0u32; LANES];
+    let (mut fu, mut fv) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+    for i in 0..LANES {
+        // max() and min() also turn NaN into 0.
+        let u = pixels.u[i].max(0.0).min(max_u);
+        let v = pixels.v[i].max(0.0).min(max_v);
+        let (column, row) = ((u - 0.5).max(0.0) + SHIFT, (v - 0.5).max(0.0) + SHIFT);
+        fu[i] = u - (column - SHIFT);
+        fv[i] = v - (row - SHIFT);
+        index[i] = (row.to_bits() & 0x007f_ffff)
+            .wrapping_mul(texture.width)
+            .wrapping_add(column.to_bits() & 0x007f_ffff);
+    }
+    let mut texel = [0u32; LANES];
+    for i in 0..LANES {
+        texel[i] = texture.texels.get(index[i] as usize).copied().unwrap_or(0);
+    }
+    let mut value = [0.0_f32; LANES];
+    for i in 0..LANES {
+        let p00 = (texel[i] & 255) as f32;
+        let p10 = (texel[i] >> 8 & 255) as f32;
+        let p01 = (texel[i] >> 16 & 255) as f32;
+        let p11 = (texel[i] >> 24) as f32;
+        let top = p00 + fu[i] * (p10 - p00);
+        let bottom = p01 + fu[i] * (p11 - p01);
+        value[i] = top + fv[i] * (bottom - top);
+    }
+    value
+}
+
+/// Sum over all points seen: texture value, and how many were seen.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+pub(crate) fn sum_along_lines(
+    texture: &Texture,
+    camera: &KernelCamera,
+    pose: &CameraFromGround,
+    points: &GroundPoints,
+) -> [f32; 2] {
+    let (mut sum, mut seen) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+    for block in &points.blocks {
+        let Some(pixels) = project_block(camera, pose, block) else { continue };
+        let value = sample_block(texture, &pixels);
+        for i in 0..LANES {
+            sum[i] += pixels.seen[i] * value[i];
+            seen[i] += pixels.seen[i];
+        }
+    }
+    [sum.iter().sum(), seen.iter().sum()]
+}
+
+/// Centre, left flank and right flank of line samples, in blocks of sixteen.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct LinePoints {
+    pub centre: GroundPoints,
+    pub left: GroundPoints,
+    pub right: GroundPoints,
+}
+
+/// What [`contrast_along_lines`] needs to know of the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ContrastScale {
+    /// One over the difference between lines and carpet, per grey level.
+    pub per_level: f32,
+    /// A line this wide in the picture, or wider, counts fully, pixels.
+    pub full_width_px: f32,
+}
+
+/// Over all samples seen with both flanks: Σ weight · contrast and Σ weight, where contrast is the centre's value minus
+/// the brighter flank's, in units of the picture's line contrast, cut to [−1, 1].
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+pub(crate) fn contrast_along_lines(
+    texture: &Texture,
+    camera: &KernelCamera,
+    pose: &CameraFromGround,
+    points: &LinePoints,
+    scale: ContrastScale,
+) -> [f32; 2] {
+    let (mut contrast, mut weight) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+    for ((centre, left), right) in
+        points.centre.blocks.iter().zip(&points.left.blocks).zip(&points.right.blocks)
+    {
+        let Some(centre) = project_block(camera, pose, centre) else { continue };
+        let Some(left) = project_block(camera, pose, left) else { continue };
+        let Some(right) = project_block(camera, pose, right) else { continue };
+        let line = sample_block(texture, &centre);
+        let (flank_left, flank_right) = (sample_block(texture, &left), sample_block(texture, &right));
+        for i in 0..LANES {
+            let (du, dv) = (left.u[i] - right.u[i], left.v[i] - right.v[i]);
+            // The flanks lie two line widths apart.
+            let width_px = 0.5 * (du * du + dv * dv).sqrt();
+            let seen = centre.seen[i] * left.seen[i] * right.seen[i];
+            let w = if seen > 0.0 { (width_px / scale.full_width_px).min(1.0) } else { 0.0 };
+            let c = (line[i] - flank_left[i].max(flank_right[i])) * scale.per_level;
+            contrast[i] += w * c.max(-1.0).min(1.0);
+            weight[i] += w;
+        }
+    }
+    [contrast.iter().sum(), weight.iter().sum()]
+}

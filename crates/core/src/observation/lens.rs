@@ -1,0 +1,122 @@
+//! The lens in the form that the scoring loops use: single precision, no branches, no transcendental functions.
+
+use crate::camera::{Camera, Distortion};
+
+/// Coefficients of the radial polynomial: enough for 0.002 px up to 120° from the optical axis.
+pub(crate) const RADIAL_TERMS: usize = 14;
+
+/// How a direction becomes a place in the plane of unit focal length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Lens {
+    /// `place = (x, y)/|p| · Σ cᵢ tⁱ`, t = z/|p| mapped to [−1, 1]. For Kannala–Brandt θ_d/sin θ is an even function of
+    /// θ, hence a smooth function of cos θ = z/|p|: a short polynomial replaces square root and arc tangent.
+    Radial { coefficients: [f32; RADIAL_TERMS], scale: f32, offset: f32 },
+    /// `place = (x, y)/z` with Brown–Conrady distortion k1, k2, p1, p2, k3.
+    Perspective { distortion: [f32; 5] },
+}
+
+/// A camera for the scoring loops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct KernelCamera {
+    pub lens: Lens,
+    pub fx: f32,
+    pub fy: f32,
+    pub cx: f32,
+    pub cy: f32,
+    /// Largest valid column and row.
+    pub max_u: f32,
+    pub max_v: f32,
+    /// Cosine of the largest valid angle.
+    pub min_cos: f32,
+    /// Image circle: centre and squared radius; infinite where the lens fills the picture.
+    pub circle: [f32; 3],
+}
+
+impl KernelCamera {
+    pub fn new(camera: &Camera) -> Self {
+        let min_cos = camera.max_angle_rad().min(max_seen_angle_rad(camera)).cos();
+        let lens = match camera.distortion {
+            Distortion::Pinhole => Lens::Perspective { distortion: [0.0; 5] },
+            Distortion::Opencv(d) => {
+                Lens::Perspective { distortion: [d.k1, d.k2, d.p1, d.p2, d.k3].map(|k| k as f32) }
+            }
+            Distortion::OpencvFisheye(lens) => radial(min_cos, |theta| lens.radius(theta)),
+        };
+        let circle = camera.image_circle.map_or([0.0, 0.0, f32::INFINITY], |circle| {
+            [circle.cx as f32, circle.cy as f32, (circle.radius * circle.radius) as f32]
+        });
+        Self {
+            lens,
+            fx: camera.fx as f32,
+            fy: camera.fy as f32,
+            cx: camera.cx as f32,
+            cy: camera.cy as f32,
+            max_u: (camera.width - 1) as f32,
+            max_v: (camera.height - 1) as f32,
+            min_cos: min_cos as f32,
+            circle,
+        }
+    }
+}
+
+/// The largest angle seen in the picture's corners: the polynomial need not hold beyond it.
+fn max_seen_angle_rad(camera: &Camera) -> f64 {
+    let (right, bottom) = (f64::from(camera.width - 1), f64::from(camera.height - 1));
+    let corners = [(0.0, 0.0), (right, 0.0), (0.0, bottom), (right, bottom)];
+    corners
+        .iter()
+        .map(|&(u, v)| {
+            camera
+                .unproject(glam::DVec2::new(u, v))
+                .map_or(camera.max_angle_rad(), |ray| ray.z.clamp(-1.0, 1.0).acos())
+        })
+        .fold(0.0, f64::max)
+}
+
+/// Chebyshev interpolation of θ_d/sin θ over cos θ in [min_cos, 1], as a power series.
+fn radial(min_cos: f64, radius: impl Fn(f64) -> f64) -> Lens {
+    use std::f64::consts::PI;
+    let count = RADIAL_TERMS;
+    // cos θ = centre + half · t. A rim at 180° is a pole of 1/sin θ: stop just short of it.
+    let low = min_cos.max(-0.99);
+    let (centre, half) = (0.5 * (1.0 + low), 0.5 * (1.0 - low));
+    let node = |j: usize| (PI * (j as f64 + 0.5) / count as f64).cos();
+    let value = |t: f64| {
+        let theta = (centre + half * t).clamp(-1.0, 1.0).acos();
+        radius(theta) / theta.sin()
+    };
+    let chebyshev: Vec<f64> = (0..count)
+        .map(|k| {
+            let sum: f64 = (0..count)
+                .map(|j| value(node(j)) * (PI * k as f64 * (j as f64 + 0.5) / count as f64).cos())
+                .sum();
+            sum * if k == 0 { 1.0 } else { 2.0 } / count as f64
+        })
+        .collect();
+    Lens::Radial {
+        coefficients: power_series(&chebyshev).map(|c| c as f32),
+        scale: (1.0 / half) as f32,
+        offset: (-centre / half) as f32,
+    }
+}
+
+/// Rewrites Σ cₖ Tₖ(t) as Σ aᵢ tⁱ.
+fn power_series(chebyshev: &[f64]) -> [f64; RADIAL_TERMS] {
+    let mut sum = [0.0; RADIAL_TERMS];
+    let (mut previous, mut current) = ([0.0; RADIAL_TERMS], [0.0; RADIAL_TERMS]);
+    current[0] = 1.0;
+    for (order, &coefficient) in chebyshev.iter().enumerate() {
+        for (total, term) in sum.iter_mut().zip(current) {
+            *total += coefficient * term;
+        }
+        // T₁ = t; Tₙ₊₁ = 2 t Tₙ − Tₙ₋₁.
+        let factor = if order == 0 { 1.0 } else { 2.0 };
+        let mut next = [0.0; RADIAL_TERMS];
+        for i in 0..RADIAL_TERMS {
+            let shifted = if i > 0 { current[i - 1] } else { 0.0 };
+            next[i] = factor * shifted - if order == 0 { 0.0 } else { previous[i] };
+        }
+        (previous, current) = (current, next);
+    }
+    sum
+}

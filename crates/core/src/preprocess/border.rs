@@ -1,0 +1,240 @@
+//! The border of the field: the carpet's colour learned from the picture itself, the farthest carpet in every
+//! direction, and the convex outline around it.
+//!
+//! The paper detects the field's border as a contour in the picture. Here the contour is found on the ground: seen
+//! from the camera, each direction is followed outwards to the place that best divides carpet from not-carpet. A robot
+//! in the way makes that place too near, so the convex hull of all places is taken: a carpet is convex, a robot's foot
+//! inside the hull does not move it.
+
+use glam::Vec2;
+use image::{GrayImage, RgbImage};
+
+use super::{Attitude, carpet::CarpetColor};
+use crate::camera::Camera;
+
+/// The picture is looked at in cells of this many pixels.
+const CELL_PX: u32 = 2;
+/// Directions around the camera, by pseudo-angle.
+const BEARINGS: usize = 360;
+/// Steps of the ray's sine of depression, from the horizon (0) to straight down (1).
+const DEPRESSIONS: usize = 400;
+/// Rays flatter than this end beyond any field: about 40 camera heights away.
+const MIN_DEPRESSION: f32 = 0.025;
+/// Carpet colour is learned up to this many camera heights from the camera.
+const LEARNING_RADIUS_HEIGHTS: f32 = 8.0;
+
+/// Finds the field's border in pictures of one camera.
+#[derive(Debug, Clone)]
+pub struct BorderDetector {
+    columns: u32,
+    rows: u32,
+    /// Unit rays of the cells' centres in the camera's axes; zero where the camera sees nothing.
+    rays_in_camera: Vec<[f32; 3]>,
+}
+
+/// The border of the field in one picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FieldBorder {
+    columns: u32,
+    inside: Vec<bool>,
+    /// The carpet's colour in this picture.
+    pub carpet: CarpetColor,
+    /// Corners of the convex outline, metres, x along the camera's heading and y to its left, counter-clockwise.
+    pub outline_in_heading: Vec<Vec2>,
+}
+
+/// A cell's ray: which bearing, and the sine of its depression below the horizon.
+#[derive(Clone, Copy)]
+struct GroundCell {
+    bearing: u16,
+    depression: f32,
+}
+
+impl BorderDetector {
+    /// Prepares the rays of a camera's pixels.
+    pub fn new(camera: &Camera) -> Self {
+        let (columns, rows) = (camera.width.div_ceil(CELL_PX), camera.height.div_ceil(CELL_PX));
+        let centre = |cell: u32| f64::from(cell * CELL_PX) + f64::from(CELL_PX - 1) / 2.0;
+        let ray = |row, column| {
+            let pixel = glam::DVec2::new(centre(column), centre(row))
+                .min(glam::DVec2::new(f64::from(camera.width - 1), f64::from(camera.height - 1)));
+            let seen = camera.check_inside(pixel).is_ok();
+            camera.unproject(pixel).ok().filter(|_| seen).map_or([0.0; 3], |ray| ray.as_vec3().to_array())
+        };
+        let rays_in_camera = (0..rows)
+            .flat_map(|row| (0..columns).map(move |column| (row, column)))
+            .map(|(r, c)| ray(r, c))
+            .collect();
+        Self { columns, rows, rays_in_camera }
+    }
+
+    /// Finds the border in a picture taken with this attitude.
+    pub fn detect(&self, picture: &RgbImage, attitude: Attitude) -> FieldBorder {
+        let cells = self.ground_cells(attitude);
+        let color = |index: usize| {
+            let (column, row) = (index as u32 % self.columns, index as u32 / self.columns);
+            picture
+                .get_pixel(
+                    (column * CELL_PX).min(picture.width() - 1),
+                    (row * CELL_PX).min(picture.height() - 1),
+                )
+                .0
+        };
+        let near = 1.0 / (1.0 + LEARNING_RADIUS_HEIGHTS * LEARNING_RADIUS_HEIGHTS).sqrt();
+        let seen = || cells.iter().enumerate().filter_map(|(index, cell)| cell.map(|cell| (index, cell)));
+        let carpet = CarpetColor::learn(
+            seen().filter(|(_, cell)| cell.depression > near).map(|(index, _)| color(index)),
+        );
+        let mut votes = vec![[0.0_f32; DEPRESSIONS]; BEARINGS];
+        for (index, cell) in seen() {
+            votes[usize::from(cell.bearing)][depression_bin(cell.depression)] += carpet.vote(color(index));
+        }
+        let ends: Vec<Option<f32>> = votes.iter().map(|row| farthest_carpet(row)).collect();
+        let outline_in_heading = convex_hull(border_points(&ends, attitude.height_m as f32));
+        let limits = hull_depressions(&outline_in_heading, attitude.height_m as f32);
+        let inside = cells
+            .iter()
+            .map(|cell| cell.is_some_and(|cell| cell.depression >= limits[usize::from(cell.bearing)]))
+            .collect();
+        FieldBorder { columns: self.columns, inside, carpet, outline_in_heading }
+    }
+
+    fn ground_cells(&self, attitude: Attitude) -> Vec<Option<GroundCell>> {
+        let rotation = attitude.rotation_heading_from_camera().as_mat3();
+        debug_assert_eq!(self.rays_in_camera.len(), (self.columns * self.rows) as usize);
+        self.rays_in_camera
+            .iter()
+            .map(|&ray| {
+                let ray = rotation * glam::Vec3::from(ray);
+                (-ray.z >= MIN_DEPRESSION)
+                    .then(|| GroundCell { bearing: bearing_bin(ray.truncate()), depression: -ray.z })
+            })
+            .collect()
+    }
+}
+
+impl FieldBorder {
+    /// Whether a pixel shows a place inside the border (or something that stands before it).
+    pub fn contains(&self, u: u32, v: u32) -> bool {
+        self.inside.get(((v / CELL_PX) * self.columns + u / CELL_PX) as usize).copied().unwrap_or(false)
+    }
+
+    /// Sets all pixels outside the border to zero.
+    pub fn mask(&self, picture: &mut GrayImage) {
+        let width = picture.width().max(1) as usize;
+        for (v, row) in picture.as_flat_samples_mut().samples.chunks_exact_mut(width).enumerate() {
+            let first = v / CELL_PX as usize * self.columns as usize;
+            let cells = &self.inside[first..first + self.columns as usize];
+            for (pixels, &inside) in row.chunks_mut(CELL_PX as usize).zip(cells) {
+                if !inside {
+                    pixels.fill(0);
+                }
+            }
+        }
+    }
+}
+
+/// A number from 0 to 4 that grows with the angle of a direction, without trigonometry.
+fn pseudo_angle(direction: Vec2) -> f32 {
+    let p = direction.y / (direction.x.abs() + direction.y.abs()).max(f32::MIN_POSITIVE);
+    if direction.x < 0.0 {
+        2.0 - p
+    } else if direction.y < 0.0 {
+        4.0 + p
+    } else {
+        p
+    }
+}
+
+fn bearing_bin(direction: Vec2) -> u16 {
+    ((pseudo_angle(direction) * (BEARINGS as f32 / 4.0)) as usize).min(BEARINGS - 1) as u16
+}
+
+/// The direction at the middle of a bearing's bin.
+fn bearing_direction(bin: usize) -> Vec2 {
+    let p = (bin as f32 + 0.5) * 4.0 / BEARINGS as f32;
+    let direction = match p {
+        p if p < 1.0 => Vec2::new(1.0 - p, p),
+        p if p < 3.0 => Vec2::new(1.0 - p, 2.0 - p),
+        p => Vec2::new(p - 3.0, p - 4.0),
+    };
+    direction.normalize_or(Vec2::X)
+}
+
+fn depression_bin(depression: f32) -> usize {
+    ((depression * DEPRESSIONS as f32) as usize).min(DEPRESSIONS - 1)
+}
+
+/// The sine of depression up to which the votes, summed from near to far, are highest.
+fn farthest_carpet(votes: &[f32; DEPRESSIONS]) -> Option<f32> {
+    let (mut sum, mut best, mut end) = (0.0, 0.0, None);
+    for (bin, vote) in votes.iter().enumerate().rev() {
+        sum += vote;
+        if sum > best && *vote > 0.0 {
+            (best, end) = (sum, Some(bin));
+        }
+    }
+    end.map(|bin| bin as f32 / DEPRESSIONS as f32)
+}
+
+/// Places where the carpet ends, without single directions that reach beyond both neighbours.
+fn border_points(ends: &[Option<f32>], height_m: f32) -> Vec<Vec2> {
+    let at = |bin: usize, step: i32| ends[(bin as i32 + step).rem_euclid(ends.len() as i32) as usize];
+    (0..ends.len())
+        .filter_map(|bin| {
+            let here = ends[bin]?.max(MIN_DEPRESSION);
+            let nearer = |step| at(bin, step).unwrap_or(1.0);
+            let limited = here.max(nearer(-1).min(nearer(-2)).min(nearer(1).min(nearer(2))));
+            Some(bearing_direction(bin) * height_m * ((1.0 - limited * limited).max(0.0).sqrt() / limited))
+        })
+        .collect()
+}
+
+/// Andrew's monotone chain; counter-clockwise.
+fn convex_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let chain = |points: &mut dyn Iterator<Item = Vec2>| {
+        let mut hull: Vec<Vec2> = Vec::new();
+        for point in points {
+            while hull.len() >= 2
+                && (hull[hull.len() - 1] - hull[hull.len() - 2]).perp_dot(point - hull[hull.len() - 1]) <= 0.0
+            {
+                hull.pop();
+            }
+            hull.push(point);
+        }
+        hull.pop();
+        hull
+    };
+    let mut hull = chain(&mut points.iter().copied());
+    hull.extend(chain(&mut points.iter().rev().copied()));
+    hull
+}
+
+/// For every bearing, the sine of depression at which a ray leaves the hull; 2 (never inside) where it does not meet it.
+fn hull_depressions(hull: &[Vec2], height_m: f32) -> Vec<f32> {
+    (0..BEARINGS)
+        .map(|bin| {
+            let direction = bearing_direction(bin);
+            let reach = (0..hull.len())
+                .filter_map(|i| ray_meets_edge(direction, hull[i], hull[(i + 1) % hull.len()]))
+                .fold(0.0, f32::max);
+            if reach > 0.0 { height_m / reach.hypot(height_m) } else { 2.0 }
+        })
+        .collect()
+}
+
+fn ray_meets_edge(direction: Vec2, from: Vec2, to: Vec2) -> Option<f32> {
+    let edge = to - from;
+    let denominator = direction.perp_dot(edge);
+    if denominator.abs() < 1e-12 {
+        return None;
+    }
+    let distance = from.perp_dot(edge) / denominator;
+    let along = from.perp_dot(direction) / denominator;
+    (distance > 0.0 && (-1e-4..=1.0001).contains(&along)).then_some(distance)
+}

@@ -1,0 +1,108 @@
+//! The carpet's colour, learned from the picture itself.
+
+/// Bins along each axis of the chromaticity histogram.
+const BINS: usize = 48;
+/// Pixels darker than this (sum of the channels) have no usable chromaticity.
+const MIN_SUM: u16 = 36;
+/// Smallest spread of the carpet's chromaticity: JPEG's colour noise.
+const MIN_SIGMA: f32 = 0.012;
+/// Squared distance, in spreads, up to which a pixel may be carpet.
+const GATE: f32 = 12.0;
+
+/// A Gaussian in chromaticity (r, g) = (R, G)/(R + G + B), with a range of brightness: light changes brightness more
+/// than colour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CarpetColor {
+    /// Mean chromaticity (r, g).
+    pub mean: [f32; 2],
+    /// Inverse covariance: rr, rg, gg.
+    inverse: [f32; 3],
+    /// Mean of R + G + B.
+    pub brightness: f32,
+}
+
+impl CarpetColor {
+    /// The most common colour among pixels that probably show carpet.
+    pub fn learn(pixels: impl Iterator<Item = [u8; 3]>) -> Self {
+        let samples: Vec<([f32; 2], f32)> = pixels.filter_map(chromaticity).collect();
+        let mut color = Self { mean: peak(&samples), inverse: [400.0, 0.0, 400.0], brightness: 0.0 };
+        for _ in 0..4 {
+            color = color.refit(&samples);
+        }
+        color
+    }
+
+    /// Mean and covariance of the samples within the gate.
+    fn refit(self, samples: &[([f32; 2], f32)]) -> Self {
+        let (mut count, mut sum, mut squares, mut brightness) = (0.0, [0.0; 2], [0.0; 3], 0.0);
+        for &([r, g], total) in samples {
+            if self.distance_squared([r, g]) < GATE / 2.0 {
+                let (dr, dg) = (r - self.mean[0], g - self.mean[1]);
+                count += 1.0;
+                sum = [sum[0] + dr, sum[1] + dg];
+                squares = [squares[0] + dr * dr, squares[1] + dr * dg, squares[2] + dg * dg];
+                brightness += total;
+            }
+        }
+        if count < 10.0 {
+            return self;
+        }
+        let shift = sum.map(|s| s / count);
+        let floor = MIN_SIGMA * MIN_SIGMA;
+        let rr = squares[0] / count - shift[0] * shift[0] + floor;
+        let rg = squares[1] / count - shift[0] * shift[1];
+        let gg = squares[2] / count - shift[1] * shift[1] + floor;
+        let determinant = rr * gg - rg * rg;
+        Self {
+            mean: [self.mean[0] + shift[0], self.mean[1] + shift[1]],
+            inverse: [gg / determinant, -rg / determinant, rr / determinant],
+            brightness: brightness / count,
+        }
+    }
+
+    fn distance_squared(&self, [r, g]: [f32; 2]) -> f32 {
+        let (dr, dg) = (r - self.mean[0], g - self.mean[1]);
+        let [rr, rg, gg] = self.inverse;
+        rr * dr * dr + 2.0 * rg * dr * dg + gg * dg * dg
+    }
+
+    /// Whether a pixel has the carpet's colour.
+    pub fn is_carpet(&self, rgb: [u8; 3]) -> bool {
+        chromaticity(rgb).is_some_and(|(chroma, total)| {
+            self.distance_squared(chroma) < GATE && (0.2..5.0).contains(&(total / self.brightness.max(1.0)))
+        })
+    }
+
+    /// For the border: carpet +1, what may be a white line 0, anything else −1.
+    pub(super) fn vote(&self, rgb: [u8; 3]) -> f32 {
+        let [low, high] = [rgb.into_iter().min().unwrap_or(0), rgb.into_iter().max().unwrap_or(0)];
+        let colourless = u16::from(low) * 4 > u16::from(high) * 3;
+        let bright = rgb.iter().map(|&c| f32::from(c)).sum::<f32>() > 1.2 * self.brightness;
+        match self.is_carpet(rgb) {
+            true => 1.0,
+            false if colourless && bright => 0.0,
+            false => -1.0,
+        }
+    }
+}
+
+fn chromaticity([r, g, b]: [u8; 3]) -> Option<([f32; 2], f32)> {
+    let sum = u16::from(r) + u16::from(g) + u16::from(b);
+    let total = f32::from(sum);
+    (sum >= MIN_SUM).then(|| ([f32::from(r) / total, f32::from(g) / total], total))
+}
+
+/// The middle of the 3×3 bins that hold most samples.
+fn peak(samples: &[([f32; 2], f32)]) -> [f32; 2] {
+    let bin = |value: f32| ((value * BINS as f32) as usize).min(BINS - 1);
+    let mut histogram = vec![[0_u32; BINS]; BINS];
+    for ([r, g], _) in samples {
+        histogram[bin(*r)][bin(*g)] += 1;
+    }
+    let block = |r: usize, g: usize| -> u32 {
+        histogram[r - 1..=r + 1].iter().map(|row| row[g - 1..=g + 1].iter().sum::<u32>()).sum()
+    };
+    let middles = (1..BINS - 1).flat_map(|r| (1..BINS - 1).map(move |g| (r, g)));
+    let (r, g) = middles.max_by_key(|&(r, g)| block(r, g)).unwrap_or((BINS / 3, BINS / 3));
+    [r, g].map(|bin| (bin as f32 + 0.5) / BINS as f32)
+}
