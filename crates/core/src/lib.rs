@@ -9,3 +9,4 @@ pub mod filter;
 pub mod observation;
 pub mod pose;
 pub mod preprocess;
+pub mod refine;

@@ -1,10 +1,18 @@
-//! The particle filter (Fig. 1 of the paper): initialise, predict, weigh, resample, T iterations a frame.
+//! The particle filter (Fig. 1 of the paper): initialise, predict, weigh, resample, T iterations a picture.
 
+mod estimate;
+mod kld;
+mod motion;
+mod particle_filter;
 mod resample;
 mod rng;
 mod weights;
 
 pub use self::{
+    estimate::{Estimator, spread_m, weighted_mean},
+    kld::KldConfig,
+    motion::{MotionNoise, PlanarSigma},
+    particle_filter::{FilterConfig, FilterEstimate, ParticleFilter},
     resample::Resampling,
     rng::{Purpose, Stream},
     weights::{best_index, effective_sample_size, normalise},

@@ -36,7 +36,8 @@ pub struct BorderDetector {
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldBorder {
     columns: u32,
-    inside: Vec<bool>,
+    /// Sine of the depression below the horizon for every cell inside the border; 0 outside.
+    depressions: Vec<f32>,
     /// The carpet's colour in this picture.
     pub carpet: CarpetColor,
     /// Corners of the convex outline, metres, x along the camera's heading and y to its left, counter-clockwise.
@@ -92,11 +93,10 @@ impl BorderDetector {
         let ends: Vec<Option<f32>> = votes.iter().map(|row| farthest_carpet(row)).collect();
         let outline_in_heading = convex_hull(border_points(&ends, attitude.height_m as f32));
         let limits = hull_depressions(&outline_in_heading, attitude.height_m as f32);
-        let inside = cells
-            .iter()
-            .map(|cell| cell.is_some_and(|cell| cell.depression >= limits[usize::from(cell.bearing)]))
-            .collect();
-        FieldBorder { columns: self.columns, inside, carpet, outline_in_heading }
+        let inside = |cell: &GroundCell| cell.depression >= limits[usize::from(cell.bearing)];
+        let depressions =
+            cells.iter().map(|cell| cell.filter(inside).map_or(0.0, |cell| cell.depression)).collect();
+        FieldBorder { columns: self.columns, depressions, carpet, outline_in_heading }
     }
 
     fn ground_cells(&self, attitude: Attitude) -> Vec<Option<GroundCell>> {
@@ -116,7 +116,12 @@ impl BorderDetector {
 impl FieldBorder {
     /// Whether a pixel shows a place inside the border (or something that stands before it).
     pub fn contains(&self, u: u32, v: u32) -> bool {
-        self.inside.get(((v / CELL_PX) * self.columns + u / CELL_PX) as usize).copied().unwrap_or(false)
+        self.depression(u, v) > 0.0
+    }
+
+    /// Sine of the depression below the horizon of a pixel inside the border; 0 outside.
+    pub(super) fn depression(&self, u: u32, v: u32) -> f32 {
+        self.depressions.get(((v / CELL_PX) * self.columns + u / CELL_PX) as usize).copied().unwrap_or(0.0)
     }
 
     /// Sets all pixels outside the border to zero.
@@ -124,9 +129,9 @@ impl FieldBorder {
         let width = picture.width().max(1) as usize;
         for (v, row) in picture.as_flat_samples_mut().samples.chunks_exact_mut(width).enumerate() {
             let first = v / CELL_PX as usize * self.columns as usize;
-            let cells = &self.inside[first..first + self.columns as usize];
-            for (pixels, &inside) in row.chunks_mut(CELL_PX as usize).zip(cells) {
-                if !inside {
+            let cells = &self.depressions[first..first + self.columns as usize];
+            for (pixels, &depression) in row.chunks_mut(CELL_PX as usize).zip(cells) {
+                if depression <= 0.0 {
                     pixels.fill(0);
                 }
             }

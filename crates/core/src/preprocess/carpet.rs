@@ -6,6 +6,8 @@ const BINS: usize = 48;
 const MIN_SUM: u16 = 36;
 /// Smallest spread of the carpet's chromaticity: JPEG's colour noise.
 const MIN_SIGMA: f32 = 0.012;
+/// Largest spread of the carpet's chromaticity.
+const MAX_SIGMA: f32 = 0.025;
 /// Squared distance, in spreads, up to which a pixel may be carpet.
 const GATE: f32 = 12.0;
 
@@ -49,9 +51,14 @@ impl CarpetColor {
         }
         let shift = sum.map(|s| s / count);
         let floor = MIN_SIGMA * MIN_SIGMA;
-        let rr = squares[0] / count - shift[0] * shift[0] + floor;
-        let rg = squares[1] / count - shift[0] * shift[1];
-        let gg = squares[2] / count - shift[1] * shift[1] + floor;
+        let [mut rr, mut rg, mut gg] = [
+            squares[0] / count - shift[0] * shift[0] + floor,
+            squares[1] / count - shift[0] * shift[1],
+            squares[2] / count - shift[1] * shift[1] + floor,
+        ];
+        // A floor or a wall of nearly the same colour must not widen the carpet's until it is carpet too.
+        let excess = (rr.max(gg) / (MAX_SIGMA * MAX_SIGMA)).max(1.0);
+        [rr, rg, gg] = [rr / excess, rg / excess, gg / excess];
         let determinant = rr * gg - rg * rg;
         Self {
             mean: [self.mean[0] + shift[0], self.mean[1] + shift[1]],

@@ -2,7 +2,9 @@
 
 use image::{GrayImage, RgbImage};
 
-use super::{Attitude, BorderDetector, FieldBorder, WhiteLevels, luma, white_line_evidence, whiteness};
+use super::{
+    Attitude, BorderDetector, FieldBorder, LineScale, WhiteLevels, luma, white_line_evidence, whiteness,
+};
 use crate::camera::Camera;
 
 /// A picture ready to be scored.
@@ -20,23 +22,31 @@ pub struct Prepared {
     pub border: FieldBorder,
 }
 
-/// Prepares pictures of one camera.
+/// Prepares pictures of one camera on one field.
 #[derive(Debug, Clone)]
 pub struct Preprocessor {
     border: BorderDetector,
+    focal_px: f32,
+    line_width_m: f32,
 }
 
 impl Preprocessor {
-    /// For pictures of this camera.
-    pub fn new(camera: &Camera) -> Self {
-        Self { border: BorderDetector::new(camera) }
+    /// For pictures of this camera on a field with lines of this width, metres.
+    pub fn new(camera: &Camera, line_width_m: f64) -> Self {
+        let focal_px = (0.5 * (camera.fx + camera.fy)) as f32;
+        Self { border: BorderDetector::new(camera), focal_px, line_width_m: line_width_m as f32 }
     }
 
     /// Prepares a picture taken with this attitude.
     pub fn prepare(&self, picture: &RgbImage, attitude: Attitude) -> Prepared {
         let (border, (luma, whiteness)) =
             rayon::join(|| self.border.detect(picture, attitude), || (luma(picture), whiteness(picture)));
-        let (evidence, levels) = white_line_evidence(&whiteness, &border);
+        let scale = LineScale {
+            focal_px: self.focal_px,
+            line_width_m: self.line_width_m,
+            height_m: attitude.height_m as f32,
+        };
+        let (evidence, levels) = white_line_evidence(&whiteness, &border, scale);
         Prepared { luma, whiteness, evidence, levels, border }
     }
 }

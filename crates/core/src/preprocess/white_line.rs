@@ -1,66 +1,120 @@
 //! The evidence for white lines: which pixels inside the field's border are white, and how far every pixel is from one.
 
 use image::GrayImage;
+use rayon::prelude::*;
 
 use super::FieldBorder;
 
-/// White pixels (255) on the field, by Otsu's threshold between carpet and lines among the pixels inside the border.
-pub fn white_line_evidence(whiteness: &GrayImage, border: &FieldBorder) -> (GrayImage, WhiteLevels) {
+/// Flanks lie this many line widths from a pixel, so that a line that runs at 45° is spanned too.
+const FLANK_WIDTHS: f32 = 1.3;
+/// And this much farther, for blur, pixels.
+const FLANK_MARGIN_PX: f32 = 1.5;
+/// Ridges below this are the carpet's texture and the sensor's noise, grey levels.
+const MIN_RIDGE: u8 = 10;
+
+/// How wide white lines are in the pictures of a camera.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LineScale {
+    /// Pixels per radian around the optical axis.
+    pub focal_px: f32,
+    /// Width of the white lines, metres.
+    pub line_width_m: f32,
+    /// Height of the camera above the carpet, metres.
+    pub height_m: f32,
+}
+
+/// White pixels (255) on the field: brighter than what lies just more than a line's width away on both sides, along the
+/// row or along the column. Light that changes over the carpet does not change that; the threshold is Otsu's.
+pub fn white_line_evidence(
+    whiteness: &GrayImage,
+    border: &FieldBorder,
+    scale: LineScale,
+) -> (GrayImage, WhiteLevels) {
+    let ridges = ridges(whiteness, border, scale);
     let mut histogram = [0_u32; 256];
-    for (u, v, pixel) in whiteness.enumerate_pixels().filter(|(u, v, _)| (u + v) % 2 == 0) {
-        if border.contains(u, v) {
-            histogram[usize::from(pixel.0[0])] += 1;
+    for (&ridge, &value) in ridges.as_raw().iter().zip(whiteness.as_raw()) {
+        // What is no ridge at all would only drown the lines.
+        if ridge > MIN_RIDGE {
+            histogram[usize::from(value.min(ridge))] += 1;
         }
     }
-    let levels = WhiteLevels::from_histogram(&histogram);
-    let mut evidence = whiteness.clone();
-    border.mask(&mut evidence);
-    for value in evidence.iter_mut() {
-        *value = if *value > levels.threshold { 255 } else { 0 };
+    let threshold = otsu(&histogram);
+    let mut evidence = ridges;
+    let (mut line, mut flank, mut count) = (0.0, 0.0, 0.0_f32);
+    for (value, &white) in evidence.iter_mut().zip(whiteness.as_raw()) {
+        if *value > threshold {
+            line += f32::from(white);
+            flank += f32::from(white) - f32::from(*value);
+            count += 1.0;
+            *value = 255;
+        } else {
+            *value = 0;
+        }
     }
+    let levels = match count > 0.0 {
+        true => WhiteLevels { carpet: flank / count, line: line / count },
+        false => WhiteLevels { carpet: 0.0, line: 255.0 },
+    };
     (evidence, levels)
 }
 
-/// Whiteness (0–255) of carpet and lines in one picture.
+/// By how much each pixel inside the border is brighter than both its flanks, along the row or along the column.
+fn ridges(whiteness: &GrayImage, border: &FieldBorder, scale: LineScale) -> GrayImage {
+    let (width, height) = (whiteness.width() as usize, whiteness.height() as usize);
+    let values = whiteness.as_raw();
+    let mut ridges = vec![0_u8; values.len()];
+    let per_depression = scale.focal_px * scale.line_width_m / scale.height_m.max(0.01);
+    ridges.par_chunks_mut(width.max(1)).enumerate().for_each(|(v, row)| {
+        for (u, ridge) in row.iter_mut().enumerate() {
+            let depression = border.depression(u as u32, v as u32);
+            if depression <= 0.0 {
+                continue;
+            }
+            let value = values[v * width + u];
+            let across = (FLANK_WIDTHS * per_depression * depression + FLANK_MARGIN_PX) as usize;
+            let along = (FLANK_WIDTHS * per_depression * depression * depression + FLANK_MARGIN_PX) as usize;
+            let rise = |a: usize, b: usize| value.saturating_sub(values[a].max(values[b]));
+            let beside = (u >= across && u + across < width)
+                .then(|| rise(v * width + u - across, v * width + u + across));
+            let above = (v >= along && v + along < height)
+                .then(|| rise((v - along) * width + u, (v + along) * width + u));
+            *ridge = beside.unwrap_or(0).max(above.unwrap_or(0));
+        }
+    });
+    // One value a pixel is just what the buffer of this size holds.
+    GrayImage::from_raw(whiteness.width(), whiteness.height(), ridges).unwrap_or_default()
+}
+
+/// Otsu, "A threshold selection method from gray-level histograms", 1979.
+fn otsu(histogram: &[u32; 256]) -> u8 {
+    let total: f64 = histogram.iter().map(|&n| f64::from(n)).sum();
+    let moment: f64 = histogram.iter().enumerate().map(|(value, &n)| value as f64 * f64::from(n)).sum();
+    let (mut below, mut below_moment) = (0.0, 0.0);
+    let mut best = (0.0, 127);
+    for (value, &n) in histogram.iter().enumerate().take(255) {
+        below += f64::from(n);
+        below_moment += value as f64 * f64::from(n);
+        let above = total - below;
+        if below > 0.0 && above > 0.0 {
+            let between = below * above * (below_moment / below - (moment - below_moment) / above).powi(2);
+            if between > best.0 {
+                best = (between, value as u8);
+            }
+        }
+    }
+    best.1
+}
+
+/// Whiteness (0–255) of the lines and of the carpet beside them in one picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WhiteLevels {
-    /// Mean below the threshold.
+    /// Mean beside the lines.
     pub carpet: f32,
-    /// Mean above the threshold.
+    /// Mean on the lines.
     pub line: f32,
-    /// Largest value that is not white.
-    pub threshold: u8,
 }
 
 impl WhiteLevels {
-    /// Otsu, "A threshold selection method from gray-level histograms", 1979. Two values at least one grey level apart
-    /// are returned whatever the histogram.
-    fn from_histogram(histogram: &[u32; 256]) -> Self {
-        let total: f64 = histogram.iter().map(|&n| f64::from(n)).sum();
-        let moment: f64 = histogram.iter().enumerate().map(|(value, &n)| value as f64 * f64::from(n)).sum();
-        let (mut below, mut below_moment) = (0.0, 0.0);
-        let mut best = (0.0, Self { carpet: 0.0, line: 255.0, threshold: 127 });
-        for (value, &n) in histogram.iter().enumerate().take(255) {
-            below += f64::from(n);
-            below_moment += value as f64 * f64::from(n);
-            let above = total - below;
-            if below == 0.0 || above <= 0.0 {
-                continue;
-            }
-            let (low, high) = (below_moment / below, (moment - below_moment) / above);
-            let between = below * above * (high - low).powi(2);
-            if between > best.0 {
-                let levels = Self {
-                    carpet: low as f32,
-                    line: (high as f32).max(low as f32 + 1.0),
-                    threshold: value as u8,
-                };
-                best = (between, levels);
-            }
-        }
-        best.1
-    }
-
     /// How much brighter lines are than carpet.
     pub fn contrast(&self) -> f32 {
         self.line - self.carpet

@@ -1,0 +1,88 @@
+//! One pose from many particles.
+
+use serde::{Deserialize, Serialize};
+
+use crate::pose::CameraPose;
+
+/// How the pose is taken from the particles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Estimator {
+    /// The particle with the largest weight in any iteration: the paper's.
+    #[default]
+    Best,
+    /// Weighted mean of all particles of the last iteration.
+    Mean,
+    /// Weighted mean of the particles around the best one.
+    Cluster,
+}
+
+/// Particles within this distance of the best one, metres, form its cluster.
+const CLUSTER_RADIUS_M: f64 = 0.25;
+/// And within this angle, radians.
+const CLUSTER_ANGLE_RAD: f64 = 0.25;
+
+/// Weighted mean of the particles (of those around `centre` only, if given); angles by their mean direction. `None`
+/// where no particle has any weight.
+pub fn weighted_mean(
+    particles: &[CameraPose],
+    weights: &[f64],
+    centre: Option<CameraPose>,
+) -> Option<CameraPose> {
+    let near = |pose: &CameraPose| {
+        centre.is_none_or(|centre| {
+            (pose.x_m - centre.x_m).hypot(pose.y_m - centre.y_m) <= CLUSTER_RADIUS_M
+                && crate::pose::wrap_angle(pose.yaw_rad - centre.yaw_rad).abs() <= CLUSTER_ANGLE_RAD
+        })
+    };
+    let mut total = 0.0;
+    let mut sum = CameraPose::default();
+    let (mut sin, mut cos) = (0.0, 0.0);
+    for (pose, weight) in particles.iter().zip(weights).filter(|(pose, _)| near(pose)) {
+        total += weight;
+        sum.x_m += weight * pose.x_m;
+        sum.y_m += weight * pose.y_m;
+        sum.height_m += weight * pose.height_m;
+        sum.pitch_rad += weight * pose.pitch_rad;
+        sum.roll_rad += weight * pose.roll_rad;
+        sin += weight * pose.yaw_rad.sin();
+        cos += weight * pose.yaw_rad.cos();
+    }
+    (total > 0.0).then(|| CameraPose {
+        x_m: sum.x_m / total,
+        y_m: sum.y_m / total,
+        yaw_rad: sin.atan2(cos),
+        height_m: sum.height_m / total,
+        pitch_rad: sum.pitch_rad / total,
+        roll_rad: sum.roll_rad / total,
+    })
+}
+
+/// Root of the mean squared distance of the particles from a pose, metres.
+pub fn spread_m(particles: &[CameraPose], weights: &[f64], from: CameraPose) -> f64 {
+    let squared = |pose: &CameraPose| (pose.x_m - from.x_m).powi(2) + (pose.y_m - from.y_m).powi(2);
+    particles.iter().zip(weights).map(|(pose, weight)| weight * squared(pose)).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    #[test]
+    fn headings_on_both_sides_of_the_cut_average_to_the_cut() {
+        let pose = |yaw_rad| CameraPose { yaw_rad, ..Default::default() };
+        let mean = weighted_mean(&[pose(PI - 0.1), pose(-PI + 0.1)], &[0.5, 0.5], None).unwrap();
+        assert!((mean.yaw_rad.abs() - PI).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_cluster_ignores_the_other_mode() {
+        let pose = |x_m| CameraPose { x_m, ..Default::default() };
+        let particles = [pose(1.0), pose(1.1), pose(-3.0)];
+        let mean = weighted_mean(&particles, &[0.3, 0.3, 0.4], Some(pose(1.0))).unwrap();
+        assert!((mean.x_m - 1.05).abs() < 1e-12);
+        assert!(weighted_mean(&particles, &[0.0; 3], None).is_none());
+    }
+}

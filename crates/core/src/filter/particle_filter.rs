@@ -1,0 +1,218 @@
+//! The filter itself, one picture at a time.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Estimator, KldConfig, MotionNoise, PlanarSigma, Purpose, Resampling, Stream, best_index,
+    effective_sample_size, normalise, spread_m, weighted_mean,
+};
+use crate::{
+    observation::Scorer,
+    pose::{CameraPose, Motion2, Pose2},
+    preprocess::Attitude,
+    refine::AttitudeTolerance,
+};
+
+/// Settings of the particle filter.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FilterConfig {
+    /// Number of particles; with [`FilterConfig::adaptive`] the largest number.
+    pub particles: usize,
+    /// Rounds of weighing and resampling for every picture: the paper's T.
+    pub iterations: u32,
+    /// How survivors are chosen.
+    pub resampling: Resampling,
+    /// How the pose is taken from the particles.
+    pub estimator: Estimator,
+    /// Same seed, same result.
+    pub seed: u64,
+    /// Noise of the motion between pictures.
+    pub noise: MotionNoise,
+    /// Diffusion of each iteration over that of the one before.
+    pub shrink: f64,
+    /// Adapt the number of particles to their spread.
+    pub adaptive: Option<KldConfig>,
+    /// Particles also differ in height, pitch and roll, by this much; without it these are what joints and IMU say.
+    pub attitude_tolerance: Option<AttitudeTolerance>,
+}
+
+impl Default for FilterConfig {
+    fn default() -> Self {
+        Self {
+            particles: 800,
+            iterations: 5,
+            resampling: Resampling::default(),
+            estimator: Estimator::default(),
+            seed: 0,
+            noise: MotionNoise::default(),
+            shrink: 0.6,
+            adaptive: None,
+            attitude_tolerance: None,
+        }
+    }
+}
+
+/// What the filter says after a picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FilterEstimate {
+    /// The pose.
+    pub pose: CameraPose,
+    /// Log-weight of the best particle.
+    pub log_weight: f64,
+    /// Effective sample size of the last iteration.
+    pub effective_sample_size: f64,
+    /// Root mean squared distance of the weighted particles from the pose, metres.
+    pub spread_m: f64,
+    /// Number of particles in the last iteration.
+    pub particles: usize,
+}
+
+/// Particles, and how they follow a recording.
+#[derive(Debug, Clone)]
+pub struct ParticleFilter {
+    config: FilterConfig,
+    particles: Vec<CameraPose>,
+    frame: u32,
+    /// Rounds of placing particles anew in this frame: each needs random numbers of its own.
+    placements: u32,
+}
+
+impl ParticleFilter {
+    /// Particles around a start pose.
+    pub fn new(config: FilterConfig, start: Pose2, sigma: PlanarSigma) -> Self {
+        let mut filter = Self { config, particles: Vec::new(), frame: 0, placements: 0 };
+        filter.place(&[(start, 1.0)], sigma);
+        filter
+    }
+
+    /// The particles after the last iteration.
+    pub fn particles(&self) -> &[CameraPose] {
+        &self.particles
+    }
+
+    /// Settings in use.
+    pub fn config(&self) -> &FilterConfig {
+        &self.config
+    }
+
+    /// Places all particles anew, around several poses in proportion to their weights.
+    pub fn place(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) {
+        let weights: Vec<f64> = modes.iter().map(|(_, weight)| *weight).collect();
+        let stream = self.stream(Purpose::Initialise, self.placements);
+        self.placements += 1;
+        let origin = Attitude { height_m: 0.0, pitch_rad: 0.0, roll_rad: 0.0 };
+        self.particles = Resampling::Systematic
+            .choose(&weights, self.config.particles, stream)
+            .into_iter()
+            .enumerate()
+            .map(|(index, mode)| origin.at(diffuse(modes[mode].0, sigma, &stream.normals(index as u32))))
+            .collect();
+    }
+
+    /// Carries the particles to the next picture. Without odometry the previous picture alone predicts this one, as in
+    /// the paper.
+    pub fn predict(&mut self, motion: Option<Motion2>) {
+        self.frame += 1;
+        self.placements = 0;
+        let sigma = self.config.noise.sigma(motion);
+        let stream = self.stream(Purpose::Predict, 0);
+        self.particles.par_iter_mut().enumerate().for_each(|(index, particle)| {
+            let planar = particle.planar().moved(motion.unwrap_or_default());
+            *particle = particle.with_planar(diffuse(planar, sigma, &stream.normals(index as u32)));
+        });
+    }
+
+    /// Weighs and resamples T times against the picture the scorer holds. `sigma` is the diffusion of the first
+    /// iteration.
+    pub fn update(&mut self, scorer: &dyn Scorer, attitude: Attitude, sigma: PlanarSigma) -> FilterEstimate {
+        let mut best: Option<(CameraPose, f64)> = None;
+        let mut last = (Vec::new(), Vec::new());
+        for iteration in 0..self.config.iterations.max(1) {
+            let scale = self.config.shrink.powi(iteration as i32);
+            self.diffuse_all(iteration, scale, sigma, attitude);
+            let log_weights = self.log_weights(scorer, attitude);
+            if let Some(index) = best_index(&log_weights)
+                && best.is_none_or(|(_, largest)| log_weights[index] > largest)
+            {
+                best = Some((self.particles[index], log_weights[index]));
+            }
+            let weights = normalise(&log_weights);
+            let count = self.config.adaptive.map_or(self.config.particles, |adaptive| {
+                adaptive.particles_needed(&self.particles, self.config.particles)
+            });
+            let chosen =
+                self.config.resampling.choose(&weights, count, self.stream(Purpose::Resample, iteration));
+            let survivors = chosen.iter().map(|&index| self.particles[index]).collect();
+            last = (std::mem::replace(&mut self.particles, survivors), weights);
+        }
+        self.estimate(best, &last.0, &last.1, attitude)
+    }
+
+    fn estimate(
+        &self,
+        best: Option<(CameraPose, f64)>,
+        particles: &[CameraPose],
+        weights: &[f64],
+        attitude: Attitude,
+    ) -> FilterEstimate {
+        // Without any usable weight every particle is as good as any other.
+        let (best, log_weight) = best.unwrap_or_else(|| {
+            (particles.first().copied().unwrap_or(attitude.at(Pose2::default())), f64::NEG_INFINITY)
+        });
+        let pose = match self.config.estimator {
+            Estimator::Best => best,
+            Estimator::Mean => weighted_mean(particles, weights, None).unwrap_or(best),
+            Estimator::Cluster => weighted_mean(particles, weights, Some(best)).unwrap_or(best),
+        };
+        FilterEstimate {
+            pose,
+            log_weight,
+            effective_sample_size: effective_sample_size(weights),
+            spread_m: spread_m(particles, weights, pose),
+            particles: particles.len(),
+        }
+    }
+
+    /// The first iteration only gives the particles their attitude: prediction has spread them already.
+    fn diffuse_all(&mut self, iteration: u32, scale: f64, sigma: PlanarSigma, attitude: Attitude) {
+        let stream = self.stream(Purpose::Diffuse, iteration);
+        let tolerance =
+            self.config.attitude_tolerance.unwrap_or(AttitudeTolerance { height_m: 0.0, angle_rad: 0.0 });
+        let planar = PlanarSigma { position_m: scale * sigma.position_m, yaw_rad: scale * sigma.yaw_rad };
+        self.particles.par_iter_mut().enumerate().for_each(|(index, particle)| {
+            let normals = stream.normals(index as u32);
+            if iteration == 0 {
+                *particle = attitude.at(particle.planar());
+            } else {
+                *particle = particle.with_planar(diffuse(particle.planar(), planar, &normals));
+            }
+            particle.height_m += scale * tolerance.height_m * normals[3];
+            particle.pitch_rad += scale * tolerance.angle_rad * normals[4];
+            particle.roll_rad += scale * tolerance.angle_rad * normals[5];
+        });
+    }
+
+    fn log_weights(&self, scorer: &dyn Scorer, attitude: Attitude) -> Vec<f64> {
+        let mut log_weights = scorer.log_weights(&self.particles);
+        if let Some(tolerance) = self.config.attitude_tolerance {
+            for (log_weight, particle) in log_weights.iter_mut().zip(&self.particles) {
+                *log_weight += tolerance.log_prior(*particle, attitude);
+            }
+        }
+        log_weights
+    }
+
+    fn stream(&self, purpose: Purpose, iteration: u32) -> Stream {
+        Stream::new(self.config.seed, purpose, self.frame, iteration)
+    }
+}
+
+fn diffuse(pose: Pose2, sigma: PlanarSigma, normals: &[f64; 6]) -> Pose2 {
+    Pose2 {
+        x_m: pose.x_m + sigma.position_m * normals[0],
+        y_m: pose.y_m + sigma.position_m * normals[1],
+        yaw_rad: crate::pose::wrap_angle(pose.yaw_rad + sigma.yaw_rad * normals[2]),
+    }
+}

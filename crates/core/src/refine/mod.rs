@@ -1,0 +1,10 @@
+//! From a pose that is nearly right to one that fits the picture to a fraction of a pixel, and from single pictures to
+//! a whole trajectory.
+
+mod measure;
+mod picture;
+
+pub use self::{
+    measure::{LineOffset, MeasureConfig, measure_offsets},
+    picture::{AttitudeTolerance, PoseFit, RefineConfig, Refiner},
+};

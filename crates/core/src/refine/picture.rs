@@ -1,0 +1,255 @@
+//! One picture: all six degrees of freedom fitted to sub-pixel line offsets, with what joints and IMU say as a prior.
+
+use glam::{DVec2, DVec3};
+use nalgebra::{Matrix6, Vector6};
+
+use super::measure::{LineOffset, MeasureConfig, measure_offsets};
+use crate::{
+    camera::Camera,
+    field::{FieldDimensions, LineSample, sample_lines, visible_samples},
+    pose::{CameraPose, wrap_angle},
+    preprocess::{Attitude, Texture},
+};
+
+/// How far the camera may stand from what joints and IMU say: standard deviations.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AttitudeTolerance {
+    /// Of the height, from gait and stance, metres.
+    pub height_m: f64,
+    /// Of pitch and roll each, radians.
+    pub angle_rad: f64,
+}
+
+impl Default for AttitudeTolerance {
+    fn default() -> Self {
+        Self { height_m: 0.02, angle_rad: 0.006 }
+    }
+}
+
+impl AttitudeTolerance {
+    /// Log-probability, up to a constant, of a pose's height, pitch and roll, given what joints and IMU say.
+    pub fn log_prior(&self, pose: CameraPose, attitude: Attitude) -> f64 {
+        let height = (pose.height_m - attitude.height_m) / self.height_m;
+        let pitch = (pose.pitch_rad - attitude.pitch_rad) / self.angle_rad;
+        let roll = wrap_angle(pose.roll_rad - attitude.roll_rad) / self.angle_rad;
+        -0.5 * (height * height + pitch * pitch + roll * roll)
+    }
+}
+
+/// Settings of [`Refiner`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RefineConfig {
+    /// Distance between samples on the ground, metres.
+    pub spacing_m: f64,
+    /// Distance between samples in the picture, pixels.
+    pub spacing_px: f64,
+    /// Search range of each round, pixels.
+    pub search_px: [f64; 5],
+    /// Smallest standard deviation of one offset, pixels.
+    pub offset_sigma_px: f64,
+    /// Length of line over which errors of the offsets are one and the same error, pixels.
+    pub correlation_px: f64,
+    /// What joints and IMU are worth.
+    pub tolerance: AttitudeTolerance,
+    /// Fewer lines found than this are no fit.
+    pub min_offsets: usize,
+}
+
+impl Default for RefineConfig {
+    fn default() -> Self {
+        Self {
+            spacing_m: 0.02,
+            spacing_px: 4.0,
+            search_px: [12.0, 8.0, 5.0, 4.0, 4.0],
+            offset_sigma_px: 0.15,
+            correlation_px: 40.0,
+            tolerance: AttitudeTolerance::default(),
+            min_offsets: 12,
+        }
+    }
+}
+
+/// A pose fitted to one picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseFit {
+    /// The pose.
+    pub pose: CameraPose,
+    /// Covariance of x, y, yaw, height, pitch, roll (metres and radians), joints and IMU included.
+    pub covariance: Matrix6<f64>,
+    /// Inverse covariance that the picture alone gives.
+    pub information: Matrix6<f64>,
+    /// Robust standard deviation of the line offsets left, pixels.
+    pub residual_px: f64,
+    /// Lines found, over samples in view.
+    pub found: f64,
+    /// Number of offsets in the fit.
+    pub offsets: usize,
+}
+
+/// Fits poses to pictures of one camera on one field.
+#[derive(Debug, Clone)]
+pub struct Refiner {
+    camera: Camera,
+    field: FieldDimensions,
+    samples: Vec<LineSample>,
+    config: RefineConfig,
+}
+
+/// The pose as the six numbers that are fitted.
+pub(super) fn to_vector(pose: CameraPose) -> Vector6<f64> {
+    Vector6::new(pose.x_m, pose.y_m, pose.yaw_rad, pose.height_m, pose.pitch_rad, pose.roll_rad)
+}
+
+/// The pose moved by a step in its six numbers.
+pub(super) fn moved(pose: CameraPose, step: &Vector6<f64>) -> CameraPose {
+    CameraPose {
+        x_m: pose.x_m + step[0],
+        y_m: pose.y_m + step[1],
+        yaw_rad: wrap_angle(pose.yaw_rad + step[2]),
+        height_m: pose.height_m + step[3],
+        pitch_rad: pose.pitch_rad + step[4],
+        roll_rad: pose.roll_rad + step[5],
+    }
+}
+
+impl Refiner {
+    /// For pictures of this camera on this field.
+    pub fn new(camera: &Camera, field: &FieldDimensions, config: RefineConfig) -> Self {
+        let clearance_m = 1.5 * field.line_width_m;
+        let samples = sample_lines(field, config.spacing_m)
+            .into_iter()
+            .filter(|sample| sample.clearance_m > clearance_m)
+            .collect();
+        Self { camera: camera.clone(), field: field.clone(), samples, config }
+    }
+
+    /// What joints and IMU are worth.
+    pub fn tolerance(&self) -> AttitudeTolerance {
+        self.config.tolerance
+    }
+
+    /// Fits a picture from a first guess. `None` where too few lines are found for six degrees of freedom.
+    pub fn fit(
+        &self,
+        texture: &Texture,
+        guess: CameraPose,
+        attitude: Attitude,
+        contrast: f64,
+    ) -> Option<PoseFit> {
+        let mut pose = guess;
+        let mut fit = None;
+        for search_px in self.config.search_px {
+            let visible =
+                visible_samples(&self.field, &self.samples, &self.camera, pose, self.config.spacing_px);
+            let measure = MeasureConfig { search_px, min_contrast: 0.3 * contrast };
+            let offsets = measure_offsets(texture, &visible, measure);
+            if offsets.len() < self.config.min_offsets {
+                return None;
+            }
+            let step = self.solve(pose, &offsets, attitude)?;
+            pose = moved(pose, &step.step);
+            if !pose.is_finite() || pose.height_m < 0.3 * attitude.height_m {
+                return None;
+            }
+            fit = Some(PoseFit {
+                pose,
+                covariance: step.covariance,
+                information: step.information,
+                residual_px: step.residual_px,
+                found: offsets.len() as f64 / visible.len().max(1) as f64,
+                offsets: offsets.len(),
+            });
+        }
+        fit
+    }
+
+    /// Iteratively reweighted Gauss–Newton on one set of offsets.
+    fn solve(&self, pose: CameraPose, offsets: &[LineOffset], attitude: Attitude) -> Option<Step> {
+        let rows: Vec<(Vector6<f64>, f64)> = offsets
+            .iter()
+            .filter_map(|offset| Some((self.gradient(pose, offset)?, offset.offset_px)))
+            .collect();
+        let prior = self.prior_information();
+        let prior_error = prior_error(pose, attitude);
+        // The samples' density decides how many of them tell something new.
+        let repeats = (self.config.correlation_px / self.config.spacing_px).max(1.0);
+        let mut step = Vector6::zeros();
+        let mut sigma = robust_sigma(rows.iter().map(|(_, offset)| *offset)).max(self.config.offset_sigma_px);
+        let mut information = Matrix6::zeros();
+        for _ in 0..4 {
+            let mut right = Vector6::zeros();
+            information = Matrix6::zeros();
+            let scale = 1.0 / (sigma * sigma * repeats);
+            for (gradient, offset) in &rows {
+                let weight = tukey((offset - gradient.dot(&step)) / sigma);
+                information += scale * weight * gradient * gradient.transpose();
+                right += scale * weight * offset * gradient;
+            }
+            step = (information + prior).cholesky()?.solve(&(right - prior * prior_error));
+            sigma = robust_sigma(rows.iter().map(|(g, o)| o - g.dot(&step))).max(self.config.offset_sigma_px);
+        }
+        let covariance = (information + prior).try_inverse()?;
+        Some(Step { step, covariance, information, residual_px: sigma })
+    }
+
+    /// Change of the sample's place along its normal with the six numbers of the pose, pixels per metre and radian.
+    fn gradient(&self, pose: CameraPose, offset: &LineOffset) -> Option<Vector6<f64>> {
+        let point = offset.visible.sample.point_in_world.extend(0.0);
+        let (_, [du, dv]) = self.camera.project_with_gradients(pose.camera_from_world(point)).ok()?;
+        let along_normal: DVec3 =
+            offset.visible.normal_in_image.x * du + offset.visible.normal_in_image.y * dv;
+        Some(Vector6::from_fn(|axis, _| {
+            let mut step = Vector6::zeros();
+            step[axis] = 1e-5;
+            let change =
+                moved(pose, &step).camera_from_world(point) - moved(pose, &-step).camera_from_world(point);
+            along_normal.dot(change) / 2e-5
+        }))
+    }
+
+    fn prior_information(&self) -> Matrix6<f64> {
+        let AttitudeTolerance { height_m, angle_rad } = self.config.tolerance;
+        let [height, angle] = [height_m, angle_rad].map(|sigma| 1.0 / (sigma * sigma));
+        Matrix6::from_diagonal(&Vector6::new(0.0, 0.0, 0.0, height, angle, angle))
+    }
+}
+
+struct Step {
+    step: Vector6<f64>,
+    covariance: Matrix6<f64>,
+    information: Matrix6<f64>,
+    residual_px: f64,
+}
+
+fn prior_error(pose: CameraPose, attitude: Attitude) -> Vector6<f64> {
+    Vector6::new(
+        0.0,
+        0.0,
+        0.0,
+        pose.height_m - attitude.height_m,
+        pose.pitch_rad - attitude.pitch_rad,
+        wrap_angle(pose.roll_rad - attitude.roll_rad),
+    )
+}
+
+/// Median of the absolute values, scaled to a standard deviation.
+fn robust_sigma(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sizes: Vec<f64> = values.map(f64::abs).collect();
+    if sizes.is_empty() {
+        return 0.0;
+    }
+    let middle = sizes.len() / 2;
+    1.4826 * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// Tukey's biweight with its usual constant.
+fn tukey(error_in_sigmas: f64) -> f64 {
+    let ratio = error_in_sigmas / 4.685;
+    if ratio.abs() < 1.0 { (1.0 - ratio * ratio).powi(2) } else { 0.0 }
+}
+
+/// Distance between two poses on the ground, metres.
+pub fn planar_distance_m(a: CameraPose, b: CameraPose) -> f64 {
+    DVec2::new(a.x_m - b.x_m, a.y_m - b.y_m).length()
+}
