@@ -6,3 +6,4 @@
 pub mod camera;
 pub mod field;
 pub mod pose;
+pub mod sequence;
