@@ -10,3 +10,4 @@ pub mod observation;
 pub mod pose;
 pub mod preprocess;
 pub mod refine;
+pub mod sequence;

@@ -7,7 +7,6 @@ const PLAUSIBLE_LENGTH_M: std::ops::RangeInclusive<f64> = 0.5..=200.0;
 
 /// Dimensions of a field, metres. Lengths between lines are measured between the lines' centres.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct FieldDimensions {
     /// What the field is called.
     #[serde(default)]

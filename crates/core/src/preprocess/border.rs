@@ -9,7 +9,10 @@
 use glam::Vec2;
 use image::{GrayImage, RgbImage};
 
-use super::{Attitude, carpet::CarpetColor};
+use super::{
+    Attitude,
+    carpet::{CarpetColor, ColorSum},
+};
 use crate::camera::Camera;
 
 /// The picture is looked at in cells of this many pixels.
@@ -86,11 +89,11 @@ impl BorderDetector {
         let carpet = CarpetColor::learn(
             seen().filter(|(_, cell)| cell.depression > near).map(|(index, _)| color(index)),
         );
-        let mut votes = vec![[0.0_f32; DEPRESSIONS]; BEARINGS];
+        let mut strips = vec![[ColorSum::default(); DEPRESSIONS]; BEARINGS];
         for (index, cell) in seen() {
-            votes[usize::from(cell.bearing)][depression_bin(cell.depression)] += carpet.vote(color(index));
+            strips[usize::from(cell.bearing)][depression_bin(cell.depression)].add(color(index), &carpet);
         }
-        let ends: Vec<Option<f32>> = votes.iter().map(|row| farthest_carpet(row)).collect();
+        let ends: Vec<Option<f32>> = strips.iter().map(|strip| farthest_carpet(strip, &carpet)).collect();
         let outline_in_heading = convex_hull(border_points(&ends, attitude.height_m as f32));
         let limits = hull_depressions(&outline_in_heading, attitude.height_m as f32);
         let inside = |cell: &GroundCell| cell.depression >= limits[usize::from(cell.bearing)];
@@ -170,13 +173,22 @@ fn depression_bin(depression: f32) -> usize {
     ((depression * DEPRESSIONS as f32) as usize).min(DEPRESSIONS - 1)
 }
 
-/// The sine of depression up to which the votes, summed from near to far, are highest.
-fn farthest_carpet(votes: &[f32; DEPRESSIONS]) -> Option<f32> {
+/// The sine of depression up to which a strip of cells, followed from near to far, has most carpet and least of anything
+/// else. The colour that counts as carpet follows slow changes of light along the strip; a wall, a floor or a robot is a
+/// sudden change.
+fn farthest_carpet(strip: &[ColorSum; DEPRESSIONS], carpet: &CarpetColor) -> Option<f32> {
+    let mut local = *carpet;
     let (mut sum, mut best, mut end) = (0.0, 0.0, None);
-    for (bin, vote) in votes.iter().enumerate().rev() {
-        sum += vote;
-        if sum > best && *vote > 0.0 {
-            (best, end) = (sum, Some(bin));
+    for (bin, cells) in strip.iter().enumerate().rev() {
+        let Some(mean) = cells.mean() else { continue };
+        if local.is_near(mean) {
+            local = local.drifted(mean, carpet);
+            sum += cells.count;
+            if sum > best {
+                (best, end) = (sum, Some(bin));
+            }
+        } else {
+            sum -= cells.count;
         }
     }
     end.map(|bin| bin as f32 / DEPRESSIONS as f32)

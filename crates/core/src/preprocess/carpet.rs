@@ -8,6 +8,10 @@ const MIN_SUM: u16 = 36;
 const MIN_SIGMA: f32 = 0.012;
 /// Largest spread of the carpet's chromaticity.
 const MAX_SIGMA: f32 = 0.025;
+/// How much of a change of colour along the ground is followed at each step.
+const DRIFT: f32 = 0.15;
+/// Farther than this from the colour learned nothing is carpet.
+const MAX_DRIFT: f32 = 0.08;
 /// Squared distance, in spreads, up to which a pixel may be carpet.
 const GATE: f32 = 12.0;
 
@@ -75,21 +79,52 @@ impl CarpetColor {
 
     /// Whether a pixel has the carpet's colour.
     pub fn is_carpet(&self, rgb: [u8; 3]) -> bool {
-        chromaticity(rgb).is_some_and(|(chroma, total)| {
-            self.distance_squared(chroma) < GATE && (0.2..5.0).contains(&(total / self.brightness.max(1.0)))
-        })
+        chromaticity(rgb).is_some_and(|(chroma, _)| self.is_near(chroma))
     }
 
-    /// For the border: carpet +1, what may be a white line 0, anything else −1.
-    pub(super) fn vote(&self, rgb: [u8; 3]) -> f32 {
+    /// Whether a chromaticity is the carpet's.
+    pub(super) fn is_near(&self, chroma: [f32; 2]) -> bool {
+        self.distance_squared(chroma) < GATE
+    }
+
+    /// This colour moved a little towards another, but never far from the one learned.
+    pub(super) fn drifted(&self, towards: [f32; 2], learned: &Self) -> Self {
+        let moved = |axis: usize| {
+            let mean = self.mean[axis] + DRIFT * (towards[axis] - self.mean[axis]);
+            mean.clamp(learned.mean[axis] - MAX_DRIFT, learned.mean[axis] + MAX_DRIFT)
+        };
+        Self { mean: [moved(0), moved(1)], ..*self }
+    }
+
+    /// Whether a pixel may be a white line: bright for this carpet, and nearly without colour.
+    fn may_be_line(&self, rgb: [u8; 3]) -> bool {
         let [low, high] = [rgb.into_iter().min().unwrap_or(0), rgb.into_iter().max().unwrap_or(0)];
         let colourless = u16::from(low) * 4 > u16::from(high) * 3;
-        let bright = rgb.iter().map(|&c| f32::from(c)).sum::<f32>() > 1.2 * self.brightness;
-        match self.is_carpet(rgb) {
-            true => 1.0,
-            false if colourless && bright => 0.0,
-            false => -1.0,
+        colourless && rgb.iter().map(|&c| f32::from(c)).sum::<f32>() > 1.2 * self.brightness
+    }
+}
+
+/// The mean chromaticity of some pixels, white lines left out.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct ColorSum {
+    /// Number of pixels.
+    pub count: f32,
+    sum: [f32; 2],
+}
+
+impl ColorSum {
+    pub fn add(&mut self, rgb: [u8; 3], carpet: &CarpetColor) {
+        if carpet.may_be_line(rgb) {
+            return;
         }
+        // What is too dark to have a colour is as far from the carpet's as grey is.
+        let ([r, g], _) = chromaticity(rgb).unwrap_or(([1.0 / 3.0; 2], 0.0));
+        self.count += 1.0;
+        self.sum = [self.sum[0] + r, self.sum[1] + g];
+    }
+
+    pub fn mean(&self) -> Option<[f32; 2]> {
+        (self.count > 0.0).then(|| self.sum.map(|sum| sum / self.count))
     }
 }
 

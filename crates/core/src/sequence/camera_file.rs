@@ -1,0 +1,219 @@
+//! `camera.toml`: the lens, where the camera is mounted and how it turns light into numbers.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    error::{Fault, SequenceError, excerpt},
+    text::read_and_parse,
+    toml_text::{NumberCheck, line_of_key, parse, print},
+};
+use crate::camera::{Camera, Distortion, ImageCircle, InvalidCamera, Opencv, OpencvFisheye};
+
+/// Higher mounts are a mistake in the file, metres.
+const MAX_HEIGHT_M: f64 = 100.0;
+
+/// A camera as it is on the robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CameraSetup {
+    /// Lens and size of the picture.
+    pub camera: Camera,
+    /// Nominal height of the projection centre above the carpet, metres.
+    pub mount_height_m: f64,
+    /// How light becomes pixel values, where it is known.
+    pub photometry: Option<Photometry>,
+}
+
+/// How a camera turns light into pixel values. Linear values have 1 as full scale; the noise of a linear value `v`
+/// has the standard deviation `sqrt(noise_shot · v + noise_read²)`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Photometry {
+    /// A pixel value is full scale times the linear value to the power of 1 / gamma.
+    pub gamma: f64,
+    /// Linear values of a white line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line_linear_rgb: Option<[f64; 3]>,
+    /// Linear values of the carpet.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub carpet_linear_rgb: Option<[f64; 3]>,
+    /// Linear value without light.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub black_level: Option<f64>,
+    /// Variance of the noise for each unit of the linear value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise_shot: Option<f64>,
+    /// Standard deviation of the noise without light, linear.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise_read: Option<f64>,
+    /// Standard deviation of the blur by lens and sensor, pixels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub psf_sigma_px: Option<f64>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct CameraTable {
+    model: String,
+    width: u32,
+    height: u32,
+    fx: f64,
+    fy: f64,
+    cx: f64,
+    cy: f64,
+    #[serde(default)]
+    distortion: Vec<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    max_angle_rad: Option<f64>,
+    mount: MountTable,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    image_circle: Option<CircleTable>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    photometry: Option<Photometry>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct MountTable {
+    height_m: f64,
+}
+
+/// As [`ImageCircle`], but other programs may add keys.
+#[derive(Serialize, Deserialize)]
+struct CircleTable {
+    cx: f64,
+    cy: f64,
+    radius: f64,
+}
+
+/// Reads and validates a camera file.
+pub fn read_camera(path: &Path) -> Result<CameraSetup, SequenceError> {
+    read_and_parse(path, parse_camera)
+}
+
+/// A camera from the text of its file.
+pub(super) fn parse_camera(path: &Path, text: &str) -> Result<CameraSetup, SequenceError> {
+    let table: CameraTable = parse(path, text)?;
+    let camera = build_camera(path, text, &table)?;
+    let image_circle = table.image_circle.map(|circle| checked_circle(path, text, &circle)).transpose()?;
+    let mount = NumberCheck { path, text, table: "mount" };
+    let in_range = |height_m| height_m > 0.0 && height_m <= MAX_HEIGHT_M;
+    mount.check("height_m", table.mount.height_m, in_range, "above 0 and at most 100 metres")?;
+    if let Some(photometry) = &table.photometry {
+        check_photometry(path, text, photometry)?;
+    }
+    Ok(CameraSetup {
+        camera: camera.with_image_circle(image_circle),
+        mount_height_m: table.mount.height_m,
+        photometry: table.photometry,
+    })
+}
+
+/// The text of a camera's file.
+pub(super) fn print_camera(path: &Path, setup: &CameraSetup) -> Result<String, SequenceError> {
+    let camera = &setup.camera;
+    let table = CameraTable {
+        model: camera.distortion.colmap_name().to_owned(),
+        width: camera.width,
+        height: camera.height,
+        fx: camera.fx,
+        fy: camera.fy,
+        cx: camera.cx,
+        cy: camera.cy,
+        distortion: camera.distortion.parameters(),
+        max_angle_rad: limited_angle_rad(camera),
+        mount: MountTable { height_m: setup.mount_height_m },
+        image_circle: camera.image_circle.map(|circle| CircleTable {
+            cx: circle.cx,
+            cy: circle.cy,
+            radius: circle.radius,
+        }),
+        photometry: setup.photometry,
+    };
+    print(path, &table)
+}
+
+/// The largest angle, where it is not the one that follows from the distortion.
+fn limited_angle_rad(camera: &Camera) -> Option<f64> {
+    let natural = Camera::new(
+        [camera.width, camera.height],
+        [camera.fx, camera.fy, camera.cx, camera.cy],
+        camera.distortion,
+    );
+    let is_natural = natural.is_ok_and(|natural| natural.max_angle_rad() == camera.max_angle_rad());
+    (!is_natural).then(|| camera.max_angle_rad())
+}
+
+fn build_camera(path: &Path, text: &str, table: &CameraTable) -> Result<Camera, SequenceError> {
+    let distortion = build_distortion(table).map_err(|fault| {
+        let key = if matches!(fault, Fault::UnknownModel { .. }) { "model" } else { "distortion" };
+        SequenceError::at(path, line_of_key(text, &[key]), fault)
+    })?;
+    let intrinsics = [table.fx, table.fy, table.cx, table.cy];
+    let camera = Camera::new([table.width, table.height], intrinsics, distortion);
+    let limited = camera.and_then(|camera| match table.max_angle_rad {
+        Some(max_angle_rad) => camera.with_max_angle_rad(max_angle_rad),
+        None => Ok(camera),
+    });
+    limited.map_err(|error| {
+        let line = line_of_key(text, &[faulty_key(table, &error)]);
+        SequenceError::at(path, line, Fault::Camera(error))
+    })
+}
+
+fn build_distortion(table: &CameraTable) -> Result<Distortion, Fault> {
+    let count = |model, expected| Fault::DistortionCount { model, expected, found: table.distortion.len() };
+    match (table.model.as_str(), table.distortion.as_slice()) {
+        ("PINHOLE", []) => Ok(Distortion::Pinhole),
+        ("PINHOLE", _) => Err(count("PINHOLE", "no")),
+        ("OPENCV", &[k1, k2, p1, p2]) => Ok(Distortion::Opencv(Opencv { k1, k2, p1, p2, k3: 0.0 })),
+        ("OPENCV", &[k1, k2, p1, p2, k3]) => Ok(Distortion::Opencv(Opencv { k1, k2, p1, p2, k3 })),
+        ("OPENCV", _) => Err(count("OPENCV", "4 or 5")),
+        ("OPENCV_FISHEYE", &[k1, k2, k3, k4]) => {
+            Ok(Distortion::OpencvFisheye(OpencvFisheye { k: [k1, k2, k3, k4] }))
+        }
+        ("OPENCV_FISHEYE", _) => Err(count("OPENCV_FISHEYE", "4")),
+        (model, _) => Err(Fault::UnknownModel { model: excerpt(model) }),
+    }
+}
+
+/// The key in whose line the fault is shown.
+fn faulty_key(table: &CameraTable, error: &InvalidCamera) -> &'static str {
+    let fits = |size| (1..=32768).contains(&size);
+    match error {
+        InvalidCamera::Size { width, .. } if fits(*width) => "height",
+        InvalidCamera::Size { .. } => "width",
+        InvalidCamera::FocalLength { fx, .. } if *fx > 0.0 => "fy",
+        InvalidCamera::FocalLength { .. } => "fx",
+        InvalidCamera::NotFinite { name } => name,
+        InvalidCamera::MaxAngle { .. } if table.max_angle_rad.is_some() => "max_angle_rad",
+        InvalidCamera::MaxAngle { .. } => "distortion",
+    }
+}
+
+fn checked_circle(path: &Path, text: &str, circle: &CircleTable) -> Result<ImageCircle, SequenceError> {
+    let numbers = NumberCheck { path, text, table: "image_circle" };
+    numbers.check("cx", circle.cx, |_| true, "a finite number of pixels")?;
+    numbers.check("cy", circle.cy, |_| true, "a finite number of pixels")?;
+    numbers.check("radius", circle.radius, |radius| radius > 0.0, "a positive number of pixels")?;
+    Ok(ImageCircle { cx: circle.cx, cy: circle.cy, radius: circle.radius })
+}
+
+fn check_photometry(path: &Path, text: &str, photometry: &Photometry) -> Result<(), SequenceError> {
+    let numbers = NumberCheck { path, text, table: "photometry" };
+    numbers.check("gamma", photometry.gamma, |gamma| gamma > 0.0, "above 0")?;
+    for (key, colour) in
+        [("line_linear_rgb", photometry.line_linear_rgb), ("carpet_linear_rgb", photometry.carpet_linear_rgb)]
+    {
+        for value in colour.iter().flatten() {
+            numbers.check(key, *value, |value| value >= 0.0, "three numbers of 0 or more")?;
+        }
+    }
+    for (key, value) in [
+        ("black_level", photometry.black_level),
+        ("noise_shot", photometry.noise_shot),
+        ("noise_read", photometry.noise_read),
+        ("psf_sigma_px", photometry.psf_sigma_px),
+    ] {
+        numbers.check(key, value.unwrap_or(0.0), |value| value >= 0.0, "0 or more")?;
+    }
+    Ok(())
+}

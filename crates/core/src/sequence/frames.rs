@@ -1,0 +1,194 @@
+//! `frames.csv`: one line a picture.
+
+use std::{
+    fmt::Write,
+    path::{Path, PathBuf},
+};
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+
+use super::{
+    error::{Fault, SequenceError, excerpt, one_line},
+    sequence_file::is_inside_folder,
+    text::line_of_offset,
+};
+use crate::pose::Pose2;
+
+const ODOMETRY_COLUMNS: [&str; 3] = ["odometry_x_m", "odometry_y_m", "odometry_yaw_rad"];
+
+/// One picture and what the robot knew when it took it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameRecord {
+    /// When the picture was taken, seconds.
+    pub timestamp_s: f64,
+    /// The picture's file, relative to the sequence's folder.
+    pub image: PathBuf,
+    /// Dead-reckoned from the start of the recording, where the robot has odometry: its own frame, not the field's.
+    pub odometry: Option<Pose2>,
+    /// The camera's depression below the horizon, from the IMU and the joints, radians.
+    pub pitch_rad: f64,
+    /// The camera's roll, clockwise seen from behind, from the IMU and the joints, radians.
+    pub roll_rad: f64,
+}
+
+/// Frames from the text of their file.
+pub(super) fn parse_frames(path: &Path, text: &str) -> Result<Vec<FrameRecord>, SequenceError> {
+    let mut reader =
+        ReaderBuilder::new().has_headers(false).flexible(true).trim(Trim::All).from_reader(text.as_bytes());
+    let mut columns: Option<Columns> = None;
+    let mut frames: Vec<FrameRecord> = Vec::new();
+    let mut record = StringRecord::new();
+    loop {
+        let offset = reader.position().byte();
+        let fail = |fault| SequenceError::at(path, record_line(text, offset), fault);
+        let more = reader
+            .read_record(&mut record)
+            .map_err(|error| fail(Fault::Csv { message: one_line(&error.to_string()) }))?;
+        if !more {
+            break;
+        }
+        if record.iter().all(str::is_empty) {
+            continue;
+        }
+        let Some(columns) = &columns else {
+            columns = Some(Columns::find(&record).map_err(fail)?);
+            continue;
+        };
+        let frame = columns.frame(&record).map_err(fail)?;
+        if let Some(previous) = frames.last().filter(|previous| previous.timestamp_s >= frame.timestamp_s) {
+            let (previous_s, timestamp_s) = (previous.timestamp_s, frame.timestamp_s);
+            return Err(fail(Fault::NotIncreasing { previous_s, timestamp_s }));
+        }
+        frames.push(frame);
+    }
+    if frames.is_empty() {
+        return Err(SequenceError::of_file(path, Fault::NoFrames));
+    }
+    Ok(frames)
+}
+
+/// The text of the frames' file.
+pub(super) fn print_frames(path: &Path, frames: &[FrameRecord]) -> Result<String, SequenceError> {
+    let with_odometry = frames.iter().filter(|frame| frame.odometry.is_some()).count();
+    if with_odometry != 0 && with_odometry != frames.len() {
+        let rule = "either all frames have odometry or none";
+        return Err(SequenceError::of_file(path, Fault::Inconsistent { rule }));
+    }
+    let mut text = String::from("timestamp_s,image,");
+    if with_odometry > 0 {
+        text.push_str(&ODOMETRY_COLUMNS.join(","));
+        text.push(',');
+    }
+    text.push_str("pitch_rad,roll_rad\n");
+    for frame in frames {
+        let image = frame.image.to_str().ok_or_else(|| {
+            let rule = "the pictures' names must be UTF-8";
+            SequenceError::of_file(path, Fault::Inconsistent { rule })
+        })?;
+        text.push_str(&print_frame(frame, image));
+    }
+    Ok(text)
+}
+
+fn print_frame(frame: &FrameRecord, image: &str) -> String {
+    let mut line = format!("{},{},", frame.timestamp_s, quoted(image));
+    // Writing into a string cannot fail.
+    if let Some(odometry) = frame.odometry {
+        let _ = write!(line, "{},{},{},", odometry.x_m, odometry.y_m, odometry.yaw_rad);
+    }
+    let _ = writeln!(line, "{},{}", frame.pitch_rad, frame.roll_rad);
+    line
+}
+
+/// A name as a field of a table, in quotation marks where it needs them.
+fn quoted(name: &str) -> String {
+    let needs_quotes = name.contains([',', '"', '\n', '\r']);
+    if needs_quotes { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
+}
+
+/// The line of the record that starts at or after an offset: the blank lines and line ends before it do not count.
+fn record_line(text: &str, offset: u64) -> usize {
+    let bytes = text.as_bytes();
+    let start = usize::try_from(offset).map_or(bytes.len(), |offset| offset.min(bytes.len()));
+    let blank = bytes[start..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
+    line_of_offset(bytes, start + blank)
+}
+
+/// Where the columns are.
+struct Columns {
+    count: usize,
+    timestamp_s: usize,
+    image: usize,
+    odometry: Option<[usize; 3]>,
+    pitch_rad: usize,
+    roll_rad: usize,
+}
+
+impl Columns {
+    fn find(header: &StringRecord) -> Result<Self, Fault> {
+        let required = |column| find_column(header, column)?.ok_or(Fault::MissingColumn { column });
+        Ok(Self {
+            count: header.len(),
+            timestamp_s: required("timestamp_s")?,
+            image: required("image")?,
+            odometry: find_odometry(header)?,
+            pitch_rad: required("pitch_rad")?,
+            roll_rad: required("roll_rad")?,
+        })
+    }
+
+    fn frame(&self, record: &StringRecord) -> Result<FrameRecord, Fault> {
+        if record.len() != self.count {
+            return Err(Fault::FieldCount { found: record.len(), expected: self.count });
+        }
+        let field = |column: usize| record.get(column).unwrap_or_default();
+        let odometry = self.odometry.map(|columns| {
+            let [x, y, yaw] = ODOMETRY_COLUMNS;
+            Ok(Pose2::new(
+                number(x, field(columns[0]))?,
+                number(y, field(columns[1]))?,
+                number(yaw, field(columns[2]))?,
+            ))
+        });
+        let image = PathBuf::from(field(self.image));
+        if !is_inside_folder(&image) {
+            return Err(Fault::PathLeavesFolder { name: excerpt(field(self.image)) });
+        }
+        Ok(FrameRecord {
+            timestamp_s: number("timestamp_s", field(self.timestamp_s))?,
+            image,
+            odometry: odometry.transpose()?,
+            pitch_rad: number("pitch_rad", field(self.pitch_rad))?,
+            roll_rad: number("roll_rad", field(self.roll_rad))?,
+        })
+    }
+}
+
+fn find_column(header: &StringRecord, column: &'static str) -> Result<Option<usize>, Fault> {
+    let mut places = header.iter().enumerate().filter(|(_, name)| *name == column).map(|(place, _)| place);
+    match (places.next(), places.next()) {
+        (_, Some(_)) => Err(Fault::DuplicateColumn { column }),
+        (place, None) => Ok(place),
+    }
+}
+
+fn find_odometry(header: &StringRecord) -> Result<Option<[usize; 3]>, Fault> {
+    let mut places = [None; 3];
+    for (place, column) in places.iter_mut().zip(ODOMETRY_COLUMNS) {
+        *place = find_column(header, column)?;
+    }
+    match places {
+        [Some(x), Some(y), Some(yaw)] => Ok(Some([x, y, yaw])),
+        [None, None, None] => Ok(None),
+        _ => {
+            let missing = places.iter().position(Option::is_none).unwrap_or_default();
+            Err(Fault::PartialOdometry { column: ODOMETRY_COLUMNS[missing] })
+        }
+    }
+}
+
+/// A finite number from a field.
+pub(super) fn number(column: &'static str, text: &str) -> Result<f64, Fault> {
+    let value: f64 = text.parse().map_err(|_| Fault::NotANumber { column, text: excerpt(text) })?;
+    if value.is_finite() { Ok(value) } else { Err(Fault::NotFinite { column }) }
+}

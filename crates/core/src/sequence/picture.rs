@@ -1,0 +1,120 @@
+//! Pictures of a sequence: decoded within limits, encoded, copied.
+
+use std::{fs, io::Cursor, path::Path};
+
+use image::{
+    DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, ImageFormat, ImageReader,
+    Limits, RgbImage, codecs::jpeg::JpegEncoder, codecs::png::PngEncoder, error::UnsupportedErrorKind,
+};
+
+use super::{
+    atomic::write_atomically,
+    error::{Fault, SequenceError, one_line},
+    text::read_bytes,
+};
+
+/// A picture may take no more memory while it is decoded, and its file no more of the disk, bytes.
+const MAX_PICTURE_BYTES: u64 = 512 << 20;
+
+/// Quality of written JPEG files: nearly without loss for edges.
+const JPEG_QUALITY: u8 = 95;
+
+/// Reads a JPEG or PNG picture of this size, pixels; grey pictures become RGB, transparency is left out.
+pub(super) fn load_picture(path: &Path, size: [u32; 2]) -> Result<RgbImage, SequenceError> {
+    let bytes = read_bytes(path, MAX_PICTURE_BYTES)?;
+    decode_picture(&bytes, size).map_err(|fault| SequenceError::of_file(path, fault))
+}
+
+/// Writes a picture as PNG or JPEG, by the ending of the file's name, and creates its folder. The file has its name
+/// only when it is complete.
+pub fn save_image(path: &Path, picture: &RgbImage) -> Result<(), SequenceError> {
+    let fail = |fault| SequenceError::of_file(path, fault);
+    let format = ImageFormat::from_path(path).map_err(|_| fail(Fault::ImageFormat))?;
+    let mut bytes = Vec::new();
+    let (width, height) = picture.dimensions();
+    let written = match format {
+        ImageFormat::Png => {
+            PngEncoder::new(&mut bytes).write_image(picture, width, height, ExtendedColorType::Rgb8)
+        }
+        ImageFormat::Jpeg => JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY).write_image(
+            picture,
+            width,
+            height,
+            ExtendedColorType::Rgb8,
+        ),
+        _ => return Err(fail(Fault::ImageFormat)),
+    };
+    written.map_err(|error| fail(Fault::ImageDamaged { message: one_line(&error.to_string()) }))?;
+    create_parent(path)?;
+    write_atomically(path, &bytes)
+}
+
+/// Copies a picture's file as it is and creates the folder that it goes to.
+pub(super) fn copy_picture(from: &Path, to: &Path) -> Result<(), SequenceError> {
+    let bytes = read_bytes(from, MAX_PICTURE_BYTES)?;
+    create_parent(to)?;
+    write_atomically(to, &bytes)
+}
+
+fn create_parent(path: &Path) -> Result<(), SequenceError> {
+    path.parent().map_or(Ok(()), |folder| {
+        fs::create_dir_all(folder).map_err(|error| SequenceError::of_file(folder, Fault::Unwritable(error)))
+    })
+}
+
+/// The size is compared before anything as large as the header claims is allocated.
+pub(super) fn decode_picture(bytes: &[u8], [width, height]: [u32; 2]) -> Result<RgbImage, Fault> {
+    let format = image::guess_format(bytes).map_err(|_| Fault::ImageFormat)?;
+    match format {
+        ImageFormat::Png => {}
+        ImageFormat::Jpeg if is_whole_jpeg(bytes) => {}
+        ImageFormat::Jpeg => return Err(Fault::ImageTruncated),
+        _ => return Err(Fault::ImageFormat),
+    }
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(MAX_PICTURE_BYTES);
+    reader.limits(limits);
+    let decoder = reader.into_decoder().map_err(|error| decode_fault(&error))?;
+    let (found_width, found_height) = decoder.dimensions();
+    if [found_width, found_height] != [width, height] {
+        return Err(Fault::ImageSize { found_width, found_height, width, height });
+    }
+    if decoder.total_bytes() > MAX_PICTURE_BYTES {
+        return Err(Fault::ImageTooLarge { limit_bytes: MAX_PICTURE_BYTES });
+    }
+    DynamicImage::from_decoder(decoder).map(DynamicImage::into_rgb8).map_err(|error| decode_fault(&error))
+}
+
+fn decode_fault(error: &ImageError) -> Fault {
+    match error {
+        ImageError::Limits(_) => Fault::ImageTooLarge { limit_bytes: MAX_PICTURE_BYTES },
+        ImageError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
+            Fault::ImageTruncated
+        }
+        ImageError::Unsupported(error) if matches!(error.kind(), UnsupportedErrorKind::Format(_)) => {
+            Fault::ImageFormat
+        }
+        error => Fault::ImageDamaged { message: one_line(&error.to_string()) },
+    }
+}
+
+/// Whether a JPEG's pixels are followed by its end marker: the decoder fills what is missing with grey and says
+/// nothing. Segments before the pixels are skipped, a thumbnail has an end marker of its own.
+fn is_whole_jpeg(bytes: &[u8]) -> bool {
+    const START_OF_SCAN: u8 = 0xda;
+    let mut rest = bytes.get(2..).unwrap_or_default();
+    loop {
+        match *rest {
+            // Any number of fill bytes may stand before a marker.
+            [0xff, 0xff, ..] => rest = &rest[1..],
+            [0xff, START_OF_SCAN, ..] => return rest.windows(2).any(|pair| pair == [0xff, 0xd9]),
+            [0xff, _, high, low, ..] => {
+                let length = usize::from(u16::from_be_bytes([high, low]));
+                let Some(next) = rest.get(2 + length..) else { return false };
+                rest = next;
+            }
+            _ => return false,
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! TOML with faults that name a line.
+
+use std::path::Path;
+
+use serde::{Serialize, de::DeserializeOwned};
+use toml::de::{DeTable, DeValue};
+
+use super::{
+    error::{Fault, SequenceError, one_line},
+    text::line_of_offset,
+};
+
+/// Values from a TOML text. Keys that `T` does not have are left to other programs.
+pub(super) fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, SequenceError> {
+    toml::from_str(text).map_err(|error| {
+        let line = error.span().map(|span| line_of_offset(text.as_bytes(), span.start));
+        let message = one_line(error.message());
+        match message.strip_prefix("missing field `").and_then(|rest| rest.strip_suffix('`')) {
+            // The line is that of the table, which the file's own table does not have.
+            Some(key) => {
+                let line = line.filter(|_| error.span().is_some_and(|span| span.start > 0));
+                SequenceError::at(path, line, Fault::MissingKey { key: key.to_owned() })
+            }
+            None => SequenceError::at(path, line, Fault::Toml { message }),
+        }
+    })
+}
+
+/// The TOML text of values.
+pub(super) fn print<T: Serialize>(path: &Path, values: &T) -> Result<String, SequenceError> {
+    toml::to_string(values)
+        .map_err(|error| SequenceError::of_file(path, Fault::Toml { message: one_line(&error.to_string()) }))
+}
+
+/// The line, from 1, of a value: `["mount", "height_m"]`.
+pub(super) fn line_of_key(text: &str, keys: &[&str]) -> Option<usize> {
+    let document = DeTable::parse(text).ok()?;
+    let (first, rest) = keys.split_first()?;
+    let mut value = document.get_ref().get(*first)?;
+    for key in rest {
+        let DeValue::Table(table) = value.get_ref() else { return None };
+        value = table.get(*key)?;
+    }
+    Some(line_of_offset(text.as_bytes(), value.span().start))
+}
+
+/// Checks numbers of a table: a value that breaks its rule is named with its line.
+pub(super) struct NumberCheck<'a> {
+    /// The file.
+    pub path: &'a Path,
+    /// The whole text.
+    pub text: &'a str,
+    /// The table in which the keys are, empty for the file's own.
+    pub table: &'a str,
+}
+
+impl NumberCheck<'_> {
+    /// Refuses a value that is not finite or does not fulfil the rule.
+    pub(super) fn check(
+        &self,
+        key: &'static str,
+        value: f64,
+        valid: impl Fn(f64) -> bool,
+        rule: &'static str,
+    ) -> Result<(), SequenceError> {
+        if value.is_finite() && valid(value) {
+            return Ok(());
+        }
+        let keys: Vec<&str> = [self.table, key].into_iter().filter(|key| !key.is_empty()).collect();
+        let line = line_of_key(self.text, &keys);
+        Err(SequenceError::at(self.path, line, Fault::BadValue { key, value, rule }))
+    }
+}

@@ -1,0 +1,84 @@
+//! Writing a sequence's text files.
+
+use std::{fs, path::Path};
+
+use super::{
+    Sequence,
+    atomic::write_atomically,
+    camera_file::{parse_camera, print_camera},
+    error::{Fault, SequenceError},
+    field_file::parse_field,
+    frames::{parse_frames, print_frames},
+    sequence_file::{SEQUENCE_FILE, SequenceTable, StartTable, parse_sequence},
+    toml_text::print,
+    tum::{StampedPose, parse_tum, print_tum},
+};
+
+const CAMERA_FILE: &str = "camera.toml";
+const FIELD_FILE: &str = "field.toml";
+const FRAMES_FILE: &str = "frames.csv";
+const GROUNDTRUTH_FILE: &str = "groundtruth.tum";
+
+impl Sequence {
+    /// Writes the text files into a folder, which is created where it is missing; the pictures are the caller's, see
+    /// [`Sequence::copy_image`] and [`super::save_image`]. What [`Sequence::open`] would refuse is not written;
+    /// `sequence.toml`, which makes the folder a sequence, comes last.
+    pub fn write(&self, folder: &Path) -> Result<(), SequenceError> {
+        let files = self.texts(folder)?;
+        fs::create_dir_all(folder)
+            .map_err(|error| SequenceError::of_file(folder, Fault::Unwritable(error)))?;
+        files.iter().try_for_each(|(name, text)| write_atomically(&folder.join(name), text.as_bytes()))
+    }
+
+    /// Names and texts of the files, in the order in which they are written.
+    fn texts(&self, folder: &Path) -> Result<Vec<(&'static str, String)>, SequenceError> {
+        let path = folder.join(CAMERA_FILE);
+        let camera = print_camera(&path, &self.setup)?;
+        parse_camera(&path, &camera)?;
+        let path = folder.join(FIELD_FILE);
+        let field = print(&path, &self.field)?;
+        parse_field(&path, &field)?;
+        let path = folder.join(FRAMES_FILE);
+        let frames = print_frames(&path, &self.frames)?;
+        if parse_frames(&path, &frames)? != self.frames {
+            let rule = "the pictures' names must not begin or end with blanks";
+            return Err(SequenceError::of_file(&path, Fault::Inconsistent { rule }));
+        }
+        let mut files = vec![(CAMERA_FILE, camera), (FIELD_FILE, field), (FRAMES_FILE, frames)];
+
+        let path = folder.join(GROUNDTRUTH_FILE);
+        let poses = self.stamped_groundtruth(&path)?;
+        if !poses.is_empty() {
+            let text = print_tum(&path, &poses)?;
+            parse_tum(&path, &text)?;
+            files.push((GROUNDTRUTH_FILE, text));
+        }
+        let path = folder.join(SEQUENCE_FILE);
+        let sequence = print(&path, &self.table(!poses.is_empty()))?;
+        parse_sequence(&path, &sequence)?;
+        files.push((SEQUENCE_FILE, sequence));
+        Ok(files)
+    }
+
+    fn table(&self, has_groundtruth: bool) -> SequenceTable {
+        SequenceTable {
+            name: self.name.clone(),
+            camera: CAMERA_FILE.to_owned(),
+            field: FIELD_FILE.to_owned(),
+            frames: FRAMES_FILE.to_owned(),
+            groundtruth: has_groundtruth.then(|| GROUNDTRUTH_FILE.to_owned()),
+            start: self.start.map(StartTable::from),
+        }
+    }
+
+    fn stamped_groundtruth(&self, path: &Path) -> Result<Vec<StampedPose>, SequenceError> {
+        if self.groundtruth.len() != self.frames.len() {
+            let rule = "the ground truth must have one entry a frame";
+            return Err(SequenceError::of_file(path, Fault::Inconsistent { rule }));
+        }
+        let pairs = self.frames.iter().zip(&self.groundtruth);
+        Ok(pairs
+            .filter_map(|(frame, pose)| Some(StampedPose { timestamp_s: frame.timestamp_s, pose: (*pose)? }))
+            .collect())
+    }
+}
