@@ -54,7 +54,8 @@ pub fn load(dir: &str) -> Seq {
     let g = |k: &str| s["start"][k].as_float().unwrap();
     Seq { camera, field, height, rows, gt, start: Pose2::new(g("x_m"), g("y_m"), g("yaw_rad")) }
 }
-fn main() {
+#[allow(dead_code)]
+pub fn main() {
     let a: Vec<String> = std::env::args().collect();
     let s = load(&a[1]);
     let pre = Preprocessor::new(&s.camera, s.field.line_width_m);

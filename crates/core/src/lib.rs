@@ -10,4 +10,5 @@ pub mod observation;
 pub mod pose;
 pub mod preprocess;
 pub mod refine;
+pub mod search;
 pub mod sequence;

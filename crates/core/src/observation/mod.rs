@@ -6,6 +6,7 @@
 //! | [`ObservationKind::Distance`] | Σ (cap − distance to the next white line) / α (Eq. 1, its sign turned) |
 //! | [`ObservationKind::Contrast`] | Σ weight · (contrast of line against flanks − what no line would give) |
 
+mod grid;
 mod kernel;
 mod lens;
 
@@ -13,6 +14,7 @@ use image::GrayImage;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+pub use self::grid::GridScorer;
 use self::{
     kernel::{CameraFromGround, ContrastScale, GroundPoints, LinePoints},
     lens::KernelCamera,
@@ -147,7 +149,8 @@ impl CpuScorer {
         )
     }
 
-    fn log_weight(&self, pose: &CameraPose) -> f64 {
+    /// Log-weight of one pose.
+    pub(crate) fn log_weight(&self, pose: &CameraPose) -> f64 {
         match self.config.kind {
             ObservationKind::Gauss => self.sum(pose) / self.config.alpha,
             ObservationKind::Distance => {

@@ -26,6 +26,11 @@ const MIN_DEPRESSION: f32 = 0.025;
 /// Carpet colour is learned up to this many camera heights from the camera.
 const LEARNING_RADIUS_HEIGHTS: f32 = 8.0;
 
+/// A sine of depression that no ray has.
+const NEVER_INSIDE: f32 = 2.0;
+/// This many bearings beside the hull are counted to it.
+const SIDE_BEARINGS: usize = 6;
+
 /// Finds the field's border in pictures of one camera.
 #[derive(Debug, Clone)]
 pub struct BorderDetector {
@@ -232,17 +237,24 @@ fn convex_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
     hull
 }
 
-/// For every bearing, the sine of depression at which a ray leaves the hull; 2 (never inside) where it does not meet it.
+/// For every bearing, the sine of depression at which a ray leaves the hull. Bearings just beside it, at the picture's
+/// sides, end where their neighbours do; 2 (never inside) elsewhere.
 fn hull_depressions(hull: &[Vec2], height_m: f32) -> Vec<f32> {
-    (0..BEARINGS)
-        .map(|bin| {
-            let direction = bearing_direction(bin);
-            let reach = (0..hull.len())
-                .filter_map(|i| ray_meets_edge(direction, hull[i], hull[(i + 1) % hull.len()]))
-                .fold(0.0, f32::max);
-            if reach > 0.0 { height_m / reach.hypot(height_m) } else { 2.0 }
-        })
-        .collect()
+    let limit = |bin: usize| {
+        let direction = bearing_direction(bin);
+        let reach = (0..hull.len())
+            .filter_map(|i| ray_meets_edge(direction, hull[i], hull[(i + 1) % hull.len()]))
+            .fold(0.0, f32::max);
+        if reach > 0.0 { height_m / reach.hypot(height_m) } else { NEVER_INSIDE }
+    };
+    let limits: Vec<f32> = (0..BEARINGS).map(limit).collect();
+    let beside = |bin: usize| {
+        (1..=SIDE_BEARINGS)
+            .flat_map(|step| [bin + step, bin + BEARINGS - step])
+            .map(|neighbour| limits[neighbour % BEARINGS])
+            .fold(NEVER_INSIDE, f32::min)
+    };
+    (0..BEARINGS).map(|bin| if limits[bin] < NEVER_INSIDE { limits[bin] } else { beside(bin) }).collect()
 }
 
 fn ray_meets_edge(direction: Vec2, from: Vec2, to: Vec2) -> Option<f32> {

@@ -1,0 +1,204 @@
+//! Where on the field a picture can have been taken: exhaustive search over all places and headings, then the best
+//! places refined. Used for a start nobody knows, and when the filter has lost its way.
+
+use std::f64::consts::TAU;
+
+use rayon::prelude::*;
+
+use crate::{
+    camera::Camera,
+    field::FieldDimensions,
+    filter::{FilterConfig, ParticleFilter, PlanarSigma},
+    observation::{CpuScorer, GridScorer, ObservationConfig, ObservationKind, Scorer},
+    pose::{CameraPose, Pose2, wrap_angle},
+    preprocess::{Attitude, Prepared, Texture},
+    refine::{AttitudeTolerance, RefineConfig, Refiner},
+};
+
+/// Grid step over line width, at least [`MIN_STEP_M`].
+const STEP_LINE_WIDTHS: f64 = 2.0;
+const MIN_STEP_M: f64 = 0.1;
+/// Headings on the grid.
+const HEADINGS: u32 = 120;
+/// Grid poses kept for refinement.
+const KEPT: usize = 60;
+/// Modes that are fitted to a fraction of a pixel before they are ranked.
+const FITTED: usize = 24;
+/// Poses nearer than this to a better one belong to it, metres and radians.
+const SAME_PLACE: PlanarSigma = PlanarSigma { position_m: 0.35, yaw_rad: 0.25 };
+/// Particles and iterations that refine each grid pose.
+const REFINE_PARTICLES: usize = 60;
+const REFINE_ITERATIONS: u32 = 6;
+
+/// A place the picture fits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mode {
+    /// The pose.
+    pub pose: CameraPose,
+    /// Log-weight by the contrast model, prior included.
+    pub log_weight: f64,
+    /// Probability among all modes found.
+    pub probability: f64,
+}
+
+/// What is known before the picture is looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prior {
+    /// Where the camera probably is.
+    pub pose: Pose2,
+    /// How far from there it may be.
+    pub sigma: PlanarSigma,
+}
+
+impl Prior {
+    /// Log-probability up to a constant, with tails wide enough that a clear picture outweighs a wrong prior.
+    fn log_probability(&self, pose: Pose2) -> f64 {
+        let place =
+            (pose.position_in_world() - self.pose.position_in_world()).length() / self.sigma.position_m;
+        let turn = wrap_angle(pose.yaw_rad - self.pose.yaw_rad) / self.sigma.yaw_rad;
+        -4.0 * (1.0 + (place * place + turn * turn) / 8.0).ln()
+    }
+}
+
+/// Searches the whole field in pictures of one camera.
+#[derive(Debug, Clone)]
+pub struct GlobalSearch {
+    grid: GridScorer,
+    contrast: CpuScorer,
+    field: FieldDimensions,
+    refiner: Refiner,
+    tolerance: AttitudeTolerance,
+}
+
+impl GlobalSearch {
+    /// Prepares the search.
+    pub fn new(camera: &Camera, field: &FieldDimensions, tolerance: AttitudeTolerance) -> Self {
+        let contrast = ObservationConfig {
+            spacing_m: (field.length_m / 80.0).max(0.08),
+            ..ObservationConfig::new(ObservationKind::Contrast)
+        };
+        Self {
+            grid: GridScorer::new(camera, field),
+            contrast: CpuScorer::new(camera, field, contrast),
+            field: field.clone(),
+            refiner: Refiner::new(camera, field, RefineConfig { tolerance, ..RefineConfig::default() }),
+            tolerance,
+        }
+    }
+
+    /// The poses the picture fits, best first. A field with equal halves fits every pose and its mirror image alike:
+    /// without a prior only one of the two is searched, with one the prior decides.
+    pub fn search(
+        &mut self,
+        picture: &Prepared,
+        attitude: Attitude,
+        prior: Option<Prior>,
+        seed: u64,
+    ) -> Vec<Mode> {
+        self.grid.load(picture);
+        self.contrast.load(picture);
+        let mut places = self.best_on_grid(attitude, prior);
+        if let Some(prior) = prior {
+            places.push(prior.pose);
+        }
+        let mut modes: Vec<Mode> = places
+            .par_iter()
+            .enumerate()
+            .map(|(i, place)| self.refine(*place, attitude, prior, seed ^ (i as u64) << 32))
+            .collect();
+        modes.sort_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
+        let mut modes = distinct(modes, |mode| mode.pose.planar());
+        modes.truncate(FITTED);
+        let texture = Texture::pack(&picture.whiteness);
+        let contrast = f64::from(picture.levels.contrast());
+        modes.par_iter_mut().for_each(|mode| {
+            if let Some(fit) = self.refiner.fit(&texture, mode.pose, attitude, contrast) {
+                let fitted = self.mode(fit.pose, attitude, prior);
+                if fitted.log_weight > mode.log_weight {
+                    *mode = fitted;
+                }
+            }
+        });
+        modes.sort_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
+        with_probabilities(distinct(modes, |mode| mode.pose.planar()))
+    }
+
+    fn mode(&self, pose: CameraPose, attitude: Attitude, prior: Option<Prior>) -> Mode {
+        let prior = prior.map_or(0.0, |prior| prior.log_probability(pose.planar()));
+        let log_weight = self.contrast.log_weight(&pose) + self.tolerance.log_prior(pose, attitude) + prior;
+        Mode { pose, log_weight, probability: 0.0 }
+    }
+
+    fn best_on_grid(&self, attitude: Attitude, prior: Option<Prior>) -> Vec<Pose2> {
+        let half_extent = self.field.carpet_half_extent_m();
+        let step = (STEP_LINE_WIDTHS * self.field.line_width_m).max(MIN_STEP_M);
+        let count = |half: f64| (2.0 * half / step).ceil() as u32 + 1;
+        let along =
+            |index: u32, half: f64| -half + 2.0 * half * f64::from(index) / f64::from(count(half) - 1);
+        let columns: Vec<f64> = (0..count(half_extent.x)).map(|i| along(i, half_extent.x)).collect();
+        let rows = count(half_extent.y);
+        let mut scored: Vec<(Pose2, f64)> = columns
+            .into_par_iter()
+            // The other half of the field looks the same turned by 180°.
+            .filter(|&x| prior.is_some() || x <= step)
+            .flat_map_iter(|x| {
+                let mut best = Vec::with_capacity(rows as usize * 4);
+                for row in 0..rows {
+                    let mut here: Vec<(Pose2, f64)> = (0..HEADINGS)
+                        .map(|heading| {
+                            let yaw = wrap_angle(TAU * f64::from(heading) / f64::from(HEADINGS));
+                            let pose = Pose2::new(x, along(row, half_extent.y), yaw);
+                            let prior = prior.map_or(0.0, |prior| prior.log_probability(pose));
+                            (pose, self.grid.log_weight(attitude.at(pose)) + prior)
+                        })
+                        .collect();
+                    // The best few headings of each place are all that can be among the best of the field.
+                    here.sort_by(|a, b| b.1.total_cmp(&a.1));
+                    best.extend(here.into_iter().take(4));
+                }
+                best
+            })
+            .collect();
+        scored.sort_by(|a, b| b.1.total_cmp(&a.1));
+        scored.truncate(KEPT * 40);
+        let mut places = distinct(scored, |(pose, _)| *pose);
+        places.truncate(KEPT);
+        places.into_iter().map(|(pose, _)| pose).collect()
+    }
+
+    /// A small particle filter of its own around a grid pose, standing still.
+    fn refine(&self, place: Pose2, attitude: Attitude, prior: Option<Prior>, seed: u64) -> Mode {
+        let config = FilterConfig {
+            particles: REFINE_PARTICLES,
+            iterations: REFINE_ITERATIONS,
+            seed,
+            attitude_tolerance: Some(self.tolerance),
+            ..FilterConfig::default()
+        };
+        let sigma = PlanarSigma { position_m: 0.08, yaw_rad: 0.04 };
+        let estimate = ParticleFilter::new(config, place, sigma).update(&self.contrast, attitude, sigma);
+        self.mode(estimate.pose, attitude, prior)
+    }
+}
+
+/// Drops everything near something better; the input is sorted, best first.
+fn distinct<T>(sorted: Vec<T>, pose: impl Fn(&T) -> Pose2) -> Vec<T> {
+    let mut kept: Vec<T> = Vec::new();
+    for item in sorted {
+        let here = pose(&item);
+        let known = kept.iter().map(&pose).any(|other| {
+            (here.position_in_world() - other.position_in_world()).length() < SAME_PLACE.position_m
+                && wrap_angle(here.yaw_rad - other.yaw_rad).abs() < SAME_PLACE.yaw_rad
+        });
+        if !known {
+            kept.push(item);
+        }
+    }
+    kept
+}
+
+fn with_probabilities(modes: Vec<Mode>) -> Vec<Mode> {
+    let log_weights: Vec<f64> = modes.iter().map(|mode| mode.log_weight).collect();
+    let weights = crate::filter::normalise(&log_weights);
+    modes.into_iter().zip(weights).map(|(mode, probability)| Mode { probability, ..mode }).collect()
+}
