@@ -6,9 +6,11 @@
 pub mod camera;
 pub mod field;
 pub mod filter;
+mod goal_colors;
 pub mod observation;
 pub mod pose;
 pub mod preprocess;
 pub mod refine;
 pub mod search;
 pub mod sequence;
+pub mod tag;

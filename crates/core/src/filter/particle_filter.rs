@@ -97,6 +97,11 @@ impl ParticleFilter {
         &self.config
     }
 
+    /// Turns all particles by 180° about the field's centre.
+    pub fn mirror(&mut self) {
+        self.particles.iter_mut().for_each(|particle| *particle = particle.mirrored());
+    }
+
     /// Places all particles anew, around several poses in proportion to their weights.
     pub fn place(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) {
         let weights: Vec<f64> = modes.iter().map(|(_, weight)| *weight).collect();

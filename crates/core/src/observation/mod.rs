@@ -138,6 +138,11 @@ impl CpuScorer {
         (weight >= 1.0).then(|| f64::from(contrast / weight))
     }
 
+    /// The picture loaded last, as the model reads it.
+    pub(crate) fn texture(&self) -> &Texture {
+        &self.texture
+    }
+
     fn contrast_sums(&self, pose: &CameraPose) -> [f32; 2] {
         let scale = ContrastScale { per_level: 1.0 / self.contrast.max(8.0), full_width_px: 3.0 };
         kernel::contrast_along_lines(

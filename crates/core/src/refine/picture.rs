@@ -1,6 +1,6 @@
 //! One picture: all six degrees of freedom fitted to sub-pixel line offsets, with what joints and IMU say as a prior.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use nalgebra::{Matrix6, Vector6};
 
 use super::measure::{LineOffset, MeasureConfig, measure_offsets};
@@ -87,6 +87,20 @@ pub struct PoseFit {
     pub offsets: usize,
 }
 
+impl PoseFit {
+    /// The fit turned by 180° about the field's centre, where x and y change their signs.
+    pub fn mirrored(self) -> Self {
+        let signs = Matrix6::from_diagonal(&Vector6::new(-1.0, -1.0, 1.0, 1.0, 1.0, 1.0));
+        let turned = |matrix: Matrix6<f64>| signs * matrix * signs;
+        Self {
+            pose: self.pose.mirrored(),
+            covariance: turned(self.covariance),
+            information: turned(self.information),
+            ..self
+        }
+    }
+}
+
 /// Fits poses to pictures of one camera on one field.
 #[derive(Debug, Clone)]
 pub struct Refiner {
@@ -94,11 +108,6 @@ pub struct Refiner {
     field: FieldDimensions,
     samples: Vec<LineSample>,
     config: RefineConfig,
-}
-
-/// The pose as the six numbers that are fitted.
-pub(super) fn to_vector(pose: CameraPose) -> Vector6<f64> {
-    Vector6::new(pose.x_m, pose.y_m, pose.yaw_rad, pose.height_m, pose.pitch_rad, pose.roll_rad)
 }
 
 /// The pose moved by a step in its six numbers.
@@ -247,9 +256,4 @@ fn robust_sigma(values: impl Iterator<Item = f64>) -> f64 {
 fn tukey(error_in_sigmas: f64) -> f64 {
     let ratio = error_in_sigmas / 4.685;
     if ratio.abs() < 1.0 { (1.0 - ratio * ratio).powi(2) } else { 0.0 }
-}
-
-/// Distance between two poses on the ground, metres.
-pub fn planar_distance_m(a: CameraPose, b: CameraPose) -> f64 {
-    DVec2::new(a.x_m - b.x_m, a.y_m - b.y_m).length()
 }

@@ -1,0 +1,443 @@
+//! A camera pose for every picture of a recording: preprocessing, particle filter, recovery and refinement together.
+
+use std::{sync::mpsc, time::Instant};
+
+use image::RgbImage;
+
+use crate::{
+    camera::Camera,
+    field::FieldDimensions,
+    filter::{FilterConfig, FilterEstimate, ParticleFilter, PlanarSigma},
+    goal_colors::GoalColors,
+    observation::{CpuScorer, ObservationConfig, ObservationKind, Scorer},
+    pose::{CameraPose, Motion2, Pose2},
+    preprocess::{Attitude, FieldBorder, Prepared, Preprocessor},
+    refine::{AttitudeTolerance, PoseFit, RefineConfig, Refiner},
+    search::{GlobalSearch, Mode, Prior},
+    sequence::{Sequence, SequenceError},
+};
+
+/// Predictions less certain than this are too wide for the particles: the field is searched around them.
+const SEARCH_SIGMA_M: f64 = 0.3;
+/// Uncertainty of a start pose that the recording gives.
+const START_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.05, yaw_rad: 0.05 };
+/// Uncertainty after the odometry was reset: the robot was carried, or the recording has a gap.
+const CARRIED_SIGMA: PlanarSigma = PlanarSigma { position_m: 1.5, yaw_rad: 1.0 };
+/// Least uncertainty assumed of a filter that may be lost.
+const LOST_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.5, yaw_rad: 0.4 };
+/// Particles spread around a place that a search found.
+const FOUND_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.06, yaw_rad: 0.04 };
+/// Weight of the newest picture in the slow average of the line fraction (Thrun's α_slow).
+const SLOW: f64 = 0.05;
+/// Below this fraction of the slow average the filter may be lost.
+const LOST_RATIO: f64 = 0.5;
+/// Below this line fraction the filter may be lost, whatever the average.
+const LOST_FRACTION: f64 = 0.15;
+/// From this line fraction on, and this fraction of the slow average, a pose is sure.
+const SURE_FRACTION: f64 = 0.25;
+const SURE_RATIO: f64 = 0.65;
+/// A place found by search is sure when the next best one is at least this much worse (log-weight).
+const SURE_MARGIN: f64 = 6.0;
+/// A search must beat the filter's own place by this much (log-weight) to move the particles.
+const MOVE_MARGIN: f64 = 2.0;
+/// Pictures in a row that must agree before a place found by search is sure without such a margin.
+const SURE_STREAK: u32 = 4;
+
+/// How a recording is tagged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TagConfig {
+    /// The observation model that weighs the particles.
+    pub observation: ObservationConfig,
+    /// The particle filter.
+    pub filter: FilterConfig,
+    /// Use the recording's odometry; without it the previous picture alone predicts the next, as in the paper.
+    pub odometry: bool,
+    /// Search the field when the filter is lost.
+    pub recovery: bool,
+    /// Fit each pose to a fraction of a pixel, height, pitch and roll included.
+    pub refine: bool,
+    /// What joints and IMU are worth.
+    pub tolerance: AttitudeTolerance,
+}
+
+impl TagConfig {
+    /// The defaults for an observation model: the paper's two as in the paper, `contrast` with all six degrees of
+    /// freedom and refinement.
+    pub fn new(kind: ObservationKind) -> Self {
+        let six = kind == ObservationKind::Contrast;
+        let tolerance = AttitudeTolerance::default();
+        Self {
+            observation: ObservationConfig::new(kind),
+            filter: FilterConfig { attitude_tolerance: six.then_some(tolerance), ..FilterConfig::default() },
+            odometry: true,
+            recovery: true,
+            refine: six,
+            tolerance,
+        }
+    }
+}
+
+/// A picture with what the robot knew when it was taken.
+#[derive(Debug, Clone, Copy)]
+pub struct Recorded<'a> {
+    /// The picture; it has the camera's size.
+    pub picture: &'a RgbImage,
+    /// Dead-reckoned pose, where the recording has one.
+    pub odometry: Option<Pose2>,
+    /// Height, pitch and roll by joints and IMU.
+    pub attitude: Attitude,
+}
+
+/// A picture's pose, and how far to trust it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TaggedFrame {
+    /// The pose.
+    pub pose: CameraPose,
+    /// The sub-pixel fit, where one was asked for and found.
+    pub fit: Option<PoseFit>,
+    /// The filter's own estimate.
+    pub filter: FilterEstimate,
+    /// Fraction of the line in view that the picture shows where the pose puts it.
+    pub line_fraction: f64,
+    /// False while the pose may be wrong: after a search with several answers, or when the lines do not fit.
+    pub sure: bool,
+    /// Probability that the pose turned by 180° about the field's centre is the right one.
+    pub mirror_probability: f64,
+    /// Motion since the previous picture, by odometry.
+    pub motion: Option<Motion2>,
+    /// Whether the whole field was searched for this picture.
+    pub searched: bool,
+    /// Time taken, decoding excluded, seconds.
+    pub seconds: f64,
+}
+
+/// Tags one picture after the other.
+pub struct Tagger {
+    config: TagConfig,
+    preprocessor: Preprocessor,
+    scorer: Box<dyn Scorer>,
+    monitor: CpuScorer,
+    refiner: Refiner,
+    search: GlobalSearch,
+    goal_colors: Option<GoalColors>,
+    state: Option<Track>,
+    start: Option<Pose2>,
+    frame: u32,
+}
+
+/// What is carried from picture to picture.
+struct Track {
+    filter: ParticleFilter,
+    pose: Pose2,
+    odometry: Option<Pose2>,
+    slow_fraction: f64,
+    /// Pictures in a row that fitted, since the last search that moved the particles; `None` where the start was given
+    /// or the search had but one answer.
+    unsettled: Option<u32>,
+    /// Log-odds of the mirrored pose.
+    mirror_log_odds: f64,
+}
+
+/// What the prediction says before a picture is looked at.
+struct Prediction {
+    pose: Pose2,
+    sigma: PlanarSigma,
+    motion: Option<Motion2>,
+    carried: bool,
+}
+
+impl Tagger {
+    /// Tags pictures of a camera on a field from a start pose, or from anywhere.
+    pub fn new(camera: &Camera, field: &FieldDimensions, start: Option<Pose2>, config: TagConfig) -> Self {
+        let scorer = Box::new(CpuScorer::new(camera, field, config.observation));
+        Self::with_scorer(camera, field, start, config, scorer)
+    }
+
+    /// As [`Tagger::new`], with particles weighed by another implementation of the observation model.
+    pub fn with_scorer(
+        camera: &Camera,
+        field: &FieldDimensions,
+        start: Option<Pose2>,
+        config: TagConfig,
+        scorer: Box<dyn Scorer>,
+    ) -> Self {
+        let monitor = ObservationConfig {
+            spacing_m: (field.length_m / 80.0).max(0.08),
+            blur_sigma_px: 0.0,
+            ..ObservationConfig::new(ObservationKind::Contrast)
+        };
+        let refine = RefineConfig { tolerance: config.tolerance, ..RefineConfig::default() };
+        Self {
+            config,
+            preprocessor: Preprocessor::new(camera, field.line_width_m),
+            scorer,
+            monitor: CpuScorer::new(camera, field, monitor),
+            refiner: Refiner::new(camera, field, refine),
+            search: GlobalSearch::new(camera, field, config.tolerance),
+            goal_colors: GoalColors::new(camera, field),
+            state: None,
+            start,
+            frame: 0,
+        }
+    }
+
+    /// The particles after the last picture.
+    pub fn particles(&self) -> &[CameraPose] {
+        self.state.as_ref().map_or(&[], |track| track.filter.particles())
+    }
+
+    /// The field's border in a picture, for drawing.
+    pub fn border(&self, picture: &RgbImage, attitude: Attitude) -> FieldBorder {
+        self.preprocessor.prepare(picture, attitude).border
+    }
+
+    /// Tags the next picture.
+    pub fn tag(&mut self, recorded: Recorded<'_>) -> TaggedFrame {
+        let begin = Instant::now();
+        let picture = self.preprocessor.prepare(recorded.picture, recorded.attitude);
+        self.scorer.load(&picture);
+        self.monitor.load(&picture);
+        let mut tagged = match self.state.take() {
+            Some(track) => self.follow(track, &picture, recorded),
+            None => self.begin(&picture, recorded),
+        };
+        self.update_mirror(&mut tagged, recorded);
+        self.frame += 1;
+        tagged.seconds = begin.elapsed().as_secs_f64();
+        tagged
+    }
+
+    fn begin(&mut self, picture: &Prepared, recorded: Recorded<'_>) -> TaggedFrame {
+        let mut filter = ParticleFilter::new(self.config.filter, self.start.unwrap_or_default(), START_SIGMA);
+        let (mut unsettled, mut mirror_log_odds) = (None, f64::NEG_INFINITY);
+        if self.start.is_none() {
+            let modes = self.search_modes(picture, recorded.attitude, None);
+            place(&mut filter, &modes);
+            unsettled = (!is_clear(&modes)).then_some(0);
+            mirror_log_odds = 0.0;
+        }
+        let estimate = filter.update(&*self.scorer, recorded.attitude, self.config.filter.noise.sigma(None));
+        let track = Track {
+            pose: estimate.pose.planar(),
+            filter,
+            odometry: recorded.odometry,
+            slow_fraction: 0.0,
+            unsettled,
+            mirror_log_odds,
+        };
+        let motion = None;
+        self.finish(track, picture, recorded, Found { estimate, motion, searched: self.start.is_none() })
+    }
+
+    fn follow(&mut self, mut track: Track, picture: &Prepared, recorded: Recorded<'_>) -> TaggedFrame {
+        let prediction = self.predict(&track, recorded.odometry);
+        track.filter.predict(prediction.motion);
+        let mut searched = false;
+        if self.config.recovery && (prediction.carried || prediction.sigma.position_m > SEARCH_SIGMA_M) {
+            let prior = Prior { pose: prediction.pose, sigma: prediction.sigma };
+            let modes = self.search_modes(picture, recorded.attitude, Some(prior));
+            place(&mut track.filter, &modes);
+            track.unsettled = (!is_clear(&modes)).then_some(0);
+            searched = true;
+        }
+        let diffusion = if searched { FOUND_SIGMA } else { prediction.sigma };
+        let mut estimate = track.filter.update(&*self.scorer, recorded.attitude, diffusion);
+        if self.config.recovery && !searched && self.may_be_lost(&track, estimate.pose) {
+            searched = true;
+            estimate = self.recover(&mut track, picture, recorded.attitude, &prediction, estimate);
+        }
+        track.pose = estimate.pose.planar();
+        track.odometry = recorded.odometry;
+        self.finish(track, picture, recorded, Found { estimate, motion: prediction.motion, searched })
+    }
+
+    fn predict(&self, track: &Track, odometry: Option<Pose2>) -> Prediction {
+        let (before, now) = match (track.odometry, odometry, self.config.odometry) {
+            (Some(before), Some(now), true) => (before, now),
+            _ => {
+                let sigma = self.config.filter.noise.sigma(None);
+                return Prediction { pose: track.pose, sigma, motion: None, carried: false };
+            }
+        };
+        // Dead reckoning that starts again at its origin says nothing of the way there.
+        let carried = now == Pose2::default() && before.motion_to(now).distance_m() > 0.1;
+        if carried {
+            return Prediction { pose: track.pose, sigma: CARRIED_SIGMA, motion: None, carried };
+        }
+        let motion = Some(before.motion_to(now));
+        let sigma = self.config.filter.noise.sigma(motion);
+        Prediction { pose: track.pose.moved(before.motion_to(now)), sigma, motion, carried }
+    }
+
+    fn may_be_lost(&self, track: &Track, pose: CameraPose) -> bool {
+        let fraction = self.monitor.line_fraction(pose).unwrap_or(0.0);
+        track.unsettled.is_some() || fraction < LOST_FRACTION.max(LOST_RATIO * track.slow_fraction)
+    }
+
+    /// Searches the field; moves the particles only where another place fits clearly better than the filter's.
+    fn recover(
+        &mut self,
+        track: &mut Track,
+        picture: &Prepared,
+        attitude: Attitude,
+        prediction: &Prediction,
+        estimate: FilterEstimate,
+    ) -> FilterEstimate {
+        let sigma = PlanarSigma {
+            position_m: prediction.sigma.position_m.max(LOST_SIGMA.position_m),
+            yaw_rad: prediction.sigma.yaw_rad.max(LOST_SIGMA.yaw_rad),
+        };
+        let modes = self.search_modes(picture, attitude, Some(Prior { pose: estimate.pose.planar(), sigma }));
+        let Some(best) = modes.first() else { return estimate };
+        let own = modes.iter().find(|mode| is_near(mode.pose, estimate.pose));
+        if own.is_some_and(|own| best.log_weight - own.log_weight < MOVE_MARGIN) {
+            return estimate;
+        }
+        place(&mut track.filter, &modes);
+        track.unsettled = (!is_clear(&modes)).then_some(0);
+        track.filter.update(&*self.scorer, attitude, FOUND_SIGMA)
+    }
+
+    fn search_modes(&mut self, picture: &Prepared, attitude: Attitude, prior: Option<Prior>) -> Vec<Mode> {
+        let seed = self.config.filter.seed ^ u64::from(self.frame).rotate_left(48);
+        self.search.search(picture, attitude, prior, seed)
+    }
+
+    fn finish(
+        &mut self,
+        mut track: Track,
+        picture: &Prepared,
+        recorded: Recorded<'_>,
+        found: Found,
+    ) -> TaggedFrame {
+        let Found { estimate, motion, searched } = found;
+        let mut pose = estimate.pose;
+        let mut line_fraction = self.monitor.line_fraction(pose).unwrap_or(0.0);
+        let mut fit = None;
+        if self.config.refine {
+            let contrast = f64::from(picture.levels.contrast());
+            fit = self.refiner.fit(self.monitor.texture(), pose, recorded.attitude, contrast);
+            // A fit that finds fewer lines than the filter did has slipped onto another line.
+            fit = fit.filter(|fit| self.monitor.log_weight(&fit.pose) >= self.monitor.log_weight(&pose));
+            if let Some(fit) = fit {
+                pose = fit.pose;
+                line_fraction = self.monitor.line_fraction(pose).unwrap_or(line_fraction);
+            }
+        }
+        let fits = line_fraction >= SURE_FRACTION.max(SURE_RATIO * track.slow_fraction);
+        track.unsettled = match track.unsettled {
+            Some(streak) if fits && streak + 1 < SURE_STREAK => Some(streak + 1),
+            Some(_) if fits => None,
+            Some(_) => Some(0),
+            None => None,
+        };
+        let sure = fits && track.unsettled.is_none();
+        if sure {
+            let weight = if track.slow_fraction == 0.0 { 1.0 } else { SLOW };
+            track.slow_fraction += weight * (line_fraction - track.slow_fraction);
+        } else {
+            // What was usual before a search need not be usual after it.
+            track.slow_fraction *= 1.0 - SLOW;
+        }
+        track.pose = pose.planar();
+        let mirror_probability = crate::goal_colors::probability(track.mirror_log_odds);
+        self.state = Some(track);
+        TaggedFrame {
+            pose,
+            fit,
+            filter: estimate,
+            line_fraction,
+            sure,
+            mirror_probability,
+            motion,
+            searched,
+            seconds: 0.0,
+        }
+    }
+
+    /// Lets the colours of the goals decide between a pose and its mirror image, and turns everything round when they
+    /// speak for the other.
+    fn update_mirror(&mut self, tagged: &mut TaggedFrame, recorded: Recorded<'_>) {
+        let (Some(goal_colors), Some(track)) = (&self.goal_colors, &mut self.state) else { return };
+        if track.mirror_log_odds == f64::NEG_INFINITY || tagged.line_fraction < SURE_FRACTION {
+            return;
+        }
+        track.mirror_log_odds += goal_colors.mirror_log_odds(recorded.picture, tagged.pose);
+        if track.mirror_log_odds > 0.0 {
+            track.mirror_log_odds = -track.mirror_log_odds;
+            track.filter.mirror();
+            track.pose = track.pose.mirrored();
+            tagged.pose = tagged.pose.mirrored();
+            tagged.filter.pose = tagged.filter.pose.mirrored();
+            tagged.fit = tagged.fit.map(PoseFit::mirrored);
+        }
+        tagged.mirror_probability = crate::goal_colors::probability(track.mirror_log_odds);
+    }
+}
+
+/// What prediction, filter and search came to.
+struct Found {
+    estimate: FilterEstimate,
+    motion: Option<Motion2>,
+    searched: bool,
+}
+
+fn place(filter: &mut ParticleFilter, modes: &[Mode]) {
+    let weighted: Vec<(Pose2, f64)> =
+        modes.iter().map(|mode| (mode.pose.planar(), mode.probability.max(1e-3))).collect();
+    if !weighted.is_empty() {
+        filter.place(&weighted, FOUND_SIGMA);
+    }
+}
+
+/// Whether a search had one answer only.
+fn is_clear(modes: &[Mode]) -> bool {
+    match modes {
+        [] => false,
+        [_] => true,
+        [best, second, ..] => best.log_weight - second.log_weight >= SURE_MARGIN,
+    }
+}
+
+fn is_near(a: CameraPose, b: CameraPose) -> bool {
+    (a.x_m - b.x_m).hypot(a.y_m - b.y_m) < 0.3 && crate::pose::wrap_angle(a.yaw_rad - b.yaw_rad).abs() < 0.2
+}
+
+/// Tags all pictures of a sequence in order. Pictures are decoded one ahead on a thread of their own; memory does not
+/// grow with the recording but for the results. `observe` sees every result as it comes, with the picture.
+pub fn tag_sequence(
+    sequence: &Sequence,
+    tagger: &mut Tagger,
+    mut observe: impl FnMut(usize, &TaggedFrame, &RgbImage, &Tagger) -> Result<(), SequenceError>,
+) -> Result<Vec<TaggedFrame>, SequenceError> {
+    std::thread::scope(|scope| {
+        let (sender, receiver) = mpsc::sync_channel(1);
+        scope.spawn(move || {
+            for index in 0..sequence.frames.len() {
+                // The receiver is gone once tagging has failed.
+                if sender.send(sequence.load_image(index)).is_err() {
+                    break;
+                }
+            }
+        });
+        let mut tagged = Vec::with_capacity(sequence.frames.len());
+        for (index, picture) in receiver.iter().enumerate() {
+            let picture = picture?;
+            let frame = tagger.tag(recorded(sequence, index, &picture));
+            observe(index, &frame, &picture, tagger)?;
+            tagged.push(frame);
+        }
+        Ok(tagged)
+    })
+}
+
+/// What the robot knew when it took a picture of a sequence.
+pub fn recorded<'a>(sequence: &Sequence, index: usize, picture: &'a RgbImage) -> Recorded<'a> {
+    let record = &sequence.frames[index];
+    let attitude = Attitude {
+        height_m: sequence.setup.mount_height_m,
+        pitch_rad: record.pitch_rad,
+        roll_rad: record.roll_rad,
+    };
+    Recorded { picture, odometry: record.odometry, attitude }
+}
