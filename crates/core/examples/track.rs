@@ -27,6 +27,15 @@ fn main() {
     if let Some(v) = ev("GAIN") {
         c.observation.contrast_gain = v.parse().unwrap();
     }
+    if let Some(v) = ev("NEUTRAL") {
+        c.observation.contrast_neutral = v.parse().unwrap();
+    }
+    if let Some(v) = ev("AT") {
+        c.tolerance.angle_rad = v.parse().unwrap();
+        if let Some(t) = &mut c.filter.attitude_tolerance {
+            t.angle_rad = c.tolerance.angle_rad;
+        }
+    }
     if let Some(v) = ev("HT") {
         c.tolerance.height_m = v.parse().unwrap();
         if let Some(t) = &mut c.filter.attitude_tolerance {

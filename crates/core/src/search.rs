@@ -9,7 +9,7 @@ use crate::{
     camera::Camera,
     field::FieldDimensions,
     filter::{FilterConfig, ParticleFilter, PlanarSigma},
-    observation::{CpuScorer, GridScorer, ObservationConfig, ObservationKind, Scorer},
+    observation::{CpuScorer, GridScorer, ObservationConfig, Scorer},
     pose::{CameraPose, Pose2, wrap_angle},
     preprocess::{Attitude, Prepared, Texture},
     refine::{AttitudeTolerance, RefineConfig, Refiner},
@@ -24,6 +24,8 @@ const HEADINGS: u32 = 120;
 const KEPT: usize = 60;
 /// Modes that are fitted to a fraction of a pixel before they are ranked.
 const FITTED: usize = 24;
+/// Least log-probability of a prior.
+const PRIOR_FLOOR: f64 = -20.0;
 /// Poses nearer than this to a better one belong to it, metres and radians.
 const SAME_PLACE: PlanarSigma = PlanarSigma { position_m: 0.35, yaw_rad: 0.25 };
 /// Particles and iterations that refine each grid pose.
@@ -51,12 +53,13 @@ pub struct Prior {
 }
 
 impl Prior {
-    /// Log-probability up to a constant, with tails wide enough that a clear picture outweighs a wrong prior.
+    /// Log-probability up to a constant; normal, but never below [`PRIOR_FLOOR`]: a clear picture outweighs a wrong
+    /// prior.
     fn log_probability(&self, pose: Pose2) -> f64 {
         let place =
             (pose.position_in_world() - self.pose.position_in_world()).length() / self.sigma.position_m;
         let turn = wrap_angle(pose.yaw_rad - self.pose.yaw_rad) / self.sigma.yaw_rad;
-        -4.0 * (1.0 + (place * place + turn * turn) / 8.0).ln()
+        (-0.5 * (place * place + turn * turn)).max(PRIOR_FLOOR)
     }
 }
 
@@ -73,13 +76,9 @@ pub struct GlobalSearch {
 impl GlobalSearch {
     /// Prepares the search.
     pub fn new(camera: &Camera, field: &FieldDimensions, tolerance: AttitudeTolerance) -> Self {
-        let contrast = ObservationConfig {
-            spacing_m: (field.length_m / 80.0).max(0.08),
-            ..ObservationConfig::new(ObservationKind::Contrast)
-        };
         Self {
             grid: GridScorer::new(camera, field),
-            contrast: CpuScorer::new(camera, field, contrast),
+            contrast: CpuScorer::new(camera, field, ObservationConfig::coarse_contrast()),
             field: field.clone(),
             refiner: Refiner::new(camera, field, RefineConfig { tolerance, ..RefineConfig::default() }),
             tolerance,
@@ -111,16 +110,39 @@ impl GlobalSearch {
         modes.truncate(FITTED);
         let texture = Texture::pack(&picture.whiteness);
         let contrast = f64::from(picture.levels.contrast());
-        modes.par_iter_mut().for_each(|mode| {
-            if let Some(fit) = self.refiner.fit(&texture, mode.pose, attitude, contrast) {
-                let fitted = self.mode(fit.pose, attitude, prior);
-                if fitted.log_weight > mode.log_weight {
-                    *mode = fitted;
-                }
-            }
-        });
+        modes.par_iter_mut().for_each(|mode| *mode = self.fitted(*mode, &texture, contrast, attitude, prior));
         modes.sort_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
         with_probabilities(distinct(modes, |mode| mode.pose.planar()))
+    }
+
+    /// What the search would say of a pose: fitted to the picture searched last, and scored.
+    pub fn evaluate(
+        &self,
+        picture: &Prepared,
+        pose: CameraPose,
+        attitude: Attitude,
+        prior: Option<Prior>,
+    ) -> Mode {
+        let texture = Texture::pack(&picture.whiteness);
+        let contrast = f64::from(picture.levels.contrast());
+        self.fitted(self.mode(pose, attitude, prior), &texture, contrast, attitude, prior)
+    }
+
+    fn fitted(
+        &self,
+        mode: Mode,
+        texture: &Texture,
+        contrast: f64,
+        attitude: Attitude,
+        prior: Option<Prior>,
+    ) -> Mode {
+        match self.refiner.fit(texture, mode.pose, attitude, contrast) {
+            Some(fit) => {
+                let fitted = self.mode(fit.pose, attitude, prior);
+                if fitted.log_weight > mode.log_weight { fitted } else { mode }
+            }
+            None => mode,
+        }
     }
 
     fn mode(&self, pose: CameraPose, attitude: Attitude, prior: Option<Prior>) -> Mode {

@@ -35,11 +35,15 @@ const LOST_RATIO: f64 = 0.5;
 const LOST_FRACTION: f64 = 0.15;
 /// From this line fraction on, and this fraction of the slow average, a pose is sure.
 const SURE_FRACTION: f64 = 0.25;
-const SURE_RATIO: f64 = 0.65;
+const SURE_RATIO: f64 = 0.55;
 /// A place found by search is sure when the next best one is at least this much worse (log-weight).
 const SURE_MARGIN: f64 = 6.0;
 /// A search must beat the filter's own place by this much (log-weight) to move the particles.
-const MOVE_MARGIN: f64 = 2.0;
+const MOVE_MARGIN: f64 = 4.0;
+/// Places that a search finds worse than the best one by more than this (log-weight) get no particles.
+const RIVAL_MARGIN: f64 = 4.0;
+/// The fit may lose this much log-weight, which the filter's best particle was chosen to maximise.
+const FIT_MARGIN: f64 = 4.0;
 /// Pictures in a row that must agree before a place found by search is sure without such a margin.
 const SURE_STREAK: u32 = 4;
 
@@ -134,6 +138,8 @@ struct Track {
     /// Pictures in a row that fitted, since the last search that moved the particles; `None` where the start was given
     /// or the search had but one answer.
     unsettled: Option<u32>,
+    /// Pictures in a row that did not fit.
+    doubtful: u32,
     /// Log-odds of the mirrored pose.
     mirror_log_odds: f64,
 }
@@ -161,17 +167,12 @@ impl Tagger {
         config: TagConfig,
         scorer: Box<dyn Scorer>,
     ) -> Self {
-        let monitor = ObservationConfig {
-            spacing_m: (field.length_m / 80.0).max(0.08),
-            blur_sigma_px: 0.0,
-            ..ObservationConfig::new(ObservationKind::Contrast)
-        };
         let refine = RefineConfig { tolerance: config.tolerance, ..RefineConfig::default() };
         Self {
             config,
             preprocessor: Preprocessor::new(camera, field.line_width_m),
             scorer,
-            monitor: CpuScorer::new(camera, field, monitor),
+            monitor: CpuScorer::new(camera, field, ObservationConfig::coarse_contrast()),
             refiner: Refiner::new(camera, field, refine),
             search: GlobalSearch::new(camera, field, config.tolerance),
             goal_colors: GoalColors::new(camera, field),
@@ -223,6 +224,7 @@ impl Tagger {
             odometry: recorded.odometry,
             slow_fraction: 0.0,
             unsettled,
+            doubtful: 0,
             mirror_log_odds,
         };
         let motion = None;
@@ -283,14 +285,16 @@ impl Tagger {
         prediction: &Prediction,
         estimate: FilterEstimate,
     ) -> FilterEstimate {
+        let doubt = 1.0 + f64::from(track.doubtful);
         let sigma = PlanarSigma {
-            position_m: prediction.sigma.position_m.max(LOST_SIGMA.position_m),
-            yaw_rad: prediction.sigma.yaw_rad.max(LOST_SIGMA.yaw_rad),
+            position_m: prediction.sigma.position_m.max(doubt * LOST_SIGMA.position_m),
+            yaw_rad: prediction.sigma.yaw_rad.max(doubt * LOST_SIGMA.yaw_rad),
         };
-        let modes = self.search_modes(picture, attitude, Some(Prior { pose: estimate.pose.planar(), sigma }));
+        let prior = Prior { pose: prediction.pose, sigma };
+        let modes = self.search_modes(picture, attitude, Some(prior));
         let Some(best) = modes.first() else { return estimate };
-        let own = modes.iter().find(|mode| is_near(mode.pose, estimate.pose));
-        if own.is_some_and(|own| best.log_weight - own.log_weight < MOVE_MARGIN) {
+        let own = self.search.evaluate(picture, estimate.pose, attitude, Some(prior));
+        if is_near(best.pose, own.pose) || best.log_weight - own.log_weight < MOVE_MARGIN {
             return estimate;
         }
         place(&mut track.filter, &modes);
@@ -318,7 +322,9 @@ impl Tagger {
             let contrast = f64::from(picture.levels.contrast());
             fit = self.refiner.fit(self.monitor.texture(), pose, recorded.attitude, contrast);
             // A fit that finds fewer lines than the filter did has slipped onto another line.
-            fit = fit.filter(|fit| self.monitor.log_weight(&fit.pose) >= self.monitor.log_weight(&pose));
+            fit = fit.filter(|fit| {
+                self.monitor.log_weight(&fit.pose) >= self.monitor.log_weight(&pose) - FIT_MARGIN
+            });
             if let Some(fit) = fit {
                 pose = fit.pose;
                 line_fraction = self.monitor.line_fraction(pose).unwrap_or(line_fraction);
@@ -331,6 +337,7 @@ impl Tagger {
             Some(_) => Some(0),
             None => None,
         };
+        track.doubtful = if fits { 0 } else { (track.doubtful + 1).min(8) };
         let sure = fits && track.unsettled.is_none();
         if sure {
             let weight = if track.slow_fraction == 0.0 { 1.0 } else { SLOW };
@@ -383,8 +390,12 @@ struct Found {
 }
 
 fn place(filter: &mut ParticleFilter, modes: &[Mode]) {
-    let weighted: Vec<(Pose2, f64)> =
-        modes.iter().map(|mode| (mode.pose.planar(), mode.probability.max(1e-3))).collect();
+    let best = modes.first().map_or(0.0, |mode| mode.log_weight);
+    let weighted: Vec<(Pose2, f64)> = modes
+        .iter()
+        .filter(|mode| best - mode.log_weight < RIVAL_MARGIN)
+        .map(|mode| (mode.pose.planar(), mode.probability))
+        .collect();
     if !weighted.is_empty() {
         filter.place(&weighted, FOUND_SIGMA);
     }

@@ -200,14 +200,17 @@ pub(crate) struct LinePoints {
 /// What [`contrast_along_lines`] needs to know of the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ContrastScale {
-    /// One over the difference between lines and carpet, per grey level.
-    pub per_level: f32,
+    /// One over the Michelson contrast of lines and carpet in this picture.
+    pub per_contrast: f32,
+    /// Added to the brightness that contrast is relative to, so that noise in the dark is no line, grey levels.
+    pub dark_level: f32,
     /// A line this wide in the picture, or wider, counts fully, pixels.
     pub full_width_px: f32,
 }
 
-/// Over all samples seen with both flanks: Σ weight · contrast and Σ weight, where contrast is the centre's value minus
-/// the brighter flank's, in units of the picture's line contrast, cut to [−1, 1].
+/// Over all samples seen with both flanks: Σ weight · contrast and Σ weight. Contrast is Michelson's, of the centre and
+/// the brighter flank, in units of the picture's line contrast, cut to [−1, 1]: light that changes over the field does
+/// not change it.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 pub(crate) fn contrast_along_lines(
     texture: &Texture,
@@ -231,7 +234,8 @@ pub(crate) fn contrast_along_lines(
             let width_px = 0.5 * (du * du + dv * dv).sqrt();
             let seen = centre.seen[i] * left.seen[i] * right.seen[i];
             let w = if seen > 0.0 { (width_px / scale.full_width_px).min(1.0) } else { 0.0 };
-            let c = (line[i] - flank_left[i].max(flank_right[i])) * scale.per_level;
+            let flank = flank_left[i].max(flank_right[i]);
+            let c = (line[i] - flank) / (line[i] + flank + scale.dark_level) * scale.per_contrast;
             contrast[i] += w * c.max(-1.0).min(1.0);
             weight[i] += w;
         }

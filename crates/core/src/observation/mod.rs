@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`ObservationKind::Gauss`] | Σ blurred grey value / α along all projected lines (Eq. 2) |
 //! | [`ObservationKind::Distance`] | Σ (cap − distance to the next white line) / α (Eq. 1, its sign turned) |
-//! | [`ObservationKind::Contrast`] | Σ weight · (contrast of line against flanks − what no line would give) |
+//! | [`ObservationKind::Contrast`] | gain · Σ weight · (contrast of line against flanks − neutral) |
 
 mod grid;
 mod kernel;
@@ -33,6 +33,9 @@ const FLANK_WIDTHS: f64 = 1.0;
 /// Contrast samples nearer than this to another line, in line widths, are left out: their flanks would be white.
 const CLEARANCE_WIDTHS: f64 = 1.8;
 
+/// Sums of two values below this are noise, grey levels.
+const DARK_LEVEL: f32 = 16.0;
+
 /// Which observation model weighs the particles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -55,6 +58,9 @@ pub struct ObservationConfig {
     pub kind: ObservationKind,
     /// Distance between samples on the ground, metres.
     pub spacing_m: f64,
+    /// The same in line widths; the larger of the two is used. Lines of a large field are wide: samples closer than that
+    /// say the same thing twice.
+    pub spacing_line_widths: f64,
     /// Sigma of the Gaussian blur, pixels.
     pub blur_sigma_px: f32,
     /// α of Eq. 1 and Eq. 2, grey levels and pixels; positive, see `docs/paper.md`.
@@ -63,9 +69,9 @@ pub struct ObservationConfig {
     pub mask_border: bool,
     /// Distances in the distance model are cut here, pixels. At most 31.
     pub max_distance_px: f32,
-    /// Log-weight of a fully visible contrast sample.
+    /// Log-weight of a line sample that is found.
     pub contrast_gain: f64,
-    /// Contrast, as a fraction of the picture's line contrast, that says neither line nor no line.
+    /// Contrast that speaks neither for nor against a line. What is in view and not found counts against a pose by it.
     pub contrast_neutral: f64,
 }
 
@@ -75,18 +81,36 @@ impl ObservationConfig {
         let common = Self {
             kind,
             spacing_m: 0.02,
+            spacing_line_widths: 0.0,
             blur_sigma_px: 1.5,
             alpha: 1000.0,
             mask_border: true,
             max_distance_px: 20.0,
-            contrast_gain: 0.5,
-            contrast_neutral: 0.25,
+            contrast_gain: 0.4,
+            contrast_neutral: 0.15,
         };
         match kind {
             ObservationKind::Gauss => common,
             ObservationKind::Distance => Self { alpha: 100.0, ..common },
-            ObservationKind::Contrast => Self { spacing_m: 0.05, blur_sigma_px: 0.7, ..common },
+            ObservationKind::Contrast => Self { spacing_line_widths: 1.0, blur_sigma_px: 0.7, ..common },
         }
+    }
+}
+
+impl ObservationConfig {
+    /// The contrast model with fewer samples, for searching and for checking what the filter found.
+    pub(crate) fn coarse_contrast() -> Self {
+        let config = Self::new(ObservationKind::Contrast);
+        Self {
+            spacing_line_widths: 1.6,
+            contrast_gain: 1.6 * config.contrast_gain,
+            blur_sigma_px: 0.0,
+            ..config
+        }
+    }
+
+    fn spacing_in(&self, field: &FieldDimensions) -> f64 {
+        self.spacing_m.max(self.spacing_line_widths * field.line_width_m)
     }
 }
 
@@ -118,7 +142,7 @@ pub struct CpuScorer {
 impl CpuScorer {
     /// Prepares the samples of a field's lines for a camera.
     pub fn new(camera: &Camera, field: &FieldDimensions, config: ObservationConfig) -> Self {
-        let samples = sample_lines(field, config.spacing_m);
+        let samples = sample_lines(field, config.spacing_in(field));
         let points = match config.kind {
             ObservationKind::Contrast => line_points(&samples, field.line_width_m),
             _ => LinePoints { centre: ground_points(&samples, 0.0), ..Default::default() },
@@ -144,7 +168,8 @@ impl CpuScorer {
     }
 
     fn contrast_sums(&self, pose: &CameraPose) -> [f32; 2] {
-        let scale = ContrastScale { per_level: 1.0 / self.contrast.max(8.0), full_width_px: 3.0 };
+        let scale =
+            ContrastScale { per_contrast: 1.0 / self.contrast, dark_level: DARK_LEVEL, full_width_px: 3.0 };
         kernel::contrast_along_lines(
             &self.texture,
             &self.camera,
@@ -185,7 +210,7 @@ impl Scorer for CpuScorer {
         if self.config.mask_border && self.config.kind != ObservationKind::Contrast {
             picture.border.mask(&mut image);
         }
-        self.contrast = picture.levels.contrast();
+        self.contrast = picture.levels.michelson(DARK_LEVEL);
         self.texture = Texture::pack(&image);
     }
 

@@ -115,6 +115,11 @@ pub struct WhiteLevels {
 }
 
 impl WhiteLevels {
+    /// Michelson contrast of lines and carpet, with `dark_level` added to the brightness it is relative to.
+    pub fn michelson(&self, dark_level: f32) -> f32 {
+        ((self.line - self.carpet) / (self.line + self.carpet + dark_level)).max(0.05)
+    }
+
     /// How much brighter lines are than carpet.
     pub fn contrast(&self) -> f32 {
         self.line - self.carpet
