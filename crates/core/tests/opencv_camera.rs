@@ -14,7 +14,7 @@ struct Row {
 
 fn row(line: &str) -> Row {
     let fields: Vec<&str> = line.split(',').collect();
-    let numbers: Vec<f64> = fields[2..].iter().map(|field| field.parse().unwrap()).collect();
+    let numbers: Vec<f64> = fields[2..].iter().map(|field| field.parse().expect("a number")).collect();
     let [fx, fy, cx, cy, d1, d2, d3, d4, d5, x, y, z, u, v] = numbers[..] else {
         panic!("14 numbers expected in {line}");
     };
@@ -25,7 +25,7 @@ fn row(line: &str) -> Row {
         other => panic!("unknown model {other}"),
     };
     Row {
-        camera: Camera::new([640, 480], [fx, fy, cx, cy], distortion).unwrap(),
+        camera: Camera::new([640, 480], [fx, fy, cx, cy], distortion).expect("a valid camera"),
         point_in_camera: DVec3::new(x, y, z),
         pixel: DVec2::new(u, v),
     }
