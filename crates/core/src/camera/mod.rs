@@ -5,6 +5,7 @@
 
 mod opencv;
 mod opencv_fisheye;
+mod rim;
 
 use glam::{DVec2, DVec3};
 
@@ -13,6 +14,12 @@ use crate::pose::CameraPose;
 
 /// The largest angle from the optical axis that a pinhole can take, radians: tan 89° is 57 focal lengths.
 const PINHOLE_MAX_ANGLE_RAD: f64 = 89.0 * std::f64::consts::PI / 180.0;
+
+/// A camera valid over less than this, radians, sees no more than a pixel.
+const SMALLEST_MAX_ANGLE_RAD: f64 = 1e-3;
+
+/// How far rounding may carry a ray of the rim beyond it, radians. A ray that a pixel has is one that can be projected.
+const RIM_ROUNDING_RAD: f64 = 1e-9;
 
 /// How a direction becomes a place in the plane of unit focal length.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +51,7 @@ impl Distortion {
         }
     }
 
-    /// The angle from the optical axis at which the distortion polynomial stops growing, radians.
+    /// The angle from the optical axis at which the distortion stops growing, radians.
     fn natural_max_angle_rad(&self) -> f64 {
         match self {
             Self::Pinhole => PINHOLE_MAX_ANGLE_RAD,
@@ -159,6 +166,9 @@ pub enum NoRay {
     /// The ray does not meet the ground: it points at or above the horizon.
     #[error("the ray points at or above the horizon")]
     AboveHorizon,
+    /// The camera is not above the ground, or its pose is not made of finite numbers.
+    #[error("the camera is not above the ground")]
+    NotAboveGround,
 }
 
 /// A camera whose parameters cannot be used.
@@ -186,7 +196,7 @@ pub enum InvalidCamera {
         /// The parameter.
         name: &'static str,
     },
-    /// The distortion polynomial falls from the optical axis on, or the angle given is no angle.
+    /// The distortion falls right beside the optical axis, or the angle given is not one that the lens can take.
     #[error(
         "max_angle_rad is {max_angle_rad}: it must be above 0 and at most where the distortion polynomial stops growing ({natural_rad:.4})"
     )]
@@ -243,6 +253,9 @@ impl Camera {
             return Err(InvalidCamera::FocalLength { fx, fy });
         }
         let max_angle_rad = distortion.natural_max_angle_rad();
+        if max_angle_rad < SMALLEST_MAX_ANGLE_RAD {
+            return Err(InvalidCamera::MaxAngle { max_angle_rad, natural_rad: max_angle_rad });
+        }
         Ok(Self { fx, fy, cx, cy, distortion, width, height, max_angle_rad, image_circle: None })
     }
 
@@ -274,31 +287,42 @@ impl Camera {
 
     /// As [`Camera::project`], but the pixel may lie outside the picture.
     pub fn project_unbounded(&self, point_in_camera: DVec3) -> Result<DVec2, NoPixel> {
-        let angle_rad = point_in_camera.truncate().length().atan2(point_in_camera.z);
-        if !point_in_camera.is_finite() || point_in_camera == DVec3::ZERO {
-            return Err(NoPixel::NoDirection);
-        }
-        if angle_rad > self.max_angle_rad {
-            return Err(NoPixel::BeyondMaxAngle { angle_rad, max_angle_rad: self.max_angle_rad });
-        }
-        Ok(self.pixel_from_plane(self.distortion.distort(point_in_camera)))
+        let (scaled, _) = self.scaled_point(point_in_camera)?;
+        self.pixel_from_plane(self.distortion.distort(scaled))
     }
 
     /// As [`Camera::project`], with the gradients of u and v with respect to the point (pixels per metre).
     pub fn project_with_gradients(&self, point_in_camera: DVec3) -> Result<(DVec2, [DVec3; 2]), NoPixel> {
-        let pixel = self.project(point_in_camera)?;
-        let [da, db] = self.distortion.distort_gradients(point_in_camera);
-        Ok((pixel, [self.fx * da, self.fy * db]))
+        let (scaled, scale_m) = self.scaled_point(point_in_camera)?;
+        let pixel = self.pixel_from_plane(self.distortion.distort(scaled))?;
+        self.check_inside(pixel)?;
+        let [da, db] = self.distortion.distort_gradients(scaled);
+        Ok((pixel, [self.fx * da / scale_m, self.fy * db / scale_m]))
     }
 
     /// Change of the pixel with each intrinsic parameter: fx, fy, cx, cy, then those of the distortion.
     pub fn intrinsic_gradients(&self, point_in_camera: DVec3) -> Result<Vec<DVec2>, NoPixel> {
-        self.project(point_in_camera)?;
-        let plane = self.distortion.distort(point_in_camera);
+        let (scaled, _) = self.scaled_point(point_in_camera)?;
+        let plane = self.distortion.distort(scaled);
+        self.check_inside(self.pixel_from_plane(plane)?)?;
         let mut gradients = vec![DVec2::new(plane.x, 0.0), DVec2::new(0.0, plane.y), DVec2::X, DVec2::Y];
         let focal = DVec2::new(self.fx, self.fy);
-        gradients.extend(self.distortion.parameter_gradients(point_in_camera).iter().map(|&g| g * focal));
+        gradients.extend(self.distortion.parameter_gradients(scaled).iter().map(|&g| g * focal));
         Ok(gradients)
+    }
+
+    /// A point on the same ray with coordinates of at most 1, which no square can carry out of range, and the factor.
+    fn scaled_point(&self, point_in_camera: DVec3) -> Result<(DVec3, f64), NoPixel> {
+        if !point_in_camera.is_finite() || point_in_camera == DVec3::ZERO {
+            return Err(NoPixel::NoDirection);
+        }
+        let scale_m = point_in_camera.abs().max_element();
+        let scaled = point_in_camera / scale_m;
+        let angle_rad = angle_from_axis_rad(scaled);
+        if angle_rad > self.max_angle_rad + 2.0 * RIM_ROUNDING_RAD {
+            return Err(NoPixel::BeyondMaxAngle { angle_rad, max_angle_rad: self.max_angle_rad });
+        }
+        Ok((scaled, scale_m))
     }
 
     /// The unit direction, in the camera's axes, that is seen at a pixel.
@@ -306,25 +330,32 @@ impl Camera {
         let place = DVec2::new((pixel.x - self.cx) / self.fx, (pixel.y - self.cy) / self.fy);
         let direction = self.distortion.undistort(place, self.max_angle_rad).ok_or(NoRay::BeyondMaxAngle)?;
         let direction = direction.try_normalize().ok_or(NoRay::BeyondMaxAngle)?;
-        // The round trip of the rim itself may end one rounding step beyond it.
-        let angle_rad = direction.truncate().length().atan2(direction.z);
-        if angle_rad > self.max_angle_rad + 1e-9 { Err(NoRay::BeyondMaxAngle) } else { Ok(direction) }
+        if angle_from_axis_rad(direction) > self.max_angle_rad + RIM_ROUNDING_RAD {
+            return Err(NoRay::BeyondMaxAngle);
+        }
+        Ok(direction)
     }
 
     /// The point of the ground plane (z = 0, world axes, metres) that is seen at a pixel.
     pub fn unproject_to_ground(&self, pose: CameraPose, pixel: DVec2) -> Result<DVec2, NoRay> {
         let ray_in_world = pose.rotation_world_from_camera() * self.unproject(pixel)?;
-        if ray_in_world.z >= 0.0 {
-            return Err(NoRay::AboveHorizon);
+        if !pose.is_finite() || pose.height_m <= 0.0 {
+            return Err(NoRay::NotAboveGround);
         }
         let distance_m = -pose.height_m / ray_in_world.z;
-        Ok((pose.position_in_world() + distance_m * ray_in_world).truncate())
+        let point_in_world = pose.planar().position_in_world() + distance_m * ray_in_world.truncate();
+        // A ray within rounding of the horizon meets the ground beyond all numbers.
+        if ray_in_world.z < 0.0 && point_in_world.is_finite() {
+            Ok(point_in_world)
+        } else {
+            Err(NoRay::AboveHorizon)
+        }
     }
 
     /// Whether a pixel lies in the picture and in the lens's image circle.
     pub fn check_inside(&self, pixel: DVec2) -> Result<(), NoPixel> {
-        let inside = (0.0..=f64::from(self.width - 1)).contains(&pixel.x)
-            && (0.0..=f64::from(self.height - 1)).contains(&pixel.y);
+        let inside = (0.0..=f64::from(self.width) - 1.0).contains(&pixel.x)
+            && (0.0..=f64::from(self.height) - 1.0).contains(&pixel.y);
         if !inside {
             return Err(NoPixel::OutsideImage { pixel });
         }
@@ -334,9 +365,15 @@ impl Camera {
         }
     }
 
-    fn pixel_from_plane(&self, plane: DVec2) -> DVec2 {
-        DVec2::new(self.fx * plane.x + self.cx, self.fy * plane.y + self.cy)
+    fn pixel_from_plane(&self, plane: DVec2) -> Result<DVec2, NoPixel> {
+        let pixel = DVec2::new(self.fx * plane.x + self.cx, self.fy * plane.y + self.cy);
+        if pixel.is_finite() { Ok(pixel) } else { Err(NoPixel::OutsideImage { pixel }) }
     }
+}
+
+/// Angle between a direction and the optical axis, 0 to π, radians.
+fn angle_from_axis_rad(direction: DVec3) -> f64 {
+    direction.truncate().length().atan2(direction.z)
 }
 
 #[cfg(test)]

@@ -2,6 +2,17 @@
 
 use glam::DVec2;
 
+use super::{PINHOLE_MAX_ANGLE_RAD, rim::last_growing_angle_rad};
+
+/// Newton steps in [`Opencv::undistort`]; a few are enough except beside the rim.
+const MAX_STEPS: usize = 100;
+
+/// How near the distorted place must come, in focal lengths: a hundred-millionth of a pixel.
+const PLACE_TOLERANCE: f64 = 1e-11;
+
+/// Nearer than this, in focal lengths, no step is taken: it would be rounding.
+const PLACE_ROUNDING: f64 = 1e-15;
+
 /// `x_d = x (1 + k₁r² + k₂r⁴ + k₃r⁶) + 2 p₁ x y + p₂ (r² + 2x²)`, and y alike, for x = X/Z, y = Y/Z.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Opencv {
@@ -27,23 +38,29 @@ impl Opencv {
         self.k1 + r2 * (2.0 * self.k2 + r2 * 3.0 * self.k3)
     }
 
-    /// The first angle at which the radial part stops growing, below that of a pinhole.
+    /// The first angle at which the distortion stops growing in some direction, below that of a pinhole.
     pub(super) fn max_angle_rad(&self) -> f64 {
-        const STEPS: u32 = 4096;
-        let slope = |angle: f64| {
-            let r2 = angle.tan().powi(2);
-            self.radial(r2) + 2.0 * r2 * self.radial_slope(r2)
-        };
-        let angle = |step: u32| super::PINHOLE_MAX_ANGLE_RAD * f64::from(step) / f64::from(STEPS);
-        let Some(falling) = (1..=STEPS).find(|&step| slope(angle(step)) <= 0.0) else {
-            return super::PINHOLE_MAX_ANGLE_RAD;
-        };
-        let (mut low, mut high) = (angle(falling - 1), angle(falling));
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if slope(middle) > 0.0 { low = middle } else { high = middle }
+        last_growing_angle_rad(PINHOLE_MAX_ANGLE_RAD, |angle_rad| self.least_determinant(angle_rad.tan()))
+    }
+
+    /// The least determinant of the distortion's Jacobian on a circle.
+    ///
+    /// The Jacobian is symmetric and starts as the identity: while the determinant is positive all over a disc, it is
+    /// positive definite there and no two places of the disc are mapped to one. With c the cosine between the place
+    /// and (p₂, p₁), and τ = r |(p₂, p₁)|, it reads, along and across the radius,
+    /// `[[slope + 6τc, −2τs], [−2τs, radial + 2τc]]`: a determinant quadratic in c.
+    fn least_determinant(&self, radius: f64) -> f64 {
+        let r2 = radius * radius;
+        let across = self.radial(r2);
+        let along = across + 2.0 * r2 * self.radial_slope(r2);
+        let tangential = radius * self.p1.hypot(self.p2);
+        if tangential == 0.0 {
+            return along * across;
         }
-        low
+        let linear = (2.0 * along + 6.0 * across) * tangential;
+        let quadratic = 16.0 * tangential * tangential;
+        let cosine = (-linear / (2.0 * quadratic)).clamp(-1.0, 1.0);
+        along * across - 0.25 * quadratic + cosine * (linear + cosine * quadratic)
     }
 
     pub(super) fn distort(&self, p: DVec2) -> DVec2 {
@@ -79,26 +96,36 @@ impl Opencv {
         ]
     }
 
-    /// Newton's method in two dimensions, damped so that it stays within the valid angle.
+    /// Newton's method inside the valid disc. Each step is shortened until the error falls: the Jacobian is positive
+    /// definite there, so that some step always does.
     pub(super) fn undistort(&self, place: DVec2, max_angle_rad: f64) -> Option<DVec2> {
+        if !place.length().is_finite() {
+            return None;
+        }
         let rim = max_angle_rad.tan();
+        let error_at = |p: DVec2| self.distort(p) - place;
         let mut p = place.clamp_length_max(rim);
-        for _ in 0..100 {
-            let error = self.distort(p) - place;
-            let [dx, dy] = self.distort_gradients(p);
-            let determinant = dx.x * dy.y - dx.y * dy.x;
-            if !error.is_finite() || determinant.abs() < 1e-300 {
-                return None;
-            }
-            let step =
-                DVec2::new(error.x * dy.y - error.y * dx.y, error.y * dx.x - error.x * dy.x) / determinant;
-            let next = (p - step.clamp_length_max(0.5 + p.length())).clamp_length_max(rim * 1.0001);
-            if (next - p).length() <= 1e-15 * (1.0 + p.length()) {
-                p = next;
+        let mut error = error_at(p);
+        for _ in 0..MAX_STEPS {
+            if error.length() <= PLACE_ROUNDING * (1.0 + place.length()) {
                 break;
             }
-            p = next;
+            let Some(step) = self.newton_step(p, error) else { break };
+            let shortened = (0..40).map(|halvings| (p - step * 0.5_f64.powi(halvings)).clamp_length_max(rim));
+            let better =
+                shortened.map(|next| (next, error_at(next))).find(|(_, e)| e.length() < error.length());
+            let Some((next, next_error)) = better else { break };
+            (p, error) = (next, next_error);
         }
-        ((self.distort(p) - place).length() <= 1e-9 * (1.0 + place.length())).then_some(p)
+        (error.length() <= PLACE_TOLERANCE * (1.0 + place.length())).then_some(p)
+    }
+
+    /// Inverse Jacobian times error.
+    fn newton_step(&self, p: DVec2, error: DVec2) -> Option<DVec2> {
+        let [dx, dy] = self.distort_gradients(p);
+        let determinant = dx.x * dy.y - dx.y * dy.x;
+        let step = DVec2::new(error.x * dy.y - error.y * dx.y, error.y * dx.x - error.x * dy.x) / determinant;
+        // Beside the rim the determinant vanishes: a step longer than the disc is as good as one across it.
+        step.is_finite().then(|| step.clamp_length_max(1.0 + 2.0 * p.length()))
     }
 }

@@ -1,12 +1,15 @@
 //! OPENCV_FISHEYE: Kannala and Brandt, "A generic camera model and calibration method for conventional, wide-angle,
 //! and fish-eye lenses", PAMI 2006, with OpenCV's four coefficients.
 
-use std::f64::consts::PI;
-
 use glam::{DVec2, DVec3};
 
+use super::rim::last_growing_angle_rad;
+
 /// Newton steps in [`OpencvFisheye::undistort`]; bisection takes over where a step leaves the bracket.
-const MAX_STEPS: usize = 60;
+const MAX_STEPS: usize = 100;
+
+/// The largest angle a fisheye can take, radians: the direction straight back would be seen all around the rim.
+const FISHEYE_MAX_ANGLE_RAD: f64 = 179.9 * std::f64::consts::PI / 180.0;
 
 /// `θ_d = θ (1 + k₁θ² + k₂θ⁴ + k₃θ⁶ + k₄θ⁸)` with θ the angle from the optical axis; the picture's radius is θ_d.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -30,17 +33,9 @@ impl OpencvFisheye {
         1.0 + t2 * (3.0 * k1 + t2 * (5.0 * k2 + t2 * (7.0 * k3 + t2 * 9.0 * k4)))
     }
 
-    /// The first angle at which θ_d stops growing, at most π.
+    /// The first angle at which θ_d stops growing, at most 179.9°.
     pub(super) fn max_angle_rad(&self) -> f64 {
-        const STEPS: u32 = 4096;
-        let angle = |step: u32| PI * f64::from(step) / f64::from(STEPS);
-        let Some(falling) = (1..=STEPS).find(|&step| self.slope(angle(step)) <= 0.0) else { return PI };
-        let (mut low, mut high) = (angle(falling - 1), angle(falling));
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if self.slope(middle) > 0.0 { low = middle } else { high = middle }
-        }
-        low
+        last_growing_angle_rad(FISHEYE_MAX_ANGLE_RAD, |angle_rad| self.slope(angle_rad))
     }
 
     pub(super) fn distort(&self, point_in_camera: DVec3) -> DVec2 {
@@ -97,9 +92,9 @@ impl OpencvFisheye {
         for _ in 0..MAX_STEPS {
             let excess = self.radius(theta) - radius;
             if excess > 0.0 {
-                high = theta
+                high = theta;
             } else {
-                low = theta
+                low = theta;
             }
             let newton = theta - excess / self.slope(theta);
             let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };

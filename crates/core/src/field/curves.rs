@@ -52,7 +52,8 @@ impl Curve {
         match self {
             Self::Segment { from, to } => {
                 let along = *to - *from;
-                let fraction = ((point - *from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+                let squared = along.length_squared().max(f64::MIN_POSITIVE);
+                let fraction = ((point - *from).dot(along) / squared).clamp(0.0, 1.0);
                 point.distance(*from + fraction * along)
             }
             Self::Circle { center, radius_m } => (point.distance(*center) - radius_m).abs(),

@@ -2,10 +2,15 @@
 
 mod curves;
 mod dimensions;
+mod presets;
 mod sampling;
 
 pub use self::{
     curves::{Curve, Goal, GoalPost},
     dimensions::{FieldDimensions, InvalidField},
+    presets::preset_names,
     sampling::{LineSample, VisibleSample, sample_lines, visible_samples},
 };
+
+#[cfg(test)]
+mod tests;

@@ -1,9 +1,12 @@
 //! Samples along the field's lines: evenly on the ground for scoring, evenly in the picture for measuring.
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2};
 
 use super::{Curve, FieldDimensions, GoalPost};
 use crate::{camera::Camera, pose::CameraPose};
+
+/// A smaller spacing is taken as this one, so that no field has more samples than memory holds.
+const LEAST_SPACING_M: f64 = 1e-3;
 
 /// A point on the centre of a white line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,14 +30,14 @@ impl LineSample {
     }
 }
 
-/// Samples all lines so that neighbours are at most `spacing_m` apart; none lies on an end of a line, where two
-/// lines would be counted at once.
+/// Samples all lines so that neighbours are at most `spacing_m` (1 mm at least) apart; none lies on an end of a line,
+/// where two lines would be counted at once.
 pub fn sample_lines(field: &FieldDimensions, spacing_m: f64) -> Vec<LineSample> {
     let curves = field.curves();
     let mut samples = Vec::new();
     for (index, curve) in curves.iter().enumerate() {
-        // At least one sample; the cast saturates, so that a spacing of zero cannot loop for ever.
-        let count = (curve.length_m() / spacing_m).ceil().clamp(1.0, 1e6) as usize;
+        // `max` also replaces a spacing that is not a number.
+        let count = (curve.length_m() / spacing_m.max(LEAST_SPACING_M)).ceil().max(1.0) as usize;
         samples.extend((0..count).map(|i| {
             line_sample(&curves, index, (i as f64 + 0.5) / count as f64, curve.length_m() / count as f64)
         }));
@@ -62,12 +65,13 @@ pub struct VisibleSample {
     pub pixel: DVec2,
     /// Unit vector across the line in the picture, towards [`LineSample::normal_in_world`].
     pub normal_in_image: DVec2,
-    /// Half the line's width in the picture, along that normal, pixels.
+    /// Half the line's width in the picture, along that normal, pixels; above 0.
     pub half_width_px: f64,
 }
 
 /// Samples seen by a camera, at most about one every `spacing_px` along the line in the picture. Dropped are those
-/// out of view, behind a goal post, or so near the rim or the horizon that the line's sides have no pixel.
+/// out of view, behind a goal post, or so near the rim or the horizon that the line's sides have no pixel or its width
+/// is none.
 pub fn visible_samples(
     field: &FieldDimensions,
     samples: &[LineSample],
@@ -75,52 +79,58 @@ pub fn visible_samples(
     pose: CameraPose,
     spacing_px: f64,
 ) -> Vec<VisibleSample> {
-    let camera_from_world = pose.rotation_world_from_camera().transpose();
-    let project = |point: DVec2| {
-        camera.project(camera_from_world * (point.extend(0.0) - pose.position_in_world())).ok()
-    };
+    let view = View { camera, pose, camera_from_world: pose.rotation_world_from_camera().transpose() };
     let posts: Vec<GoalPost> = field.goals().iter().flat_map(|goal| goal.posts).collect();
     let mut kept: Vec<VisibleSample> = Vec::new();
     for &sample in samples {
-        let half_width = sample.normal_in_world() * (field.line_width_m / 2.0);
-        let (Some(pixel), Some(left), Some(right), Some(ahead)) = (
-            project(sample.point_in_world),
-            project(sample.point_in_world + half_width),
-            project(sample.point_in_world - half_width),
-            project(sample.point_in_world + sample.tangent_in_world * 1e-3),
-        ) else {
-            continue;
-        };
-        let Some(along) = (ahead - pixel).try_normalize() else { continue };
-        let towards_left = left - right;
-        let across = along.perp() * along.perp().dot(towards_left).signum();
-        let too_dense = kept
-            .last()
-            .is_some_and(|last| last.sample.curve == sample.curve && last.pixel.distance(pixel) < spacing_px);
-        if too_dense || posts.iter().any(|post| hides(post, pose, sample.point_in_world)) {
-            continue;
-        }
-        kept.push(VisibleSample {
-            sample,
-            pixel,
-            normal_in_image: across,
-            half_width_px: 0.5 * across.dot(towards_left),
+        let Some(visible) = view.see(sample, field.line_width_m) else { continue };
+        let too_dense = kept.last().is_some_and(|last| {
+            last.sample.curve == sample.curve && last.pixel.distance(visible.pixel) < spacing_px
         });
+        if !too_dense && !posts.iter().any(|post| hides(post, pose, sample.point_in_world)) {
+            kept.push(visible);
+        }
     }
     kept
 }
 
-/// Whether an upright post stands between the camera and a point on the ground.
+/// A camera at its pose.
+struct View<'a> {
+    camera: &'a Camera,
+    pose: CameraPose,
+    camera_from_world: DMat3,
+}
+
+impl View<'_> {
+    /// Where a sample of a line this wide is seen, unless it is out of view.
+    fn see(&self, sample: LineSample, line_width_m: f64) -> Option<VisibleSample> {
+        let in_camera =
+            |point: DVec2| self.camera_from_world * (point.extend(0.0) - self.pose.position_in_world());
+        let (pixel, [du, dv]) = self.camera.project_with_gradients(in_camera(sample.point_in_world)).ok()?;
+        let half_width = sample.normal_in_world() * (line_width_m / 2.0);
+        let left = self.camera.project(in_camera(sample.point_in_world + half_width)).ok()?;
+        let right = self.camera.project(in_camera(sample.point_in_world - half_width)).ok()?;
+        let tangent_in_camera = self.camera_from_world * sample.tangent_in_world.extend(0.0);
+        let along = DVec2::new(du.dot(tangent_in_camera), dv.dot(tangent_in_camera)).try_normalize()?;
+        let across = along.perp() * along.perp().dot(left - right).signum();
+        let half_width_px = 0.5 * across.dot(left - right);
+        let visible = VisibleSample { sample, pixel, normal_in_image: across, half_width_px };
+        (half_width_px > 0.0).then_some(visible)
+    }
+}
+
+/// Whether an upright post stands between the camera and a point on the ground, or on that point.
 fn hides(post: &GoalPost, pose: CameraPose, point_in_world: DVec2) -> bool {
     let camera = pose.position_in_world();
-    let ray: DVec3 = point_in_world.extend(0.0) - camera;
-    let flat = ray.truncate();
-    let fraction = (post.center - camera.truncate()).dot(flat) / flat.length_squared().max(f64::MIN_POSITIVE);
-    let nearest = camera + fraction.clamp(0.0, 1.0) * ray;
-    // A line may run under the post's foot: only what lies behind it is hidden.
-    let in_front = fraction < 1.0 - post.radius_m / flat.length().max(f64::MIN_POSITIVE);
-    in_front
-        && fraction > 0.0
-        && nearest.truncate().distance(post.center) < post.radius_m
-        && nearest.z < post.height_m
+    let flat = point_in_world - camera.truncate();
+    let length_m = flat.length().max(f64::MIN_POSITIVE);
+    let direction = flat / length_m;
+    let to_post = post.center - camera.truncate();
+    let along_m = to_post.dot(direction);
+    let half_chord_m = (post.radius_m * post.radius_m - to_post.perp_dot(direction).powi(2)).sqrt();
+    // Not a number where the line of sight passes beside the post: then no comparison holds.
+    let (entry_m, exit_m) = (along_m - half_chord_m, along_m + half_chord_m);
+    // The line of sight falls all the way: it is lowest where it leaves the post.
+    let lowest_m = camera.z * (1.0 - (exit_m / length_m).min(1.0));
+    half_chord_m > 0.0 && entry_m < length_m && exit_m > 0.0 && lowest_m < post.height_m
 }

@@ -1,0 +1,24 @@
+//! The angle up to which a distortion maps every direction to a place of its own.
+
+/// A dip of `growth` below zero that is narrower than one step folds the picture by less than a millionth of a pixel.
+const STEPS: u32 = 4096;
+
+/// The first angle, at most `limit_rad`, at which `growth` is no longer a positive finite number.
+pub(super) fn last_growing_angle_rad(limit_rad: f64, growth: impl Fn(f64) -> f64) -> f64 {
+    let grows = |angle_rad: f64| {
+        let growth = growth(angle_rad);
+        growth > 0.0 && growth.is_finite()
+    };
+    let angle = |step: u32| limit_rad * f64::from(step) / f64::from(STEPS);
+    let Some(falling) = (1..=STEPS).find(|&step| !grows(angle(step))) else { return limit_rad };
+    let (mut low, mut high) = (angle(falling - 1), angle(falling));
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if grows(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}
