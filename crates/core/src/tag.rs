@@ -23,6 +23,8 @@ const SEARCH_SIGMA_M: f64 = 0.3;
 const START_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.05, yaw_rad: 0.05 };
 /// Uncertainty after the odometry was reset: the robot was carried, or the recording has a gap.
 const CARRIED_SIGMA: PlanarSigma = PlanarSigma { position_m: 1.5, yaw_rad: 1.0 };
+/// Uncertainty of a sure pose.
+const SURE_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.02, yaw_rad: 0.02 };
 /// Least uncertainty assumed of a filter that may be lost.
 const LOST_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.5, yaw_rad: 0.4 };
 /// Particles spread around a place that a search found.
@@ -133,6 +135,9 @@ pub struct Tagger {
 struct Track {
     filter: ParticleFilter,
     pose: Pose2,
+    /// The last sure pose carried on by the odometry since, and how far it may be wrong by now.
+    anchor: Pose2,
+    anchor_sigma: PlanarSigma,
     odometry: Option<Pose2>,
     slow_fraction: f64,
     /// Pictures in a row that fitted, since the last search that moved the particles; `None` where the start was given
@@ -220,6 +225,8 @@ impl Tagger {
         let estimate = filter.update(&*self.scorer, recorded.attitude, self.config.filter.noise.sigma(None));
         let track = Track {
             pose: estimate.pose.planar(),
+            anchor: estimate.pose.planar(),
+            anchor_sigma: CARRIED_SIGMA,
             filter,
             odometry: recorded.odometry,
             slow_fraction: 0.0,
@@ -234,9 +241,11 @@ impl Tagger {
     fn follow(&mut self, mut track: Track, picture: &Prepared, recorded: Recorded<'_>) -> TaggedFrame {
         let prediction = self.predict(&track, recorded.odometry);
         track.filter.predict(prediction.motion);
+        track.anchor = track.anchor.moved(prediction.motion.unwrap_or_default());
+        track.anchor_sigma = track.anchor_sigma.plus(prediction.sigma);
         let mut searched = false;
         if self.config.recovery && (prediction.carried || prediction.sigma.position_m > SEARCH_SIGMA_M) {
-            let prior = Prior { pose: prediction.pose, sigma: prediction.sigma };
+            let prior = Prior { pose: track.anchor, sigma: track.anchor_sigma };
             let modes = self.search_modes(picture, recorded.attitude, Some(prior));
             place(&mut track.filter, &modes);
             track.unsettled = (!is_clear(&modes)).then_some(0);
@@ -246,7 +255,7 @@ impl Tagger {
         let mut estimate = track.filter.update(&*self.scorer, recorded.attitude, diffusion);
         if self.config.recovery && !searched && self.may_be_lost(&track, estimate.pose) {
             searched = true;
-            estimate = self.recover(&mut track, picture, recorded.attitude, &prediction, estimate);
+            estimate = self.recover(&mut track, picture, recorded.attitude, estimate);
         }
         track.pose = estimate.pose.planar();
         track.odometry = recorded.odometry;
@@ -282,15 +291,14 @@ impl Tagger {
         track: &mut Track,
         picture: &Prepared,
         attitude: Attitude,
-        prediction: &Prediction,
         estimate: FilterEstimate,
     ) -> FilterEstimate {
         let doubt = 1.0 + f64::from(track.doubtful);
         let sigma = PlanarSigma {
-            position_m: prediction.sigma.position_m.max(doubt * LOST_SIGMA.position_m),
-            yaw_rad: prediction.sigma.yaw_rad.max(doubt * LOST_SIGMA.yaw_rad),
+            position_m: track.anchor_sigma.position_m.max(doubt * LOST_SIGMA.position_m),
+            yaw_rad: track.anchor_sigma.yaw_rad.max(doubt * LOST_SIGMA.yaw_rad),
         };
-        let prior = Prior { pose: prediction.pose, sigma };
+        let prior = Prior { pose: track.anchor, sigma };
         let modes = self.search_modes(picture, attitude, Some(prior));
         let Some(best) = modes.first() else { return estimate };
         let own = self.search.evaluate(picture, estimate.pose, attitude, Some(prior));
@@ -340,6 +348,7 @@ impl Tagger {
         track.doubtful = if fits { 0 } else { (track.doubtful + 1).min(8) };
         let sure = fits && track.unsettled.is_none();
         if sure {
+            (track.anchor, track.anchor_sigma) = (pose.planar(), SURE_SIGMA);
             let weight = if track.slow_fraction == 0.0 { 1.0 } else { SLOW };
             track.slow_fraction += weight * (line_fraction - track.slow_fraction);
         } else {
@@ -374,6 +383,7 @@ impl Tagger {
             track.mirror_log_odds = -track.mirror_log_odds;
             track.filter.mirror();
             track.pose = track.pose.mirrored();
+            track.anchor = track.anchor.mirrored();
             tagged.pose = tagged.pose.mirrored();
             tagged.filter.pose = tagged.filter.pose.mirrored();
             tagged.fit = tagged.fit.map(PoseFit::mirrored);
