@@ -203,6 +203,9 @@ impl Tagger {
         let picture = self.preprocessor.prepare(recorded.picture, recorded.attitude);
         self.scorer.load(&picture);
         self.monitor.load(&picture);
+        if self.config.refine {
+            self.search.load(&picture);
+        }
         let mut tagged = match self.state.take() {
             Some(track) => self.follow(track, &picture, recorded),
             None => self.begin(&picture, recorded),
@@ -301,7 +304,9 @@ impl Tagger {
         let prior = Prior { pose: track.anchor, sigma };
         let modes = self.search_modes(picture, attitude, Some(prior));
         let Some(best) = modes.first() else { return estimate };
-        let own = self.search.evaluate(picture, estimate.pose, attitude, Some(prior));
+        let Some(own) = self.search.best_of(picture, &[estimate.pose], attitude, Some(prior)) else {
+            return estimate;
+        };
         if is_near(best.pose, own.pose) || best.log_weight - own.log_weight < MOVE_MARGIN {
             return estimate;
         }
@@ -327,16 +332,15 @@ impl Tagger {
         let mut line_fraction = self.monitor.line_fraction(pose).unwrap_or(0.0);
         let mut fit = None;
         if self.config.refine {
+            pose = self.most_probable(&track, picture, recorded.attitude, pose);
             let contrast = f64::from(picture.levels.contrast());
             fit = self.refiner.fit(self.monitor.texture(), pose, recorded.attitude, contrast);
-            // A fit that finds fewer lines than the filter did has slipped onto another line.
+            // A fit that finds fewer lines than before has slipped onto another line.
             fit = fit.filter(|fit| {
                 self.monitor.log_weight(&fit.pose) >= self.monitor.log_weight(&pose) - FIT_MARGIN
             });
-            if let Some(fit) = fit {
-                pose = fit.pose;
-                line_fraction = self.monitor.line_fraction(pose).unwrap_or(line_fraction);
-            }
+            pose = fit.map_or(pose, |fit| fit.pose);
+            line_fraction = self.monitor.line_fraction(pose).unwrap_or(0.0);
         }
         let fits = line_fraction >= SURE_FRACTION.max(SURE_RATIO * track.slow_fraction);
         track.unsettled = match track.unsettled {
@@ -369,6 +373,21 @@ impl Tagger {
             searched,
             seconds: 0.0,
         }
+    }
+
+    /// The best particle, its rivals and the prediction, each fitted to the picture: the most probable of them, by picture
+    /// and prediction together.
+    fn most_probable(
+        &self,
+        track: &Track,
+        picture: &Prepared,
+        attitude: Attitude,
+        best: CameraPose,
+    ) -> CameraPose {
+        let prior = Prior { pose: track.anchor, sigma: track.anchor_sigma };
+        let candidates: Vec<CameraPose> =
+            [best, attitude.at(track.anchor)].iter().chain(track.filter.rivals()).copied().collect();
+        self.search.best_of(picture, &candidates, attitude, Some(prior)).map_or(best, |mode| mode.pose)
     }
 
     /// Lets the colours of the goals decide between a pose and its mirror image, and turns everything round when they
