@@ -41,6 +41,7 @@ impl GroundPoints {
 pub(crate) struct CameraFromGround {
     linear: [[f32; 2]; 3],
     offset: [f32; 3],
+    height_m: f32,
 }
 
 impl CameraFromGround {
@@ -51,6 +52,7 @@ impl CameraFromGround {
         Self {
             linear: axes.map(|axis| [axis.x as f32, axis.y as f32]),
             offset: axes.map(|axis| -axis.dot(position) as f32),
+            height_m: position.z as f32,
         }
     }
 }
@@ -61,6 +63,8 @@ pub(crate) struct Pixels {
     pub u: Lanes,
     pub v: Lanes,
     pub seen: Lanes,
+    /// One over the distance from the camera, per metre.
+    pub nearness: Lanes,
 }
 
 /// Projects a block; `None` where the camera sees none of it.
@@ -90,7 +94,7 @@ pub(crate) fn project_block(
     if any == 0 {
         return None;
     }
-    let mut pixels = Pixels { u: [0.0; LANES], v: [0.0; LANES], seen: [0.0; LANES] };
+    let mut pixels = Pixels { u: [0.0; LANES], v: [0.0; LANES], seen: [0.0; LANES], nearness: inverse };
     match &camera.lens {
         Lens::Radial { coefficients, scale, offset } => {
             for i in 0..LANES {
@@ -206,8 +210,11 @@ pub(crate) struct ContrastScale {
     pub dark_level: f32,
     /// A line this narrow in the picture, or narrower, does not count: the pixels do not resolve it.
     pub min_width_px: f32,
-    /// A line this wide in the picture, or wider, counts fully, pixels.
-    pub full_width_px: f32,
+    /// One over by how much wider it must be to count fully, per pixel.
+    pub per_width_px: f32,
+    /// Area in the picture of one sample's piece of line, seen from 1 m above and 1 m away, over the area that counts
+    /// fully. It falls with the third power of the distance: twice for the distance, once for the flat view.
+    pub relative_area: f32,
 }
 
 /// Something dark where a line should be, an obstacle's edge say, is no worse than no line.
@@ -224,6 +231,7 @@ pub(crate) fn contrast_along_lines(
     points: &LinePoints,
     scale: ContrastScale,
 ) -> [f32; 2] {
+    let area_at_1_m = scale.relative_area * pose.height_m;
     let (mut contrast, mut weight) = ([0.0_f32; LANES], [0.0_f32; LANES]);
     for ((centre, left), right) in
         points.centre.blocks.iter().zip(&points.left.blocks).zip(&points.right.blocks)
@@ -238,13 +246,10 @@ pub(crate) fn contrast_along_lines(
             // The flanks lie two line widths apart.
             let width_px = 0.5 * (du * du + dv * dv).sqrt();
             let seen = centre.seen[i] * left.seen[i] * right.seen[i];
-            let w = if seen > 0.0 {
-                ((width_px - scale.min_width_px) / (scale.full_width_px - scale.min_width_px))
-                    .max(0.0)
-                    .min(1.0)
-            } else {
-                0.0
-            };
+            let resolved = (width_px - scale.min_width_px) * scale.per_width_px;
+            let near = centre.nearness[i];
+            let area = area_at_1_m * near * near * near;
+            let w = if seen > 0.0 { resolved.min(area).max(0.0).min(1.0) } else { 0.0 };
             let flank = flank_left[i].max(flank_right[i]);
             let c = (line[i] - flank) / (line[i] + flank + scale.dark_level) * scale.per_contrast;
             contrast[i] += w * c.max(MIN_CONTRAST).min(1.0);

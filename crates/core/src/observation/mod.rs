@@ -36,6 +36,13 @@ const CLEARANCE_WIDTHS: f64 = 1.8;
 /// Sums of two values below this are noise, grey levels.
 const DARK_LEVEL: f32 = 16.0;
 
+/// Lines narrower than this in the picture, pixels, are not resolved and do not count.
+const MIN_WIDTH_PX: f32 = 0.7;
+/// Lines wider than this, pixels, count fully.
+const FULL_WIDTH_PX: f32 = 3.0;
+/// A sample whose piece of line covers this area in the picture, square pixels, counts fully.
+const FULL_AREA_PX: f64 = 8.0;
+
 /// Which observation model weighs the particles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -137,6 +144,7 @@ pub struct CpuScorer {
     points: LinePoints,
     texture: Texture,
     contrast: f32,
+    relative_area: f32,
 }
 
 impl CpuScorer {
@@ -147,7 +155,15 @@ impl CpuScorer {
             ObservationKind::Contrast => line_points(&samples, field.line_width_m),
             _ => LinePoints { centre: ground_points(&samples, 0.0), ..Default::default() },
         };
-        Self { config, camera: KernelCamera::new(camera), points, texture: Texture::default(), contrast: 1.0 }
+        let area_px = camera.fx * camera.fy * field.line_width_m * config.spacing_in(field);
+        Self {
+            config,
+            camera: KernelCamera::new(camera),
+            points,
+            texture: Texture::default(),
+            contrast: 1.0,
+            relative_area: (area_px / FULL_AREA_PX) as f32,
+        }
     }
 
     /// Number of line samples scored for each pose.
@@ -171,8 +187,9 @@ impl CpuScorer {
         let scale = ContrastScale {
             per_contrast: 1.0 / self.contrast,
             dark_level: DARK_LEVEL,
-            min_width_px: 0.7,
-            full_width_px: 3.0,
+            min_width_px: MIN_WIDTH_PX,
+            per_width_px: 1.0 / (FULL_WIDTH_PX - MIN_WIDTH_PX),
+            relative_area: self.relative_area,
         };
         kernel::contrast_along_lines(
             &self.texture,
