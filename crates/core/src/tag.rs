@@ -25,6 +25,8 @@ const START_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.05, yaw_rad: 0.05 }
 const CARRIED_SIGMA: PlanarSigma = PlanarSigma { position_m: 1.5, yaw_rad: 1.0 };
 /// Uncertainty of a sure pose.
 const SURE_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.02, yaw_rad: 0.02 };
+/// Uncertainty of a pose that fits but is not sure.
+const LIKELY_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.3, yaw_rad: 0.2 };
 /// Least uncertainty assumed of a filter that may be lost.
 const LOST_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.5, yaw_rad: 0.4 };
 /// Particles spread around a place that a search found.
@@ -351,6 +353,9 @@ impl Tagger {
         };
         track.doubtful = if fits { 0 } else { (track.doubtful + 1).min(8) };
         let sure = fits && track.unsettled.is_none();
+        if fits && !sure {
+            (track.anchor, track.anchor_sigma) = (pose.planar(), LIKELY_SIGMA);
+        }
         if sure {
             (track.anchor, track.anchor_sigma) = (pose.planar(), SURE_SIGMA);
             let weight = if track.slow_fraction == 0.0 { 1.0 } else { SLOW };
