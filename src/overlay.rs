@@ -353,7 +353,7 @@ mod tests {
         let map = Map::new(&field, (320, 240)).unwrap();
         let place = map.at(overlay.pose) + DVec2::new(f64::from(map.left), f64::from(map.top));
         let pixel = drawn.get_pixel(place.x.round() as u32, place.y.round() as u32).0;
-        assert!(pixel[0] > 200 && pixel[1] < 100, "{pixel:?}");
+        assert!(pixel[0] > 150 && pixel[1] < 100, "{pixel:?}");
     }
 
     #[test]
