@@ -197,13 +197,13 @@ impl Map {
         (width.min(height) >= MIN_MAP_PX).then_some(Self { left, top: margin, width, height, px_per_m })
     }
 
-    fn from_ground(&self, point: DVec2) -> DVec2 {
+    fn place(&self, point: DVec2) -> DVec2 {
         let middle = DVec2::new(f64::from(self.width - 1), f64::from(self.height - 1)) / 2.0;
         middle + self.px_per_m * DVec2::new(point.x, -point.y)
     }
 
     fn at(&self, pose: CameraPose) -> DVec2 {
-        self.from_ground(pose.planar().position_in_world())
+        self.place(pose.planar().position_in_world())
     }
 
     fn lines(&self, field: &FieldDimensions) -> Vec<Segment> {
@@ -213,7 +213,7 @@ impl Map {
                 Curve::Segment { .. } => 1,
                 Curve::Circle { .. } => 48,
             };
-            let point = |step: u32| self.from_ground(curve.at(f64::from(step) / f64::from(count)).0);
+            let point = |step: u32| self.place(curve.at(f64::from(step) / f64::from(count)).0);
             segments.extend((0..count).map(|step| (point(step), point(step + 1))));
         }
         segments

@@ -1,5 +1,7 @@
 //! Which package may use which: the library must stay usable without a GPU and without a window.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+
 use std::{collections::BTreeMap, process::Command};
 
 use serde_json::Value;

@@ -1,5 +1,7 @@
 //! `reality-sim tag`, run as users run it, on the demonstration walk.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+
 use std::{
     fs,
     path::{Path, PathBuf},

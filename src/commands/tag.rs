@@ -13,8 +13,8 @@ use image::RgbImage;
 use serde::Serialize;
 
 use reality_sim::{
-    CameraPose, FieldDimensions, ObservationKind, Pose2, Sequence, SequenceError, StampedPose, TagConfig,
-    TaggedFrame, Tagger,
+    CameraPose, FieldDimensions, ObservationKind, Pose2, Sequence, StampedPose, TagConfig, TaggedFrame,
+    Tagger,
     evaluation::{ErrorStatistics, PoseError, percentile},
     field::preset_names,
     filter::{Estimator, KldConfig, Resampling},
@@ -353,10 +353,7 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
             None => Ok(()),
         }
     })
-    .map_err(|error: SequenceError| {
-        progress.finish_and_clear();
-        error
-    })?;
+    .inspect_err(|_| progress.finish_and_clear())?;
     progress.finish_and_clear();
 
     let poses = smoothed(&tagged);
