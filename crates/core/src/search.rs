@@ -85,6 +85,11 @@ impl GlobalSearch {
         }
     }
 
+    /// Takes over a new picture, for [`GlobalSearch::best_of`] without a search.
+    pub fn load(&mut self, picture: &Prepared) {
+        self.contrast.load(picture);
+    }
+
     /// The poses the picture fits, best first. A field with equal halves fits every pose and its mirror image alike:
     /// without a prior only one of the two is searched, with one the prior decides.
     pub fn search(
@@ -94,8 +99,8 @@ impl GlobalSearch {
         prior: Option<Prior>,
         seed: u64,
     ) -> Vec<Mode> {
+        self.load(picture);
         self.grid.load(picture);
-        self.contrast.load(picture);
         let mut places = self.best_on_grid(attitude, prior);
         if let Some(prior) = prior {
             places.push(prior.pose);
@@ -115,17 +120,21 @@ impl GlobalSearch {
         with_probabilities(distinct(modes, |mode| mode.pose.planar()))
     }
 
-    /// What the search would say of a pose: fitted to the picture searched last, and scored.
-    pub fn evaluate(
+    /// The most probable of some poses, each fitted to the picture searched or [`GlobalSearch::load`]ed last.
+    pub fn best_of(
         &self,
         picture: &Prepared,
-        pose: CameraPose,
+        poses: &[CameraPose],
         attitude: Attitude,
         prior: Option<Prior>,
-    ) -> Mode {
+    ) -> Option<Mode> {
         let texture = Texture::pack(&picture.whiteness);
         let contrast = f64::from(picture.levels.contrast());
-        self.fitted(self.mode(pose, attitude, prior), &texture, contrast, attitude, prior)
+        let fitted: Vec<Mode> = poses
+            .par_iter()
+            .map(|&pose| self.fitted(self.mode(pose, attitude, prior), &texture, contrast, attitude, prior))
+            .collect();
+        fitted.into_iter().max_by(|a, b| a.log_weight.total_cmp(&b.log_weight))
     }
 
     fn fitted(

@@ -23,6 +23,8 @@ const SEARCH_SIGMA_M: f64 = 0.3;
 const START_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.05, yaw_rad: 0.05 };
 /// Uncertainty after the odometry was reset: the robot was carried, or the recording has a gap.
 const CARRIED_SIGMA: PlanarSigma = PlanarSigma { position_m: 1.5, yaw_rad: 1.0 };
+/// Uncertainty of a sure pose.
+const SURE_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.02, yaw_rad: 0.02 };
 /// Least uncertainty assumed of a filter that may be lost.
 const LOST_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.5, yaw_rad: 0.4 };
 /// Particles spread around a place that a search found.
@@ -133,6 +135,9 @@ pub struct Tagger {
 struct Track {
     filter: ParticleFilter,
     pose: Pose2,
+    /// The last sure pose carried on by the odometry since, and how far it may be wrong by now.
+    anchor: Pose2,
+    anchor_sigma: PlanarSigma,
     odometry: Option<Pose2>,
     slow_fraction: f64,
     /// Pictures in a row that fitted, since the last search that moved the particles; `None` where the start was given
@@ -198,6 +203,9 @@ impl Tagger {
         let picture = self.preprocessor.prepare(recorded.picture, recorded.attitude);
         self.scorer.load(&picture);
         self.monitor.load(&picture);
+        if self.config.refine {
+            self.search.load(&picture);
+        }
         let mut tagged = match self.state.take() {
             Some(track) => self.follow(track, &picture, recorded),
             None => self.begin(&picture, recorded),
@@ -220,6 +228,8 @@ impl Tagger {
         let estimate = filter.update(&*self.scorer, recorded.attitude, self.config.filter.noise.sigma(None));
         let track = Track {
             pose: estimate.pose.planar(),
+            anchor: estimate.pose.planar(),
+            anchor_sigma: CARRIED_SIGMA,
             filter,
             odometry: recorded.odometry,
             slow_fraction: 0.0,
@@ -234,9 +244,11 @@ impl Tagger {
     fn follow(&mut self, mut track: Track, picture: &Prepared, recorded: Recorded<'_>) -> TaggedFrame {
         let prediction = self.predict(&track, recorded.odometry);
         track.filter.predict(prediction.motion);
+        track.anchor = track.anchor.moved(prediction.motion.unwrap_or_default());
+        track.anchor_sigma = track.anchor_sigma.plus(prediction.sigma);
         let mut searched = false;
         if self.config.recovery && (prediction.carried || prediction.sigma.position_m > SEARCH_SIGMA_M) {
-            let prior = Prior { pose: prediction.pose, sigma: prediction.sigma };
+            let prior = Prior { pose: track.anchor, sigma: track.anchor_sigma };
             let modes = self.search_modes(picture, recorded.attitude, Some(prior));
             place(&mut track.filter, &modes);
             track.unsettled = (!is_clear(&modes)).then_some(0);
@@ -246,7 +258,7 @@ impl Tagger {
         let mut estimate = track.filter.update(&*self.scorer, recorded.attitude, diffusion);
         if self.config.recovery && !searched && self.may_be_lost(&track, estimate.pose) {
             searched = true;
-            estimate = self.recover(&mut track, picture, recorded.attitude, &prediction, estimate);
+            estimate = self.recover(&mut track, picture, recorded.attitude, estimate);
         }
         track.pose = estimate.pose.planar();
         track.odometry = recorded.odometry;
@@ -282,18 +294,19 @@ impl Tagger {
         track: &mut Track,
         picture: &Prepared,
         attitude: Attitude,
-        prediction: &Prediction,
         estimate: FilterEstimate,
     ) -> FilterEstimate {
         let doubt = 1.0 + f64::from(track.doubtful);
         let sigma = PlanarSigma {
-            position_m: prediction.sigma.position_m.max(doubt * LOST_SIGMA.position_m),
-            yaw_rad: prediction.sigma.yaw_rad.max(doubt * LOST_SIGMA.yaw_rad),
+            position_m: track.anchor_sigma.position_m.max(doubt * LOST_SIGMA.position_m),
+            yaw_rad: track.anchor_sigma.yaw_rad.max(doubt * LOST_SIGMA.yaw_rad),
         };
-        let prior = Prior { pose: prediction.pose, sigma };
+        let prior = Prior { pose: track.anchor, sigma };
         let modes = self.search_modes(picture, attitude, Some(prior));
         let Some(best) = modes.first() else { return estimate };
-        let own = self.search.evaluate(picture, estimate.pose, attitude, Some(prior));
+        let Some(own) = self.search.best_of(picture, &[estimate.pose], attitude, Some(prior)) else {
+            return estimate;
+        };
         if is_near(best.pose, own.pose) || best.log_weight - own.log_weight < MOVE_MARGIN {
             return estimate;
         }
@@ -319,16 +332,15 @@ impl Tagger {
         let mut line_fraction = self.monitor.line_fraction(pose).unwrap_or(0.0);
         let mut fit = None;
         if self.config.refine {
+            pose = self.most_probable(&track, picture, recorded.attitude, pose);
             let contrast = f64::from(picture.levels.contrast());
             fit = self.refiner.fit(self.monitor.texture(), pose, recorded.attitude, contrast);
-            // A fit that finds fewer lines than the filter did has slipped onto another line.
+            // A fit that finds fewer lines than before has slipped onto another line.
             fit = fit.filter(|fit| {
                 self.monitor.log_weight(&fit.pose) >= self.monitor.log_weight(&pose) - FIT_MARGIN
             });
-            if let Some(fit) = fit {
-                pose = fit.pose;
-                line_fraction = self.monitor.line_fraction(pose).unwrap_or(line_fraction);
-            }
+            pose = fit.map_or(pose, |fit| fit.pose);
+            line_fraction = self.monitor.line_fraction(pose).unwrap_or(0.0);
         }
         let fits = line_fraction >= SURE_FRACTION.max(SURE_RATIO * track.slow_fraction);
         track.unsettled = match track.unsettled {
@@ -340,6 +352,7 @@ impl Tagger {
         track.doubtful = if fits { 0 } else { (track.doubtful + 1).min(8) };
         let sure = fits && track.unsettled.is_none();
         if sure {
+            (track.anchor, track.anchor_sigma) = (pose.planar(), SURE_SIGMA);
             let weight = if track.slow_fraction == 0.0 { 1.0 } else { SLOW };
             track.slow_fraction += weight * (line_fraction - track.slow_fraction);
         } else {
@@ -362,6 +375,21 @@ impl Tagger {
         }
     }
 
+    /// The best particle, its rivals and the prediction, each fitted to the picture: the most probable of them, by picture
+    /// and prediction together.
+    fn most_probable(
+        &self,
+        track: &Track,
+        picture: &Prepared,
+        attitude: Attitude,
+        best: CameraPose,
+    ) -> CameraPose {
+        let prior = Prior { pose: track.anchor, sigma: track.anchor_sigma };
+        let candidates: Vec<CameraPose> =
+            [best, attitude.at(track.anchor)].iter().chain(track.filter.rivals()).copied().collect();
+        self.search.best_of(picture, &candidates, attitude, Some(prior)).map_or(best, |mode| mode.pose)
+    }
+
     /// Lets the colours of the goals decide between a pose and its mirror image, and turns everything round when they
     /// speak for the other.
     fn update_mirror(&mut self, tagged: &mut TaggedFrame, recorded: Recorded<'_>) {
@@ -374,6 +402,7 @@ impl Tagger {
             track.mirror_log_odds = -track.mirror_log_odds;
             track.filter.mirror();
             track.pose = track.pose.mirrored();
+            track.anchor = track.anchor.mirrored();
             tagged.pose = tagged.pose.mirrored();
             tagged.filter.pose = tagged.filter.pose.mirrored();
             tagged.fit = tagged.fit.map(PoseFit::mirrored);

@@ -48,6 +48,16 @@ pub struct PlanarSigma {
     pub yaw_rad: f64,
 }
 
+impl PlanarSigma {
+    /// Of the sum of two independent errors.
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            position_m: self.position_m.hypot(other.position_m),
+            yaw_rad: self.yaw_rad.hypot(other.yaw_rad),
+        }
+    }
+}
+
 impl MotionNoise {
     /// Noise of a motion; `None` for a motion that nobody measured.
     pub fn sigma(&self, motion: Option<Motion2>) -> PlanarSigma {

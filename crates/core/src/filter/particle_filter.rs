@@ -69,6 +69,11 @@ pub struct FilterEstimate {
     pub particles: usize,
 }
 
+/// Particles nearer than this to a better one, metres and radians, are no rivals of it.
+const RIVAL_DISTANCE: PlanarSigma = PlanarSigma { position_m: 0.12, yaw_rad: 0.08 };
+/// Rivals kept.
+const RIVALS: usize = 6;
+
 /// Particles, and how they follow a recording.
 #[derive(Debug, Clone)]
 pub struct ParticleFilter {
@@ -77,12 +82,14 @@ pub struct ParticleFilter {
     frame: u32,
     /// Rounds of placing particles anew in this frame: each needs random numbers of its own.
     placements: u32,
+    /// The best particles of the first iteration of this frame that lie apart from each other.
+    rivals: Vec<CameraPose>,
 }
 
 impl ParticleFilter {
     /// Particles around a start pose.
     pub fn new(config: FilterConfig, start: Pose2, sigma: PlanarSigma) -> Self {
-        let mut filter = Self { config, particles: Vec::new(), frame: 0, placements: 0 };
+        let mut filter = Self { config, particles: Vec::new(), frame: 0, placements: 0, rivals: Vec::new() };
         filter.place(&[(start, 1.0)], sigma);
         filter
     }
@@ -90,6 +97,12 @@ impl ParticleFilter {
     /// The particles after the last iteration.
     pub fn particles(&self) -> &[CameraPose] {
         &self.particles
+    }
+
+    /// The best particles of the last update's first iteration that lie apart from each other, best first: other places
+    /// the picture may have been taken at.
+    pub fn rivals(&self) -> &[CameraPose] {
+        &self.rivals
     }
 
     /// Settings in use.
@@ -142,6 +155,9 @@ impl ParticleFilter {
                 && best.is_none_or(|(_, largest)| log_weights[index] > largest)
             {
                 best = Some((self.particles[index], log_weights[index]));
+            }
+            if iteration == 0 {
+                self.rivals = rivals(&self.particles, &log_weights);
             }
             let weights = normalise(&log_weights);
             let count = self.config.adaptive.map_or(self.config.particles, |adaptive| {
@@ -220,4 +236,23 @@ fn diffuse(pose: Pose2, sigma: PlanarSigma, normals: &[f64; 6]) -> Pose2 {
         y_m: pose.y_m + sigma.position_m * normals[1],
         yaw_rad: crate::pose::wrap_angle(pose.yaw_rad + sigma.yaw_rad * normals[2]),
     }
+}
+
+fn rivals(particles: &[CameraPose], log_weights: &[f64]) -> Vec<CameraPose> {
+    let mut order: Vec<usize> = (0..particles.len()).filter(|&index| !log_weights[index].is_nan()).collect();
+    order.sort_by(|&a, &b| log_weights[b].total_cmp(&log_weights[a]));
+    let mut rivals: Vec<CameraPose> = Vec::new();
+    for pose in order.into_iter().map(|index| particles[index]) {
+        let apart = rivals.iter().all(|other| {
+            (pose.x_m - other.x_m).hypot(pose.y_m - other.y_m) > RIVAL_DISTANCE.position_m
+                || crate::pose::wrap_angle(pose.yaw_rad - other.yaw_rad).abs() > RIVAL_DISTANCE.yaw_rad
+        });
+        if apart {
+            rivals.push(pose);
+            if rivals.len() == RIVALS {
+                break;
+            }
+        }
+    }
+    rivals
 }

@@ -204,12 +204,17 @@ pub(crate) struct ContrastScale {
     pub per_contrast: f32,
     /// Added to the brightness that contrast is relative to, so that noise in the dark is no line, grey levels.
     pub dark_level: f32,
+    /// A line this narrow in the picture, or narrower, does not count: the pixels do not resolve it.
+    pub min_width_px: f32,
     /// A line this wide in the picture, or wider, counts fully, pixels.
     pub full_width_px: f32,
 }
 
+/// Something dark where a line should be, an obstacle's edge say, is no worse than no line.
+const MIN_CONTRAST: f32 = -0.25;
+
 /// Over all samples seen with both flanks: Σ weight · contrast and Σ weight. Contrast is Michelson's, of the centre and
-/// the brighter flank, in units of the picture's line contrast, cut to [−1, 1]: light that changes over the field does
+/// the brighter flank, in units of the picture's line contrast, cut to [[`MIN_CONTRAST`], 1]: light that changes over the field does
 /// not change it.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 pub(crate) fn contrast_along_lines(
@@ -233,10 +238,16 @@ pub(crate) fn contrast_along_lines(
             // The flanks lie two line widths apart.
             let width_px = 0.5 * (du * du + dv * dv).sqrt();
             let seen = centre.seen[i] * left.seen[i] * right.seen[i];
-            let w = if seen > 0.0 { (width_px / scale.full_width_px).min(1.0) } else { 0.0 };
+            let w = if seen > 0.0 {
+                ((width_px - scale.min_width_px) / (scale.full_width_px - scale.min_width_px))
+                    .max(0.0)
+                    .min(1.0)
+            } else {
+                0.0
+            };
             let flank = flank_left[i].max(flank_right[i]);
             let c = (line[i] - flank) / (line[i] + flank + scale.dark_level) * scale.per_contrast;
-            contrast[i] += w * c.max(-1.0).min(1.0);
+            contrast[i] += w * c.max(MIN_CONTRAST).min(1.0);
             weight[i] += w;
         }
     }

@@ -168,8 +168,12 @@ impl CpuScorer {
     }
 
     fn contrast_sums(&self, pose: &CameraPose) -> [f32; 2] {
-        let scale =
-            ContrastScale { per_contrast: 1.0 / self.contrast, dark_level: DARK_LEVEL, full_width_px: 3.0 };
+        let scale = ContrastScale {
+            per_contrast: 1.0 / self.contrast,
+            dark_level: DARK_LEVEL,
+            min_width_px: 0.7,
+            full_width_px: 3.0,
+        };
         kernel::contrast_along_lines(
             &self.texture,
             &self.camera,

@@ -23,7 +23,7 @@ pub struct AttitudeTolerance {
 
 impl Default for AttitudeTolerance {
     fn default() -> Self {
-        Self { height_m: 0.02, angle_rad: 0.006 }
+        Self { height_m: 0.03, angle_rad: 0.01 }
     }
 }
 
