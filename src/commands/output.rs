@@ -1,0 +1,127 @@
+//! What all commands share: output that is checked before long work and complete when it has its name, progress, JSON.
+
+use std::{
+    fs,
+    io::{self, IsTerminal, Write},
+    path::{Path, PathBuf},
+    time::Duration,
+};
+
+use anyhow::{Context, bail};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde::Serialize;
+
+/// Checks that a file can be written under this name later, and that it is none of `inputs`.
+pub fn check_output_file(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<()> {
+    let name = path.display();
+    if path.is_dir() {
+        bail!("{name}: is a folder: give the name of a file");
+    }
+    check_writable_folder(&parent(path)).with_context(|| format!("{name}: cannot be written"))?;
+    if let Ok(existing) = path.canonicalize()
+        && inputs.iter().any(|input| input.canonicalize().is_ok_and(|input| input == existing))
+    {
+        bail!("{name}: is an input of this command: give another name for the output");
+    }
+    Ok(())
+}
+
+/// Creates a folder for pictures where it is missing (its parent must be there), and checks that files can be written
+/// into it and that none of `inputs` lies in it.
+pub fn create_output_folder(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<()> {
+    let name = path.display();
+    if !path.exists() {
+        check_writable_folder(&parent(path)).with_context(|| format!("{name}: cannot be created"))?;
+        fs::create_dir(path).with_context(|| format!("{name}: cannot be created: check the path"))?;
+    }
+    check_writable_folder(path)?;
+    let folder = path.canonicalize().with_context(|| format!("{name}: cannot be read"))?;
+    let holds = |input: &PathBuf| input.canonicalize().is_ok_and(|input| input.parent() == Some(&folder));
+    if let Some(input) = inputs.iter().find(|input| holds(input)) {
+        bail!("{name}: holds the input {}: give another folder for the output", input.display());
+    }
+    Ok(())
+}
+
+/// Writes a file under a temporary name in its folder, then gives it its name: whoever is killed in between leaves the
+/// old file or none.
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let write = || -> io::Result<()> {
+        let mut file = builder().tempfile_in(parent(path))?;
+        file.write_all(bytes)?;
+        file.as_file().sync_all()?;
+        file.persist(path)?;
+        Ok(())
+    };
+    write().with_context(|| {
+        format!("{}: cannot be written: check the permissions and the space on the disk", path.display())
+    })
+}
+
+/// Prints one JSON object on standard output.
+pub fn print_json(report: &impl Serialize) -> anyhow::Result<()> {
+    print(&format!("{}\n", serde_json::to_string_pretty(report)?))
+}
+
+/// Prints text on standard output. A reader that has seen enough is no error.
+pub fn print(text: &str) -> anyhow::Result<()> {
+    let mut output = io::stdout().lock();
+    match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(error).context("standard output: cannot be written")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A progress bar over frames on standard error: on a terminal only.
+pub fn frame_progress(frames: usize) -> anyhow::Result<ProgressBar> {
+    if !io::stderr().is_terminal() {
+        return Ok(ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()));
+    }
+    let style = ProgressStyle::with_template("{bar:32} {pos}/{len} frames, {per_sec}, {eta} left  {msg}")?;
+    let bar = ProgressBar::new(frames as u64).with_style(style);
+    bar.enable_steady_tick(Duration::from_millis(250));
+    Ok(bar)
+}
+
+fn parent(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
+        _ => PathBuf::from("."),
+    }
+}
+
+/// Only an attempt tells whether a folder can be written to; nothing stays behind.
+fn check_writable_folder(folder: &Path) -> anyhow::Result<()> {
+    let name = folder.display();
+    match fs::metadata(folder) {
+        Ok(metadata) if metadata.is_dir() => {}
+        Ok(_) => bail!("{name}: is not a folder: give the name of one that is there"),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            bail!("{name}: there is no such folder: create it first, or give another")
+        }
+        Err(error) => {
+            return Err(error).with_context(|| format!("{name}: cannot be read: check the path"));
+        }
+    }
+    builder()
+        .tempfile_in(folder)
+        .map(drop)
+        .with_context(|| format!("{name}: cannot be written to: check its permissions, or give another"))
+}
+
+/// Temporary files are private by default; a finished file has the permissions of any other.
+#[cfg(unix)]
+fn builder() -> tempfile::Builder<'static, 'static> {
+    use std::os::unix::fs::PermissionsExt;
+
+    let mut builder = tempfile::Builder::new();
+    builder.permissions(fs::Permissions::from_mode(0o666));
+    builder
+}
+
+#[cfg(not(unix))]
+fn builder() -> tempfile::Builder<'static, 'static> {
+    tempfile::Builder::new()
+}
