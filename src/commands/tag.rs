@@ -19,8 +19,9 @@ use reality_sim::{
     field::preset_names,
     filter::{Estimator, KldConfig, Resampling},
     overlay::{BorderOutline, Overlay},
+    refine::SmoothedPose,
     sequence::{read_camera, read_field, save_image},
-    tag::{recorded, tag_sequence},
+    tag::{recorded, smooth_sequence, tag_sequence},
     write_tum,
 };
 
@@ -54,6 +55,10 @@ pub struct TagArgs {
     /// Adapt the number of particles to their spread (KLD sampling)
     #[arg(long)]
     adaptive: bool,
+    /// Use the whole recording for every pose: fit each picture to a fraction of a pixel, then all pictures, odometry and
+    /// IMU together
+    #[arg(long)]
+    smooth: bool,
     /// Same seed, same result
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -243,6 +248,7 @@ impl TagArgs {
         config.filter.adaptive = self.adaptive.then(KldConfig::default);
         config.odometry = !self.no_odometry;
         config.recovery = !self.no_recovery;
+        config.refine |= self.smooth;
         config
     }
 
@@ -356,9 +362,10 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     .inspect_err(|_| progress.finish_and_clear())?;
     progress.finish_and_clear();
 
-    let poses = smoothed(&tagged);
+    let results = if args.smooth { smoothed(&sequence, &tagger, &tagged)? } else { filtered(&tagged) };
+    let poses: Vec<CameraPose> = results.iter().map(|result| result.pose).collect();
     if let Some(details) = &args.details {
-        write_atomically(details, details_csv(&sequence, &tagged, &poses).as_bytes())?;
+        write_atomically(details, details_csv(&sequence, &tagged, &results).as_bytes())?;
     }
     if let Some(out) = &args.out {
         let stamped = sequence.frames.iter().zip(&poses);
@@ -371,10 +378,32 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     if args.json { print_json(&report) } else { print(&report.text(&sequence.name)) }
 }
 
-/// The poses to hand out. Smoothing over the whole trajectory goes in here; [`Report::smoothed`] says whether it was
-/// done.
-fn smoothed(tagged: &[TaggedFrame]) -> Vec<CameraPose> {
-    tagged.iter().map(|frame| frame.pose).collect()
+/// A pose to hand out, with what is known of its errors.
+struct PoseResult {
+    pose: CameraPose,
+    /// Standard deviations of x, y, yaw, height, pitch and roll, metres and radians.
+    sigmas: Option<[f64; 6]>,
+}
+
+/// Every picture's pose as it was found when the picture came.
+fn filtered(tagged: &[TaggedFrame]) -> Vec<PoseResult> {
+    let sigmas = |frame: &TaggedFrame| frame.fit.map(|fit| fit.covariance.diagonal().map(f64::sqrt).into());
+    tagged.iter().map(|frame| PoseResult { pose: frame.pose, sigmas: sigmas(frame) }).collect()
+}
+
+/// The most probable poses of the whole recording.
+fn smoothed(sequence: &Sequence, tagger: &Tagger, tagged: &[TaggedFrame]) -> anyhow::Result<Vec<PoseResult>> {
+    let Some(smoothed) = smooth_sequence(sequence, tagger, tagged)? else {
+        bail!(
+            "{}: no picture shows enough of the lines to smooth the poses: tag without --smooth",
+            sequence.folder.display()
+        );
+    };
+    let result = |pose: &SmoothedPose| PoseResult {
+        pose: pose.pose,
+        sigmas: Some(pose.covariance.diagonal().map(f64::sqrt).into()),
+    };
+    Ok(smoothed.iter().map(result).collect())
 }
 
 /// Whoever waited for an hour must not learn then that the result has no place.
@@ -417,7 +446,7 @@ fn draw(
 }
 
 /// One line a picture; what is not known is empty.
-fn details_csv(sequence: &Sequence, tagged: &[TaggedFrame], poses: &[CameraPose]) -> String {
+fn details_csv(sequence: &Sequence, tagged: &[TaggedFrame], results: &[PoseResult]) -> String {
     const DEGREES_OF_FREEDOM: [&str; 6] = ["x_m", "y_m", "yaw_rad", "height_m", "pitch_rad", "roll_rad"];
     let mut csv = String::from("timestamp_s");
     let sigmas = DEGREES_OF_FREEDOM.map(|name| format!("sigma_{name}"));
@@ -428,7 +457,8 @@ fn details_csv(sequence: &Sequence, tagged: &[TaggedFrame], poses: &[CameraPose]
     csv.push_str(
         ",effective_sample_size,particles,line_fraction,sure,mirror_probability,searched,error_m,error_yaw_rad\n",
     );
-    for (index, (frame, pose)) in tagged.iter().zip(poses).enumerate() {
+    for (index, (frame, result)) in tagged.iter().zip(results).enumerate() {
+        let pose = result.pose;
         // Writing into a string cannot fail.
         let _ = write!(csv, "{}", sequence.frames[index].timestamp_s);
         for value in [pose.x_m, pose.y_m, pose.yaw_rad, pose.height_m, pose.pitch_rad, pose.roll_rad] {
@@ -436,8 +466,8 @@ fn details_csv(sequence: &Sequence, tagged: &[TaggedFrame], poses: &[CameraPose]
         }
         for axis in 0..DEGREES_OF_FREEDOM.len() {
             csv.push(',');
-            if let Some(fit) = &frame.fit {
-                let _ = write!(csv, "{}", fit.covariance[(axis, axis)].sqrt());
+            if let Some(sigmas) = &result.sigmas {
+                let _ = write!(csv, "{}", sigmas[axis]);
             }
         }
         let _ = write!(
@@ -450,7 +480,7 @@ fn details_csv(sequence: &Sequence, tagged: &[TaggedFrame], poses: &[CameraPose]
             frame.mirror_probability,
             frame.searched
         );
-        let _ = match sequence.groundtruth[index].map(|truth| PoseError::new(*pose, truth)) {
+        let _ = match sequence.groundtruth[index].map(|truth| PoseError::new(pose, truth)) {
             Some(error) => writeln!(csv, ",{},{}", error.distance_m, error.yaw_rad),
             None => writeln!(csv, ",,"),
         };
@@ -507,7 +537,7 @@ impl Report {
             estimator: config.filter.estimator,
             adaptive: config.filter.adaptive.is_some(),
             seed: config.filter.seed,
-            smoothed: false,
+            smoothed: args.smooth,
             seconds_per_frame: percentile(&seconds, 0.5).unwrap_or(0.0),
             sure_frames: tagged.iter().filter(|frame| frame.sure).count(),
             searched_frames: tagged.iter().filter(|frame| frame.searched).count(),

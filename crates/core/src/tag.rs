@@ -11,8 +11,10 @@ use crate::{
     goal_colors::GoalColors,
     observation::{CpuScorer, ObservationConfig, ObservationKind, Scorer},
     pose::{CameraPose, Motion2, Pose2},
-    preprocess::{Attitude, FieldBorder, Prepared, Preprocessor},
-    refine::{AttitudeTolerance, PoseFit, RefineConfig, Refiner},
+    preprocess::{Attitude, FieldBorder, Prepared, Preprocessor, Texture},
+    refine::{
+        AttitudeTolerance, PoseFit, RefineConfig, Refiner, SmoothedPose, TrajectoryFrame, smooth_trajectory,
+    },
     search::{GlobalSearch, Mode, Prior},
     sequence::{Sequence, SequenceError},
 };
@@ -153,7 +155,6 @@ struct Track {
 
 /// What the prediction says before a picture is looked at.
 struct Prediction {
-    pose: Pose2,
     sigma: PlanarSigma,
     motion: Option<Motion2>,
     carried: bool,
@@ -197,6 +198,12 @@ impl Tagger {
     /// The field's border in a picture, for drawing.
     pub fn border(&self, picture: &RgbImage, attitude: Attitude) -> FieldBorder {
         self.preprocessor.prepare(picture, attitude).border
+    }
+
+    /// Fits a picture from a pose that is known from elsewhere.
+    fn refit(&self, picture: &Prepared, guess: CameraPose, attitude: Attitude) -> Option<PoseFit> {
+        let texture = Texture::pack(&picture.whiteness);
+        self.refiner.fit(&texture, guess, attitude, f64::from(picture.levels.contrast()))
     }
 
     /// Tags the next picture.
@@ -272,17 +279,17 @@ impl Tagger {
             (Some(before), Some(now), true) => (before, now),
             _ => {
                 let sigma = self.config.filter.noise.sigma(None);
-                return Prediction { pose: track.pose, sigma, motion: None, carried: false };
+                return Prediction { sigma, motion: None, carried: false };
             }
         };
         // Dead reckoning that starts again at its origin says nothing of the way there.
         let carried = now == Pose2::default() && before.motion_to(now).distance_m() > 0.1;
         if carried {
-            return Prediction { pose: track.pose, sigma: CARRIED_SIGMA, motion: None, carried };
+            return Prediction { sigma: CARRIED_SIGMA, motion: None, carried };
         }
         let motion = Some(before.motion_to(now));
         let sigma = self.config.filter.noise.sigma(motion);
-        Prediction { pose: track.pose.moved(before.motion_to(now)), sigma, motion, carried }
+        Prediction { sigma, motion, carried }
     }
 
     fn may_be_lost(&self, track: &Track, pose: CameraPose) -> bool {
@@ -417,6 +424,7 @@ impl Tagger {
 }
 
 /// What prediction, filter and search came to.
+#[derive(Clone, Copy)]
 struct Found {
     estimate: FilterEstimate,
     motion: Option<Motion2>,
@@ -476,13 +484,51 @@ pub fn tag_sequence(
     })
 }
 
-/// What the robot knew when it took a picture of a sequence.
-pub fn recorded<'a>(sequence: &Sequence, index: usize, picture: &'a RgbImage) -> Recorded<'a> {
+/// The most probable poses of a tagged sequence as a whole, see [`smooth_trajectory`]. Pictures whose own fit was
+/// missing, or contradicts the others, are looked at once more from where the others say they were taken.
+///
+/// `None` where no picture could be fitted at all.
+pub fn smooth_sequence(
+    sequence: &Sequence,
+    tagger: &Tagger,
+    tagged: &[TaggedFrame],
+) -> Result<Option<Vec<SmoothedPose>>, SequenceError> {
+    let attitude = |index: usize| sequence_attitude(sequence, index);
+    let mut frames: Vec<TrajectoryFrame> = tagged
+        .iter()
+        .enumerate()
+        .map(|(index, frame)| TrajectoryFrame {
+            guess: frame.pose,
+            fit: frame.fit.filter(|_| frame.line_fraction >= SURE_FRACTION),
+            attitude: attitude(index),
+            motion: frame.motion,
+        })
+        .collect();
+    let Some(first) = smooth_trajectory(&frames, tagger.config.tolerance) else { return Ok(None) };
+    for (index, smoothed) in first.iter().enumerate() {
+        frames[index].guess = smoothed.pose;
+        if !smoothed.picture_used {
+            let picture = tagger.preprocessor.prepare(&sequence.load_image(index)?, attitude(index));
+            frames[index].fit = tagger.refit(&picture, smoothed.pose, attitude(index));
+        }
+    }
+    Ok(smooth_trajectory(&frames, tagger.config.tolerance))
+}
+
+fn sequence_attitude(sequence: &Sequence, index: usize) -> Attitude {
     let record = &sequence.frames[index];
-    let attitude = Attitude {
+    Attitude {
         height_m: sequence.setup.mount_height_m,
         pitch_rad: record.pitch_rad,
         roll_rad: record.roll_rad,
-    };
-    Recorded { picture, odometry: record.odometry, attitude }
+    }
+}
+
+/// What the robot knew when it took a picture of a sequence.
+pub fn recorded<'a>(sequence: &Sequence, index: usize, picture: &'a RgbImage) -> Recorded<'a> {
+    Recorded {
+        picture,
+        odometry: sequence.frames[index].odometry,
+        attitude: sequence_attitude(sequence, index),
+    }
 }

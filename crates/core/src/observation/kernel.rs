@@ -3,6 +3,8 @@
 //! Sixteen points at a time, in plain arrays that the compiler turns into vector instructions; multiplications and
 //! additions are never fused, so that every processor gives the same bits.
 
+#![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
+
 use super::lens::{KernelCamera, Lens};
 use crate::{pose::CameraPose, preprocess::Texture};
 
@@ -75,11 +77,11 @@ pub(crate) fn project_block(
     ground: &[Lanes; 2],
 ) -> Option<Pixels> {
     let mut place = [[0.0_f32; LANES]; 3];
-    for axis in 0..3 {
+    for (axis, place) in place.iter_mut().enumerate() {
         let [a, b] = pose.linear[axis];
         let offset = pose.offset[axis];
         for i in 0..LANES {
-            place[axis][i] = a * ground[0][i] + b * ground[1][i] + offset;
+            place[i] = a * ground[0][i] + b * ground[1][i] + offset;
         }
     }
     let [x, y, z] = place;
@@ -249,10 +251,10 @@ pub(crate) fn contrast_along_lines(
             let resolved = (width_px - scale.min_width_px) * scale.per_width_px;
             let near = centre.nearness[i];
             let area = area_at_1_m * near * near * near;
-            let w = if seen > 0.0 { resolved.min(area).max(0.0).min(1.0) } else { 0.0 };
+            let w = if seen > 0.0 { resolved.min(area).clamp(0.0, 1.0) } else { 0.0 };
             let flank = flank_left[i].max(flank_right[i]);
             let c = (line[i] - flank) / (line[i] + flank + scale.dark_level) * scale.per_contrast;
-            contrast[i] += w * c.max(MIN_CONTRAST).min(1.0);
+            contrast[i] += w * c.clamp(MIN_CONTRAST, 1.0);
             weight[i] += w;
         }
     }

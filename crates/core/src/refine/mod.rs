@@ -3,8 +3,10 @@
 
 mod measure;
 mod picture;
+mod trajectory;
 
 pub use self::{
     measure::{LineOffset, MeasureConfig, measure_offsets},
     picture::{AttitudeTolerance, PoseFit, RefineConfig, Refiner},
+    trajectory::{SmoothedPose, TrajectoryFrame, smooth_trajectory},
 };

@@ -28,6 +28,12 @@ impl Default for AttitudeTolerance {
 }
 
 impl AttitudeTolerance {
+    /// Inverse covariance that joints and IMU give the six numbers of a pose.
+    pub(super) fn information(&self) -> Matrix6<f64> {
+        let [height, angle] = [self.height_m, self.angle_rad].map(|sigma| 1.0 / (sigma * sigma));
+        Matrix6::from_diagonal(&Vector6::new(0.0, 0.0, 0.0, height, angle, angle))
+    }
+
     /// Log-probability, up to a constant, of a pose's height, pitch and roll, given what joints and IMU say.
     pub fn log_prior(&self, pose: CameraPose, attitude: Attitude) -> f64 {
         let height = (pose.height_m - attitude.height_m) / self.height_m;
@@ -62,7 +68,7 @@ impl Default for RefineConfig {
             spacing_m: 0.02,
             spacing_px: 4.0,
             search_px: [12.0, 8.0, 5.0, 4.0, 4.0],
-            offset_sigma_px: 0.15,
+            offset_sigma_px: 0.08,
             correlation_px: 40.0,
             tolerance: AttitudeTolerance::default(),
             min_offsets: 12,
@@ -179,8 +185,8 @@ impl Refiner {
             .iter()
             .filter_map(|offset| Some((self.gradient(pose, offset)?, offset.offset_px)))
             .collect();
-        let prior = self.prior_information();
-        let prior_error = prior_error(pose, attitude);
+        let prior = self.config.tolerance.information();
+        let attitude_error = attitude_error(pose, attitude);
         // The samples' density decides how many of them tell something new.
         let repeats = (self.config.correlation_px / self.config.spacing_px).max(1.0);
         let mut step = Vector6::zeros();
@@ -195,7 +201,7 @@ impl Refiner {
                 information += scale * weight * gradient * gradient.transpose();
                 right += scale * weight * offset * gradient;
             }
-            step = (information + prior).cholesky()?.solve(&(right - prior * prior_error));
+            step = (information + prior).cholesky()?.solve(&(right - prior * attitude_error));
             sigma = robust_sigma(rows.iter().map(|(g, o)| o - g.dot(&step))).max(self.config.offset_sigma_px);
         }
         let covariance = (information + prior).try_inverse()?;
@@ -216,12 +222,6 @@ impl Refiner {
             along_normal.dot(change) / 2e-5
         }))
     }
-
-    fn prior_information(&self) -> Matrix6<f64> {
-        let AttitudeTolerance { height_m, angle_rad } = self.config.tolerance;
-        let [height, angle] = [height_m, angle_rad].map(|sigma| 1.0 / (sigma * sigma));
-        Matrix6::from_diagonal(&Vector6::new(0.0, 0.0, 0.0, height, angle, angle))
-    }
 }
 
 struct Step {
@@ -231,7 +231,7 @@ struct Step {
     residual_px: f64,
 }
 
-fn prior_error(pose: CameraPose, attitude: Attitude) -> Vector6<f64> {
+pub(super) fn attitude_error(pose: CameraPose, attitude: Attitude) -> Vector6<f64> {
     Vector6::new(
         0.0,
         0.0,
@@ -242,8 +242,20 @@ fn prior_error(pose: CameraPose, attitude: Attitude) -> Vector6<f64> {
     )
 }
 
+/// The step in the six numbers from one pose to another.
+pub(super) fn pose_difference(from: CameraPose, to: CameraPose) -> Vector6<f64> {
+    Vector6::new(
+        to.x_m - from.x_m,
+        to.y_m - from.y_m,
+        wrap_angle(to.yaw_rad - from.yaw_rad),
+        to.height_m - from.height_m,
+        to.pitch_rad - from.pitch_rad,
+        wrap_angle(to.roll_rad - from.roll_rad),
+    )
+}
+
 /// Median of the absolute values, scaled to a standard deviation.
-fn robust_sigma(values: impl Iterator<Item = f64>) -> f64 {
+pub(super) fn robust_sigma(values: impl Iterator<Item = f64>) -> f64 {
     let mut sizes: Vec<f64> = values.map(f64::abs).collect();
     if sizes.is_empty() {
         return 0.0;
