@@ -124,43 +124,44 @@ pub(crate) fn project_block(
             }
         }
     }
-    let [circle_u, circle_v, circle_r2] = camera.circle;
     for i in 0..LANES {
         let (u, v) = (pixels.u[i], pixels.v[i]);
-        let (du, dv) = (u - circle_u, v - circle_v);
-        let seen = (cos[i] >= camera.min_cos)
-            & (u >= 0.0)
-            & (u <= camera.max_u)
-            & (v >= 0.0)
-            & (v <= camera.max_v)
-            & (du * du + dv * dv <= circle_r2);
+        let seen =
+            (cos[i] >= camera.min_cos) & (u >= 0.0) & (u <= camera.max_u) & (v >= 0.0) & (v <= camera.max_v);
         pixels.seen[i] = f32::from(u8::from(seen));
+    }
+    if let Some([circle_u, circle_v, radius_squared]) = camera.circle {
+        for i in 0..LANES {
+            let (du, dv) = (pixels.u[i] - circle_u, pixels.v[i] - circle_v);
+            let inside = du * du + dv * dv <= radius_squared;
+            pixels.seen[i] *= f32::from(u8::from(inside));
+        }
     }
     Some(pixels)
 }
 
-/// Bilinear values (0–255) at sixteen pixels; lanes that are not seen give some value of the picture.
+/// Bilinear values (0–255) at sixteen pixels; 0 where a point is not seen.
 #[inline(always)]
 pub(crate) fn sample_block(texture: &Texture, pixels: &Pixels) -> Lanes {
-    /// Adding 2²³ leaves a float's integer part in the low bits of its mantissa.
-    const SHIFT: f32 = 8_388_608.0;
-    let (max_u, max_v) = ((texture.width - 1) as f32, (texture.height - 1) as f32);
+    /// 1.5 · 2²³: adding it leaves a float's nearest integer in the low bits of its mantissa.
+    const SHIFT: f32 = 12_582_912.0;
+    const INTEGER_BITS: u32 = 0x003f_ffff;
     let mut index = [0u32; LANES];
     let (mut fu, mut fv) = ([0.0_f32; LANES], [0.0_f32; LANES]);
     for i in 0..LANES {
-        // max() and min() also turn NaN into 0.
-        let u = pixels.u[i].max(0.0).min(max_u);
-        let v = pixels.v[i].max(0.0).min(max_v);
-        let (column, row) = ((u - 0.5).max(0.0) + SHIFT, (v - 0.5).max(0.0) + SHIFT);
+        let (u, v) = (pixels.u[i], pixels.v[i]);
+        let (column, row) = ((u - 0.5) + SHIFT, (v - 0.5) + SHIFT);
         fu[i] = u - (column - SHIFT);
         fv[i] = v - (row - SHIFT);
-        index[i] = (row.to_bits() & 0x007f_ffff)
-            .wrapping_mul(texture.width)
-            .wrapping_add(column.to_bits() & 0x007f_ffff);
+        let (column, row) = (column.to_bits() & INTEGER_BITS, row.to_bits() & INTEGER_BITS);
+        index[i] = row.wrapping_mul(texture.width).wrapping_add(column);
     }
+    // The texels' number is a power of two: the mask costs less than a test for each load, and makes the place of a
+    // point that is not seen harmless.
+    let mask = texture.texels.len() - 1;
     let mut texel = [0u32; LANES];
     for i in 0..LANES {
-        texel[i] = texture.texels.get(index[i] as usize).copied().unwrap_or(0);
+        texel[i] = texture.texels[index[i] as usize & mask];
     }
     let mut value = [0.0_f32; LANES];
     for i in 0..LANES {
@@ -170,7 +171,7 @@ pub(crate) fn sample_block(texture: &Texture, pixels: &Pixels) -> Lanes {
         let p11 = (texel[i] >> 24) as f32;
         let top = p00 + fu[i] * (p10 - p00);
         let bottom = p01 + fu[i] * (p11 - p01);
-        value[i] = top + fv[i] * (bottom - top);
+        value[i] = if pixels.seen[i] > 0.0 { top + fv[i] * (bottom - top) } else { 0.0 };
     }
     value
 }
@@ -188,7 +189,7 @@ pub(crate) fn sum_along_lines(
         let Some(pixels) = project_block(camera, pose, block) else { continue };
         let value = sample_block(texture, &pixels);
         for i in 0..LANES {
-            sum[i] += pixels.seen[i] * value[i];
+            sum[i] += value[i];
             seen[i] += pixels.seen[i];
         }
     }

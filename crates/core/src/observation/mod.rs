@@ -243,7 +243,7 @@ impl Scorer for CpuScorer {
 /// The cap minus the distance to the next white pixel, in [`DISTANCE_UNITS_PER_PX`].
 fn nearness(picture: &Prepared, max_distance_px: f32) -> GrayImage {
     let cap = (max_distance_px * DISTANCE_UNITS_PER_PX).clamp(0.0, 255.0) as u8;
-    let mut field = distance_field(&picture.evidence);
+    let mut field = distance_field(&picture.evidence());
     field.iter_mut().for_each(|value| *value = cap.saturating_sub(*value));
     field
 }

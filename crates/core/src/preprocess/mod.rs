@@ -16,7 +16,9 @@ pub use self::{
     grey::{luma, whiteness},
     prepared::{Prepared, Preprocessor},
     texture::Texture,
-    white_line::{DISTANCE_UNITS_PER_PX, LineScale, WhiteLevels, distance_field, white_line_evidence},
+    white_line::{
+        DISTANCE_UNITS_PER_PX, LineScale, WhiteLevels, distance_field, white_levels, white_line_evidence,
+    },
 };
 use crate::pose::CameraPose;
 

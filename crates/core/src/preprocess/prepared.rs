@@ -3,7 +3,8 @@
 use image::{GrayImage, RgbImage};
 
 use super::{
-    Attitude, BorderDetector, FieldBorder, LineScale, WhiteLevels, luma, white_line_evidence, whiteness,
+    Attitude, BorderDetector, FieldBorder, LineScale, WhiteLevels, luma, white_levels, white_line_evidence,
+    whiteness,
 };
 use crate::camera::Camera;
 
@@ -14,12 +15,18 @@ pub struct Prepared {
     pub luma: GrayImage,
     /// Smallest channel: bright only on white.
     pub whiteness: GrayImage,
-    /// White pixels (255) inside the border.
-    pub evidence: GrayImage,
     /// Whiteness of carpet and lines.
     pub levels: WhiteLevels,
     /// The field's border.
     pub border: FieldBorder,
+    scale: LineScale,
+}
+
+impl Prepared {
+    /// White pixels (255) inside the border. Made anew at each call: not every observation model needs it.
+    pub fn evidence(&self) -> GrayImage {
+        white_line_evidence(&self.whiteness, &self.border, self.scale, &self.levels)
+    }
 }
 
 /// Prepares pictures of one camera on one field.
@@ -46,7 +53,7 @@ impl Preprocessor {
             line_width_m: self.line_width_m,
             height_m: attitude.height_m as f32,
         };
-        let (evidence, levels) = white_line_evidence(&whiteness, &border, scale);
-        Prepared { luma, whiteness, evidence, levels, border }
+        let levels = white_levels(&whiteness, &border, scale);
+        Prepared { luma, whiteness, levels, border, scale }
     }
 }

@@ -4,11 +4,18 @@ use image::GrayImage;
 
 /// Each texel holds its own value and those of its right, lower and lower right neighbours in one 32-bit word, so
 /// that a bilinear look-up costs one load instead of four.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
     pub(crate) width: u32,
     pub(crate) height: u32,
     pub(crate) texels: Vec<u32>,
+}
+
+impl Default for Texture {
+    /// One black pixel.
+    fn default() -> Self {
+        Self { width: 1, height: 1, texels: vec![0] }
+    }
 }
 
 impl Texture {
@@ -16,7 +23,7 @@ impl Texture {
     pub fn pack(picture: &GrayImage) -> Self {
         let (width, height) = picture.dimensions();
         let values = picture.as_raw();
-        let mut texels = Vec::with_capacity(values.len());
+        let mut texels = Vec::with_capacity(values.len().next_power_of_two());
         for y in 0..height as usize {
             let row = &values[y * width as usize..][..width as usize];
             let below = &values[(y + 1).min(height as usize - 1) * width as usize..][..width as usize];
@@ -25,6 +32,8 @@ impl Texture {
             texels.extend((0..row.len() - 1).map(|x| word(x, x + 1)));
             texels.push(word(row.len() - 1, row.len() - 1));
         }
+        // Filled up to a power of two, see the look-up in the scoring loop.
+        texels.resize(texels.len().next_power_of_two(), 0);
         Self { width, height, texels }
     }
 

@@ -23,48 +23,52 @@ pub struct LineScale {
     pub height_m: f32,
 }
 
+/// Rows looked at to learn the picture's levels: every this many.
+const LEVEL_ROWS: usize = 4;
+
 /// White pixels (255) on the field: brighter than what lies just more than a line's width away on both sides, along the
-/// row or along the column. Light that changes over the carpet does not change that; the threshold is Otsu's.
+/// row or along the column. Light that changes over the carpet does not change that.
 pub fn white_line_evidence(
     whiteness: &GrayImage,
     border: &FieldBorder,
     scale: LineScale,
-) -> (GrayImage, WhiteLevels) {
-    let ridges = ridges(whiteness, border, scale);
-    let mut histogram = [0_u32; 256];
-    for (&ridge, &value) in ridges.as_raw().iter().zip(whiteness.as_raw()) {
-        // What is no ridge at all would only drown the lines.
-        if ridge > MIN_RIDGE {
-            histogram[usize::from(value.min(ridge))] += 1;
-        }
-    }
-    let threshold = otsu(&histogram);
-    let mut evidence = ridges;
-    let (mut line, mut flank, mut count) = (0.0, 0.0, 0.0_f32);
-    for (value, &white) in evidence.iter_mut().zip(whiteness.as_raw()) {
-        if *value > threshold {
-            line += f32::from(white);
-            flank += f32::from(white) - f32::from(*value);
-            count += 1.0;
-            *value = 255;
-        } else {
-            *value = 0;
-        }
-    }
-    let levels = match count > 0.0 {
-        true => WhiteLevels { carpet: flank / count, line: line / count },
-        false => WhiteLevels { carpet: 0.0, line: 255.0 },
-    };
-    (evidence, levels)
+    levels: &WhiteLevels,
+) -> GrayImage {
+    let mut evidence = ridges(whiteness, border, scale, 1);
+    evidence.iter_mut().for_each(|value| *value = if *value > levels.threshold { 255 } else { 0 });
+    evidence
 }
 
-/// By how much each pixel inside the border is brighter than both its flanks, along the row or along the column.
-fn ridges(whiteness: &GrayImage, border: &FieldBorder, scale: LineScale) -> GrayImage {
+/// How bright lines and carpet are in a picture, and how much brighter than its flanks a white pixel must be: Otsu's
+/// threshold among the pixels that are brighter at all.
+pub fn white_levels(whiteness: &GrayImage, border: &FieldBorder, scale: LineScale) -> WhiteLevels {
+    let ridges = ridges(whiteness, border, scale, LEVEL_ROWS);
+    // What is no ridge at all would only drown the lines.
+    let candidates =
+        || ridges.as_raw().iter().zip(whiteness.as_raw()).filter(|(ridge, _)| **ridge > MIN_RIDGE);
+    let mut histogram = [0_u32; 256];
+    candidates().for_each(|(&ridge, _)| histogram[usize::from(ridge)] += 1);
+    let threshold = otsu(&histogram);
+    let (mut line, mut flank, mut count) = (0.0, 0.0, 0.0_f32);
+    for (&ridge, &white) in candidates().filter(|(ridge, _)| **ridge > threshold) {
+        line += f32::from(white);
+        flank += f32::from(white - ridge);
+        count += 1.0;
+    }
+    match count > 0.0 {
+        true => WhiteLevels { carpet: flank / count, line: line / count, threshold },
+        false => WhiteLevels { carpet: 0.0, line: 255.0, threshold },
+    }
+}
+
+/// By how much each pixel inside the border, in some of the rows, is brighter than both its flanks, along the row or along
+/// the column.
+fn ridges(whiteness: &GrayImage, border: &FieldBorder, scale: LineScale, every: usize) -> GrayImage {
     let (width, height) = (whiteness.width() as usize, whiteness.height() as usize);
     let values = whiteness.as_raw();
     let mut ridges = vec![0_u8; values.len()];
     let per_depression = scale.focal_px * scale.line_width_m / scale.height_m.max(0.01);
-    ridges.par_chunks_mut(width.max(1)).enumerate().for_each(|(v, row)| {
+    ridges.par_chunks_mut(width.max(1)).enumerate().filter(|(v, _)| v % every == 0).for_each(|(v, row)| {
         for (u, ridge) in row.iter_mut().enumerate() {
             let depression = border.depression(u as u32, v as u32);
             if depression <= 0.0 {
@@ -112,6 +116,8 @@ pub struct WhiteLevels {
     pub carpet: f32,
     /// Mean on the lines.
     pub line: f32,
+    /// A pixel brighter than both its flanks by more than this is white.
+    pub threshold: u8,
 }
 
 impl WhiteLevels {
