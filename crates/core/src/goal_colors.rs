@@ -90,3 +90,34 @@ fn chromaticity(rgb: [u8; 3]) -> Option<[f64; 2]> {
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_scene;
+
+    #[test]
+    fn goals_of_the_right_colour_speak_for_a_pose_and_swapped_ones_against_it() {
+        let (camera, field) = (test_scene::fisheye(), test_scene::field());
+        let colors = GoalColors::new(&camera, &field).unwrap();
+        let pose =
+            CameraPose { x_m: 1.5, y_m: 0.2, yaw_rad: 0.0, height_m: 0.5, pitch_rad: 0.1, roll_rad: 0.0 };
+        let painted = |color: Option<[u8; 3]>| {
+            let mut picture = RgbImage::from_pixel(320, 240, image::Rgb([90, 90, 90]));
+            for (point, at_positive_x) in goal_points(&field) {
+                if let (true, Ok(pixel)) = (at_positive_x, camera.project(pose.camera_from_world(point))) {
+                    picture.put_pixel(
+                        pixel.x.round() as u32,
+                        pixel.y.round() as u32,
+                        image::Rgb(color.unwrap()),
+                    );
+                }
+            }
+            picture
+        };
+        assert!(colors.mirror_log_odds(&painted(field.goal_srgb_positive_x), pose) <= -1.0);
+        assert!(colors.mirror_log_odds(&painted(field.goal_srgb_negative_x), pose) >= 1.0);
+        let plain = FieldDimensions { goal_srgb_positive_x: None, ..field };
+        assert!(GoalColors::new(&camera, &plain).is_none());
+    }
+}

@@ -14,3 +14,6 @@ pub mod refine;
 pub mod search;
 pub mod sequence;
 pub mod tag;
+
+#[cfg(test)]
+mod test_scene;

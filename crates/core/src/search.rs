@@ -233,3 +233,36 @@ fn with_probabilities(modes: Vec<Mode>) -> Vec<Mode> {
     let weights = crate::filter::normalise(&log_weights);
     modes.into_iter().zip(weights).map(|(mode, probability)| Mode { probability, ..mode }).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{preprocess::Preprocessor, test_scene};
+
+    #[test]
+    fn a_picture_alone_tells_the_place_up_to_the_mirror() {
+        let (camera, field) = (test_scene::fisheye(), test_scene::field());
+        let mut search = GlobalSearch::new(&camera, &field, AttitudeTolerance::default());
+        for pose in test_scene::poses() {
+            let attitude =
+                Attitude { height_m: pose.height_m, pitch_rad: pose.pitch_rad, roll_rad: pose.roll_rad };
+            let picture = Preprocessor::new(&camera, field.line_width_m)
+                .prepare(&test_scene::render(&camera, pose, &field), attitude);
+            let error = |found: CameraPose| {
+                (found.x_m - pose.x_m).hypot(found.y_m - pose.y_m)
+                    + wrap_angle(found.yaw_rad - pose.yaw_rad).abs()
+            };
+            let modes = search.search(&picture, attitude, None, 1);
+            let best = modes[0].pose;
+            assert!(error(best).min(error(best.mirrored())) < 0.05, "{best:?} instead of {pose:?}");
+            assert!((modes.iter().map(|mode| mode.probability).sum::<f64>() - 1.0).abs() < 1e-9);
+
+            let prior = Prior {
+                pose: pose.planar().mirrored(),
+                sigma: PlanarSigma { position_m: 0.5, yaw_rad: 0.5 },
+            };
+            let modes = search.search(&picture, attitude, Some(prior), 1);
+            assert!(error(modes[0].pose.mirrored()) < 0.05, "a prior tells which of the two");
+        }
+    }
+}

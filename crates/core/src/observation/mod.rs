@@ -267,3 +267,6 @@ fn line_points(samples: &[LineSample], line_width_m: f64) -> LinePoints {
         right: ground_points(&clear, -flank),
     }
 }
+
+#[cfg(test)]
+mod tests;

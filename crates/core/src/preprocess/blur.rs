@@ -60,3 +60,56 @@ fn blur_column(across: &[f32], y: usize, kernel: &[f32], out: &mut [u8]) {
         *out = sum as u8;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use image::Luma;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// The same blur as a plain two-dimensional sum.
+    fn direct(picture: &GrayImage, sigma: f64) -> Vec<f64> {
+        let radius = (3.0 * sigma).ceil() as i64;
+        let (width, height) = (i64::from(picture.width()), i64::from(picture.height()));
+        let mut out = Vec::new();
+        for v in 0..height {
+            for u in 0..width {
+                let (mut sum, mut total) = (0.0, 0.0);
+                for dv in -radius..=radius {
+                    for du in -radius..=radius {
+                        let weight = (-0.5 * (du * du + dv * dv) as f64 / (sigma * sigma)).exp();
+                        let (x, y) = ((u + du).clamp(0, width - 1), (v + dv).clamp(0, height - 1));
+                        sum += weight * f64::from(picture.get_pixel(x as u32, y as u32).0[0]);
+                        total += weight;
+                    }
+                }
+                out.push(sum / total);
+            }
+        }
+        out
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+        #[test]
+        fn agrees_with_the_plain_sum(values in prop::collection::vec(any::<u8>(), 13 * 9), sigma in 0.3..2.5_f64) {
+            let picture = GrayImage::from_raw(13, 9, values).unwrap();
+            let blurred = gaussian_blur(&picture, sigma as f32);
+            for (value, expected) in blurred.as_raw().iter().zip(direct(&picture, sigma)) {
+                // Half a level for rounding, and what single precision adds.
+                prop_assert!((f64::from(*value) - expected).abs() <= 0.51);
+            }
+        }
+    }
+
+    #[test]
+    fn no_sigma_no_blur_and_tiny_pictures_survive() {
+        let picture = GrayImage::from_fn(2, 1, |u, _| Luma([u as u8 * 200]));
+        for sigma in [0.0, -1.0, f32::NAN] {
+            assert_eq!(gaussian_blur(&picture, sigma), picture);
+        }
+        assert_eq!(gaussian_blur(&GrayImage::new(0, 0), 2.0).dimensions(), (0, 0));
+        assert_eq!(gaussian_blur(&picture, 30.0).dimensions(), (2, 1));
+    }
+}

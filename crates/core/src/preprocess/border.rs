@@ -168,7 +168,8 @@ fn bearing_direction(bin: usize) -> Vec2 {
     let p = (bin as f32 + 0.5) * 4.0 / BEARINGS as f32;
     let direction = match p {
         p if p < 1.0 => Vec2::new(1.0 - p, p),
-        p if p < 3.0 => Vec2::new(1.0 - p, 2.0 - p),
+        p if p < 2.0 => Vec2::new(1.0 - p, 2.0 - p),
+        p if p < 3.0 => Vec2::new(p - 3.0, 2.0 - p),
         p => Vec2::new(p - 3.0, p - 4.0),
     };
     direction.normalize_or(Vec2::X)
@@ -266,4 +267,97 @@ fn ray_meets_edge(direction: Vec2, from: Vec2, to: Vec2) -> Option<f32> {
     let distance = from.perp_dot(edge) / denominator;
     let along = from.perp_dot(direction) / denominator;
     (distance > 0.0 && (-1e-4..=1.0001).contains(&along)).then_some(distance)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::TAU;
+
+    use glam::DVec2;
+    use image::Rgb;
+
+    use super::*;
+    use crate::{pose::CameraPose, test_scene};
+
+    fn attitude(pose: CameraPose) -> Attitude {
+        Attitude { height_m: pose.height_m, pitch_rad: pose.pitch_rad, roll_rad: pose.roll_rad }
+    }
+
+    /// Fractions of carpet called outside, and of anything else called inside, among pixels not near the border.
+    fn mistakes(picture: &RgbImage, pose: CameraPose) -> (f64, f64) {
+        let (camera, field) = (test_scene::fisheye(), test_scene::field());
+        let border = BorderDetector::new(&camera).detect(picture, attitude(pose));
+        let extent = field.carpet_half_extent_m();
+        let (mut carpet, mut lost, mut other, mut kept) = (0.0, 0.0, 0.0, 0.0);
+        for (u, v, _) in picture.enumerate_pixels() {
+            let on_carpet = |scale: f64| {
+                camera
+                    .unproject_to_ground(pose, DVec2::new(f64::from(u), f64::from(v)))
+                    .is_ok_and(|ground| (ground.abs() - scale * extent).max_element() < 0.0)
+            };
+            match (on_carpet(0.93), on_carpet(1.12)) {
+                (true, _) => {
+                    (carpet, lost) = (carpet + 1.0, lost + f64::from(u8::from(!border.contains(u, v))))
+                }
+                (_, false) => {
+                    (other, kept) = (other + 1.0, kept + f64::from(u8::from(border.contains(u, v))))
+                }
+                _ => (),
+            }
+        }
+        (lost / carpet, kept / other)
+    }
+
+    #[test]
+    fn carpet_is_inside_and_the_hall_is_outside() {
+        for pose in test_scene::poses() {
+            let picture = test_scene::render(&test_scene::fisheye(), pose, &test_scene::field());
+            let (lost, kept) = mistakes(&picture, pose);
+            assert!(lost < 0.03 && kept < 0.03, "{lost} of the carpet lost, {kept} of the hall kept");
+        }
+    }
+
+    #[test]
+    fn a_robot_in_front_does_not_move_the_border() {
+        let pose = test_scene::poses()[0];
+        let mut picture = test_scene::render(&test_scene::fisheye(), pose, &test_scene::field());
+        for (u, v) in (140..180).flat_map(|u| (40..190).map(move |v| (u, v))) {
+            picture.put_pixel(u, v, Rgb([30, 30, 90]));
+        }
+        let (lost, kept) = mistakes(&picture, pose);
+        assert!(lost < 0.03 && kept < 0.03, "{lost} of the carpet lost, {kept} of the hall kept");
+    }
+
+    #[test]
+    fn the_carpet_need_not_be_green_nor_the_picture_show_any() {
+        let pose = test_scene::poses()[1];
+        let mut picture = test_scene::render(&test_scene::fisheye(), pose, &test_scene::field());
+        picture.pixels_mut().for_each(|pixel| pixel.0.swap(0, 1));
+        let (lost, kept) = mistakes(&picture, pose);
+        assert!(lost < 0.03 && kept < 0.03, "red carpet: {lost} lost, {kept} kept");
+        for value in [0, 255] {
+            let flat = RgbImage::from_pixel(320, 240, Rgb([value; 3]));
+            BorderDetector::new(&test_scene::fisheye()).detect(&flat, attitude(pose));
+        }
+    }
+
+    #[test]
+    fn bearings_are_where_their_bins_are() {
+        for bin in 0..BEARINGS {
+            assert_eq!(usize::from(bearing_bin(bearing_direction(bin))), bin);
+        }
+        let angle = |bin: usize| bearing_direction(bin).to_angle().rem_euclid(TAU);
+        assert!((1..BEARINGS).all(|bin| angle(bin) > angle(bin - 1)));
+    }
+
+    #[test]
+    fn a_hull_is_convex_and_holds_all_points() {
+        let points: Vec<Vec2> =
+            (0..200).map(|i| Vec2::from_angle(i as f32) * ((i * 37 % 101) as f32)).collect();
+        let hull = convex_hull(points.clone());
+        for i in 0..hull.len() {
+            let (from, to) = (hull[i], hull[(i + 1) % hull.len()]);
+            assert!(points.iter().all(|point| (to - from).perp_dot(*point - from) >= -1e-2));
+        }
+    }
 }

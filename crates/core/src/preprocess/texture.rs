@@ -49,3 +49,31 @@ impl Texture {
         top + fv * (bottom - top)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use image::Luma;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn samples_are_bilinear(values in prop::collection::vec(any::<u8>(), 35), u in 0.0..6.0_f32, v in 0.0..4.0_f32) {
+            let picture = GrayImage::from_raw(7, 5, values).unwrap();
+            let at = |x: f32, y: f32| f32::from(picture.get_pixel((x as u32).min(6), (y as u32).min(4)).0[0]);
+            let (x, y) = (u.floor(), v.floor());
+            let (fx, fy) = (u - x, v - y);
+            let expected = (1.0 - fy) * ((1.0 - fx) * at(x, y) + fx * at(x + 1.0, y))
+                + fy * ((1.0 - fx) * at(x, y + 1.0) + fx * at(x + 1.0, y + 1.0));
+            prop_assert!((Texture::pack(&picture).sample(u, v) - expected).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn outside_the_edge_is_repeated() {
+        let texture = Texture::pack(&GrayImage::from_fn(3, 2, |u, v| Luma([(10 * u + v) as u8])));
+        assert_eq!(texture.sample(-5.0, 0.0), 0.0);
+        assert_eq!(texture.sample(9.0, 9.0), 21.0);
+    }
+}

@@ -177,3 +177,60 @@ pub fn distance_field(evidence: &GrayImage) -> GrayImage {
 
 /// Grey levels per pixel of distance in [`distance_field`].
 pub const DISTANCE_UNITS_PER_PX: f32 = 8.0;
+
+#[cfg(test)]
+mod tests {
+    use image::Luma;
+
+    use super::*;
+    use crate::{preprocess::Attitude, preprocess::Preprocessor, test_scene};
+
+    #[test]
+    fn the_distance_field_is_nearly_euclidean() {
+        let white = [(5, 7), (40, 12), (22, 30), (23, 30)];
+        let evidence =
+            GrayImage::from_fn(48, 36, |u, v| Luma([if white.contains(&(u, v)) { 255 } else { 0 }]));
+        let field = distance_field(&evidence);
+        for (u, v, value) in field.enumerate_pixels() {
+            let distance = white
+                .iter()
+                .map(|&(x, y)| (x as f32 - u as f32).hypot(y as f32 - v as f32))
+                .fold(f32::INFINITY, f32::min);
+            let measured = f32::from(value.0[0]) / DISTANCE_UNITS_PER_PX;
+            let cut = 255.0 / DISTANCE_UNITS_PER_PX;
+            assert!(
+                (measured - distance.min(cut)).abs() <= 0.03 * distance + 0.2,
+                "({u}, {v}): {measured} {distance}"
+            );
+        }
+    }
+
+    #[test]
+    fn evidence_is_where_lines_are_drawn() {
+        let (camera, field) = (test_scene::fisheye(), test_scene::field());
+        for pose in test_scene::poses() {
+            let attitude =
+                Attitude { height_m: pose.height_m, pitch_rad: pose.pitch_rad, roll_rad: pose.roll_rad };
+            let picture = test_scene::render(&camera, pose, &field);
+            let prepared = Preprocessor::new(&camera, field.line_width_m).prepare(&picture, attitude);
+            let evidence = prepared.evidence();
+            let (mut right, mut wrong) = (0, 0);
+            for (u, v, _) in evidence.enumerate_pixels().filter(|(_, _, pixel)| pixel.0[0] > 0) {
+                let pixel = glam::DVec2::new(f64::from(u), f64::from(v));
+                let ground = camera.unproject_to_ground(pose, pixel).unwrap();
+                let distance_m =
+                    field.curves().iter().map(|c| c.distance_m(ground)).fold(f64::INFINITY, f64::min);
+                // A pixel far away covers much ground.
+                let reach_m = 0.5 * field.line_width_m
+                    + 0.02 * (ground - pose.position_in_world().truncate()).length_squared();
+                if distance_m <= reach_m { right += 1 } else { wrong += 1 }
+            }
+            assert!(right > 500 && wrong * 50 < right, "{right} right, {wrong} wrong");
+            assert!(
+                (prepared.levels.line - 228.0).abs() < 25.0 && (prepared.levels.carpet - 60.0).abs() < 25.0,
+                "{:?}",
+                prepared.levels
+            );
+        }
+    }
+}

@@ -126,3 +126,56 @@ fn edges(profile: &[f64], peak: usize, half_width: f64, flank: f64) -> Option<(f
     })?;
     Some((below, above))
 }
+
+#[cfg(test)]
+mod tests {
+    use image::{GrayImage, Luma};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::field::LineSample;
+
+    /// A bright vertical bar with its centre at a fraction of a pixel, each pixel the exact share it is covered.
+    fn bar(centre: f64, width: f64) -> Texture {
+        let covered = |u: f64| {
+            ((u + 0.5).min(centre + width / 2.0) - (u - 0.5).max(centre - width / 2.0)).clamp(0.0, 1.0)
+        };
+        Texture::pack(&GrayImage::from_fn(80, 20, |u, _| {
+            Luma([(40.0 + 180.0 * covered(f64::from(u))).round() as u8])
+        }))
+    }
+
+    fn sample(u: f64, width: f64) -> VisibleSample {
+        let sample = LineSample {
+            point_in_world: DVec2::ZERO,
+            tangent_in_world: DVec2::Y,
+            length_m: 0.1,
+            clearance_m: 1.0,
+            curve: 0,
+        };
+        VisibleSample {
+            sample,
+            pixel: DVec2::new(u, 10.0),
+            normal_in_image: DVec2::X,
+            half_width_px: width / 2.0,
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn offsets_are_measured_to_a_small_fraction_of_a_pixel(centre in 36.0..44.0_f64, width in 2.0..8.0_f64, shift in -4.0..4.0_f64) {
+            let config = MeasureConfig { search_px: 6.0, min_contrast: 50.0 };
+            let found = measure_offsets(&bar(centre, width), &[sample(centre + shift, width)], config);
+            prop_assert_eq!(found.len(), 1);
+            prop_assert!((found[0].offset_px + shift).abs() < 0.12, "{} instead of {}", found[0].offset_px, -shift);
+        }
+    }
+
+    #[test]
+    fn what_is_no_line_of_that_width_is_not_measured() {
+        let config = MeasureConfig { search_px: 5.0, min_contrast: 50.0 };
+        assert!(measure_offsets(&bar(40.0, 20.0), &[sample(40.0, 3.0)], config).is_empty(), "a wall");
+        assert!(measure_offsets(&bar(70.0, 4.0), &[sample(40.0, 4.0)], config).is_empty(), "too far away");
+        assert!(measure_offsets(&bar(40.0, 4.0), &[sample(2.0, 4.0)], config).is_empty(), "at the edge");
+    }
+}

@@ -256,16 +256,77 @@ pub(super) fn pose_difference(from: CameraPose, to: CameraPose) -> Vector6<f64> 
 
 /// Median of the absolute values, scaled to a standard deviation.
 pub(super) fn robust_sigma(values: impl Iterator<Item = f64>) -> f64 {
-    let mut sizes: Vec<f64> = values.map(f64::abs).collect();
-    if sizes.is_empty() {
+    1.4826 * median(values.map(f64::abs))
+}
+
+/// The middle value; 0 of none.
+pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    if values.is_empty() {
         return 0.0;
     }
-    let middle = sizes.len() / 2;
-    1.4826 * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// Tukey's biweight with its usual constant.
 fn tukey(error_in_sigmas: f64) -> f64 {
     let ratio = error_in_sigmas / 4.685;
     if ratio.abs() < 1.0 { (1.0 - ratio * ratio).powi(2) } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{preprocess::whiteness, test_scene};
+
+    fn attitude(pose: CameraPose) -> Attitude {
+        Attitude { height_m: pose.height_m, pitch_rad: pose.pitch_rad, roll_rad: pose.roll_rad }
+    }
+
+    /// Pictures of 320 × 240 pixels: a pixel is about 1 cm of carpet near the camera.
+    #[test]
+    fn a_disturbed_pose_is_found_again_in_all_six_degrees_of_freedom() {
+        let (camera, field) = (test_scene::fisheye(), test_scene::field());
+        let refiner = Refiner::new(&camera, &field, RefineConfig::default());
+        for pose in test_scene::poses() {
+            let texture = Texture::pack(&whiteness(&test_scene::render(&camera, pose, &field)));
+            let guess = moved(pose, &Vector6::new(0.02, -0.03, 0.015, 0.01, 0.006, -0.005));
+            let fit = refiner.fit(&texture, guess, attitude(guess), 160.0).unwrap();
+            let error = pose_difference(pose, fit.pose);
+            assert!(error.fixed_rows::<2>(0).norm() < 0.006, "{error:?}");
+            assert!(error[2].abs() < 0.003 && error[3].abs() < 0.005, "{error:?}");
+            assert!(error[4].abs() < 0.003 && error[5].abs() < 0.003, "{error:?}");
+            assert!(fit.found > 0.4 && fit.residual_px < 0.4, "{fit:?}");
+            let nees = (error.transpose() * fit.covariance.try_inverse().unwrap() * error)[0];
+            // χ² of six degrees of freedom exceeds 30 in one of 25,000.
+            assert!(nees < 30.0, "covariance too small: {nees}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_fitted_where_no_line_is() {
+        let (camera, field, pose) = (test_scene::fisheye(), test_scene::field(), test_scene::poses()[0]);
+        let refiner = Refiner::new(&camera, &field, RefineConfig::default());
+        let grey = Texture::pack(&image::GrayImage::from_pixel(320, 240, image::Luma([90])));
+        assert!(refiner.fit(&grey, pose, attitude(pose), 100.0).is_none());
+        let nowhere = CameraPose { x_m: f64::NAN, ..pose };
+        assert!(refiner.fit(&grey, nowhere, attitude(pose), 100.0).is_none());
+    }
+
+    #[test]
+    fn a_mirrored_fit_is_the_fit_of_the_mirrored_pose() {
+        let fit = PoseFit {
+            pose: test_scene::poses()[0],
+            covariance: Matrix6::from_fn(|i, j| if i == j { 2.0 } else { 0.1 * (i + j) as f64 }),
+            information: Matrix6::identity(),
+            residual_px: 0.1,
+            found: 1.0,
+            offsets: 9,
+        };
+        let (mirrored, again) = (fit.mirrored(), fit.mirrored().mirrored());
+        assert_eq!(mirrored.covariance[(0, 1)], fit.covariance[(0, 1)], "x and y turn together");
+        assert_eq!(mirrored.covariance[(0, 2)], -fit.covariance[(0, 2)], "yaw does not");
+        assert!(pose_difference(fit.pose, again.pose).norm() < 1e-12);
+    }
 }

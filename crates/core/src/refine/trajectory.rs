@@ -4,7 +4,9 @@
 
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Vector3, Vector6};
 
-use super::picture::{AttitudeTolerance, PoseFit, attitude_error, moved, pose_difference};
+use super::picture::{
+    AttitudeTolerance, PoseFit, attitude_error, median, moved, pose_difference, robust_sigma,
+};
 use crate::{
     pose::{CameraPose, Motion2},
     preprocess::Attitude,
@@ -198,29 +200,168 @@ fn motion_gradients(from: CameraPose, to: CameraPose) -> (Matrix3x6<f64>, Matrix
     (j_from, j_to)
 }
 
-/// What the odometry is worth, from how well it agrees with neighbouring fits: the median deviation of each axis.
+/// What the odometry is worth, from how well it agrees with neighbouring fits: the median deviation of each axis, less
+/// what the fits themselves contribute.
 fn odometry_information(frames: &[TrajectoryFrame]) -> Matrix3<f64> {
-    let errors: Vec<Vector3<f64>> = frames
+    let pairs: Vec<(Vector3<f64>, Vector3<f64>)> = frames
         .windows(2)
-        .filter_map(|pair| Some(motion_error(pair[0].fit?.pose, pair[1].fit?.pose, pair[1].motion?)))
+        .filter_map(|pair| {
+            let (from, to) = (pair[0].fit?, pair[1].fit?);
+            let variances = planar_variances(&from) + planar_variances(&to);
+            Some((motion_error(from.pose, to.pose, pair[1].motion?), variances))
+        })
         .collect();
     Matrix3::from_diagonal(&Vector3::from_fn(|axis, _| {
-        let sigma = if errors.len() < 10 {
-            DEFAULT_ODOMETRY_SIGMA[axis]
+        let variance = if pairs.len() < 10 {
+            DEFAULT_ODOMETRY_SIGMA[axis].powi(2)
         } else {
-            super::picture::robust_sigma(errors.iter().map(|error| error[axis])).max(MIN_ODOMETRY_SIGMA[axis])
+            let deviation = robust_sigma(pairs.iter().map(|(error, _)| error[axis]));
+            let of_fits = median(pairs.iter().map(|(_, variances)| variances[axis]));
+            (deviation * deviation - of_fits).max(MIN_ODOMETRY_SIGMA[axis].powi(2))
         };
-        1.0 / (sigma * sigma)
+        1.0 / variance
     }))
 }
 
-/// Whether a picture's fit agrees with the chain within both covariances.
+/// Variances of a fit forwards, sideways (both as their mean: the heading does not matter) and in heading.
+fn planar_variances(fit: &PoseFit) -> Vector3<f64> {
+    let place = 0.5 * (fit.covariance[(0, 0)] + fit.covariance[(1, 1)]);
+    Vector3::new(place, place, fit.covariance[(2, 2)])
+}
+
+/// Whether a picture's fit agrees with what all others say. For a fit that is part of the chain that is its deviation
+/// from the chain against the difference of both covariances, which is the innovation of the chain without it.
 fn fits_chain(frame: &TrajectoryFrame, pose: CameraPose, covariance: Matrix6<f64>, used: bool) -> bool {
     let Some(fit) = frame.fit else { return false };
     let difference = pose_difference(pose, fit.pose);
-    // A fit that is part of the chain pulls it towards itself: its own covariance alone must explain the rest.
-    let spread = if used { fit.covariance } else { fit.covariance + covariance };
-    spread
-        .try_inverse()
-        .is_some_and(|inverse| (difference.transpose() * inverse * difference)[0] < OUTLIER_CHI2)
+    let alone = fit.information.try_inverse().unwrap_or(fit.covariance);
+    // A little of the fit's own covariance keeps the difference of two nearly equal ones positive.
+    let spread = if used { 1.05 * alone - covariance } else { alone + covariance };
+    spread.cholesky().is_some_and(|spread| difference.dot(&spread.solve(&difference)) < OUTLIER_CHI2)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+    use crate::filter::{Purpose, Stream};
+
+    const TOLERANCE: AttitudeTolerance = AttitudeTolerance { height_m: 0.03, angle_rad: 0.01 };
+
+    /// A walk whose pictures and odometry err as their covariances say; every third picture shows nothing.
+    fn walk(seed: u64, count: u32) -> (Vec<CameraPose>, Vec<TrajectoryFrame>) {
+        let truth: Vec<CameraPose> = (0..count)
+            .map(|i| {
+                let t = f64::from(i) * 0.1;
+                CameraPose {
+                    x_m: 2.0 * t.sin(),
+                    y_m: t.cos(),
+                    yaw_rad: 0.7 * t,
+                    height_m: 0.5,
+                    pitch_rad: 0.4,
+                    roll_rad: 0.0,
+                }
+            })
+            .collect();
+        let sigmas = Vector6::new(0.01, 0.02, 0.008, 0.005, 0.004, 0.003);
+        let covariance = Matrix6::from_diagonal(&sigmas.component_mul(&sigmas));
+        let normals = |purpose, i: usize| Stream::new(seed, purpose, i as u32, 0).normals(0);
+        let frames = (0..truth.len())
+            .map(|i| {
+                let n = Vector6::from(normals(Purpose::Predict, i));
+                let pose = moved(truth[i], &sigmas.component_mul(&n));
+                let fit = PoseFit {
+                    pose,
+                    covariance,
+                    information: covariance.try_inverse().unwrap(),
+                    residual_px: 0.1,
+                    found: 1.0,
+                    offsets: 100,
+                };
+                let o = normals(Purpose::Diffuse, i);
+                let motion = (i > 0).then(|| {
+                    let m = truth[i - 1].planar().motion_to(truth[i].planar());
+                    Motion2 {
+                        forward_m: m.forward_m + 0.005 * o[0],
+                        left_m: m.left_m + 0.005 * o[1],
+                        turn_rad: m.turn_rad + 0.004 * o[2],
+                    }
+                });
+                let a = normals(Purpose::Initialise, i);
+                let attitude = Attitude {
+                    height_m: 0.5 + 0.03 * a[0],
+                    pitch_rad: 0.4 + 0.01 * a[1],
+                    roll_rad: 0.01 * a[2],
+                };
+                TrajectoryFrame { guess: pose, fit: (i % 3 != 2).then_some(fit), attitude, motion }
+            })
+            .collect();
+        (truth, frames)
+    }
+
+    /// The block elimination against one dense solve of the same normal equations.
+    #[test]
+    fn the_chain_is_solved_as_a_dense_system_would_be() {
+        let (truth, frames) = walk(3, 9);
+        let used = vec![true; 9];
+        let chain = Chain::build(&frames, &truth, &used, odometry_information(&frames), TOLERANCE);
+        let mut dense = DMatrix::zeros(54, 54);
+        let mut right = DVector::zeros(54);
+        for i in 0..9 {
+            dense.view_mut((6 * i, 6 * i), (6, 6)).copy_from(&chain.diagonal[i]);
+            right.rows_mut(6 * i, 6).copy_from(&chain.right[i]);
+            if i < 8 {
+                dense.view_mut((6 * i, 6 * i + 6), (6, 6)).copy_from(&chain.beside[i]);
+                dense.view_mut((6 * i + 6, 6 * i), (6, 6)).copy_from(&chain.beside[i].transpose());
+            }
+        }
+        let (steps, covariances) = chain.solve().unwrap();
+        let inverse = dense.try_inverse().unwrap();
+        let expected = &inverse * right;
+        for i in 0..9 {
+            assert!((expected.rows(6 * i, 6) - steps[i]).norm() < 1e-9);
+            assert!((inverse.view((6 * i, 6 * i), (6, 6)) - covariances[i]).norm() < 1e-9 * inverse.norm());
+        }
+    }
+
+    #[test]
+    fn smoothing_is_better_than_single_pictures_and_knows_how_good_it_is() {
+        let (mut single, mut smooth, mut nees, mut gaps) = (0.0, 0.0, Vec::new(), 0.0_f64);
+        for seed in 0..12 {
+            let (truth, frames) = walk(seed, 60);
+            let smoothed = smooth_trajectory(&frames, TOLERANCE).unwrap();
+            for ((truth, frame), pose) in truth.iter().zip(&frames).zip(&smoothed) {
+                let error = pose_difference(*truth, pose.pose);
+                match frame.fit {
+                    Some(fit) => {
+                        single += pose_difference(*truth, fit.pose).norm_squared();
+                        smooth += error.norm_squared();
+                    }
+                    None => gaps = gaps.max(error.fixed_rows::<2>(0).norm()),
+                }
+                nees.push((error.transpose() * pose.covariance.try_inverse().unwrap() * error)[0]);
+            }
+        }
+        assert!(smooth < 0.7 * single, "{smooth} against {single}");
+        assert!(gaps < 0.05, "pictures without lines are up to {gaps} m off");
+        // Quantiles of χ² with six degrees of freedom. 720 correlated poses: a few per cent of play.
+        for (quantile, level) in [(5.348, 0.5), (10.645, 0.9), (12.592, 0.95)] {
+            let inside = nees.iter().filter(|value| **value < quantile).count() as f64 / nees.len() as f64;
+            assert!((inside - level).abs() < 0.06, "{inside} of the poses in the {level} region");
+        }
+    }
+
+    #[test]
+    fn a_fit_of_the_wrong_line_is_outvoted() {
+        let (truth, mut frames) = walk(5, 40);
+        let wrong = frames[21].fit.as_mut().unwrap();
+        wrong.pose.x_m += 0.6;
+        let smoothed = smooth_trajectory(&frames, TOLERANCE).unwrap();
+        assert!(!smoothed[21].picture_used);
+        assert!((smoothed[21].pose.x_m - truth[21].x_m).abs() < 0.04);
+        let none: Vec<TrajectoryFrame> =
+            frames.iter().map(|frame| TrajectoryFrame { fit: None, ..*frame }).collect();
+        assert!(smooth_trajectory(&none, TOLERANCE).is_none());
+    }
 }

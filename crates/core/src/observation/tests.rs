@@ -1,0 +1,150 @@
+use proptest::prelude::*;
+
+use super::{
+    kernel::{project_block, sum_along_lines},
+    *,
+};
+use crate::{
+    camera::{Distortion, Opencv, OpencvFisheye},
+    pose::Pose2,
+    preprocess::{Attitude, Preprocessor},
+    test_scene,
+};
+
+fn cameras() -> Vec<Camera> {
+    let fisheye = |k| Distortion::OpencvFisheye(OpencvFisheye { k });
+    let opencv = Opencv { k1: -0.12, k2: 0.03, p1: 0.001, p2: -0.002, k3: 0.0 };
+    let circle = crate::camera::ImageCircle { cx: 300.0, cy: 390.0, radius: 380.0 };
+    vec![
+        Camera::new([640, 480], [214.9, 214.9, 319.5, 239.5], fisheye([-0.058, 0.0082, -0.0009, 0.00005]))
+            .unwrap(),
+        Camera::new([608, 800], [330.2, 330.2, 292.1, 401.3], fisheye([-0.033, 0.001, 0.0, 0.0]))
+            .unwrap()
+            .with_image_circle(Some(circle)),
+        Camera::new([640, 480], [190.0, 190.0, 319.5, 239.5], fisheye([0.0; 4])).unwrap(),
+        Camera::new([640, 480], [620.0, 618.0, 306.9, 231.7], Distortion::Opencv(opencv)).unwrap(),
+        Camera::new([320, 240], [250.0, 250.0, 160.0, 120.0], Distortion::Pinhole).unwrap(),
+    ]
+}
+
+fn any_pose() -> impl Strategy<Value = CameraPose> {
+    (-4.0..4.0, -3.0..3.0, -3.1..3.1, 0.3..1.0, -0.2..0.9, -0.2..0.2)
+        .prop_map(|(x, y, yaw, h, pitch, roll)| CameraPose::new(Pose2::new(x, y, yaw), h, pitch, roll))
+}
+
+proptest! {
+    /// The single-precision loop against the double-precision camera, all models.
+    #[test]
+    fn the_loop_projects_as_the_camera_does(pose in any_pose()) {
+        let samples = sample_lines(&test_scene::field(), 0.1);
+        let points = ground_points(&samples, 0.0);
+        for camera in cameras() {
+            let kernel = KernelCamera::new(&camera);
+            for (block, ground) in points.blocks.iter().enumerate() {
+                let pixels = project_block(&kernel, &CameraFromGround::new(pose), ground);
+                for lane in 0..kernel::LANES {
+                    let Some(sample) = samples.get(block * kernel::LANES + lane) else { continue };
+                    let exact = camera.project(pose.camera_from_world(sample.point_in_world.extend(0.0)));
+                    let (seen, u, v) = pixels.map_or((false, 0.0, 0.0), |p| (p.seen[lane] > 0.0, p.u[lane], p.v[lane]));
+                    match exact {
+                        Ok(pixel) if seen => {
+                            let error = (pixel - glam::DVec2::new(f64::from(u), f64::from(v))).length();
+                            prop_assert!(error < 0.01, "{error} px off at {pixel}");
+                        }
+                        // At the picture's very edge the two may disagree by a rounding step.
+                        Ok(pixel) => {
+                            let (right, bottom) = (f64::from(camera.width - 1), f64::from(camera.height - 1));
+                            let edge = pixel.x.min(pixel.y).min(right - pixel.x).min(bottom - pixel.y);
+                            let rim = camera.image_circle.map_or(f64::INFINITY, |c| c.radius - pixel.distance(glam::DVec2::new(c.cx, c.cy)));
+                            prop_assert!(edge < 0.01 || rim < 0.01, "{pixel} was not seen");
+                        }
+                        Err(reason) => prop_assert!(!seen || (u.min(v) < 0.01 || matches!(reason, crate::camera::NoPixel::OutsideImage { pixel } | crate::camera::NoPixel::OutsideImageCircle { pixel } if (pixel.x as f32 - u).abs() < 0.01 && (pixel.y as f32 - v).abs() < 0.01)), "{reason}"),
+                    }
+                }
+            }
+        }
+    }
+
+    /// The sum against one written out in double precision.
+    #[test]
+    fn the_loop_sums_what_lies_along_the_lines(pose in any_pose(), seed in any::<u32>()) {
+        let picture = GrayImage::from_fn(640, 480, |u, v| {
+            image::Luma([((u * 7 + v * 3 + seed % 97) % 61 * 4) as u8])
+        });
+        let samples = sample_lines(&test_scene::field(), 0.05);
+        let (texture, points) = (Texture::pack(&picture), ground_points(&samples, 0.0));
+        let camera = &cameras()[0];
+        let [sum, seen] = sum_along_lines(&texture, &KernelCamera::new(camera), &CameraFromGround::new(pose), &points);
+        let (mut expected, mut count) = (0.0, 0.0);
+        for sample in &samples {
+            if let Ok(pixel) = camera.project(pose.camera_from_world(sample.point_in_world.extend(0.0))) {
+                expected += f64::from(texture.sample(pixel.x as f32, pixel.y as f32));
+                count += 1.0;
+            }
+        }
+        prop_assert!((f64::from(seen) - count).abs() <= 2.0);
+        let allowed = 1e-3 * expected + 1.0 * count + 2.0 * 255.0 * (f64::from(seen) - count).abs();
+        prop_assert!((f64::from(sum) - expected).abs() <= allowed, "{sum} instead of {expected}, {seen} and {count} seen");
+    }
+}
+
+/// Every model prefers the pose a picture was drawn from to poses a little beside it, and to poses far away.
+#[test]
+fn the_true_pose_scores_best() {
+    let (camera, field) = (test_scene::fisheye(), test_scene::field());
+    for pose in test_scene::poses() {
+        let attitude =
+            Attitude { height_m: pose.height_m, pitch_rad: pose.pitch_rad, roll_rad: pose.roll_rad };
+        let picture = test_scene::render(&camera, pose, &field);
+        let prepared = Preprocessor::new(&camera, field.line_width_m).prepare(&picture, attitude);
+        for kind in [ObservationKind::Gauss, ObservationKind::Distance, ObservationKind::Contrast] {
+            let mut scorer = CpuScorer::new(&camera, &field, ObservationConfig::new(kind));
+            scorer.load(&prepared);
+            let moved = |x: f64, y: f64, yaw: f64| CameraPose {
+                x_m: pose.x_m + x,
+                y_m: pose.y_m + y,
+                yaw_rad: pose.yaw_rad + yaw,
+                ..pose
+            };
+            let mut poses = vec![pose];
+            for step in [-1.0, 1.0] {
+                poses.extend([
+                    moved(0.08 * step, 0.0, 0.0),
+                    moved(0.0, 0.08 * step, 0.0),
+                    moved(0.0, 0.0, 0.06 * step),
+                ]);
+                poses.extend([moved(step, 0.3, 0.9), moved(0.5 * step, -0.7, -1.4)]);
+            }
+            let scores = scorer.log_weights(&poses);
+            assert!(scores[1..].iter().all(|score| *score < scores[0]), "{kind:?} at {pose:?}: {scores:?}");
+        }
+    }
+}
+
+/// More light must not change what the contrast model says.
+#[test]
+fn contrast_does_not_depend_on_the_light() {
+    let (camera, field, pose) = (test_scene::fisheye(), test_scene::field(), test_scene::poses()[0]);
+    let attitude = Attitude { height_m: pose.height_m, pitch_rad: pose.pitch_rad, roll_rad: pose.roll_rad };
+    let bright = test_scene::render(&camera, pose, &field);
+    let mut dim = bright.clone();
+    dim.iter_mut().for_each(|value| *value = (f32::from(*value) * 0.55) as u8);
+    let mut fraction = |picture| {
+        let mut scorer = CpuScorer::new(&camera, &field, ObservationConfig::new(ObservationKind::Contrast));
+        scorer.load(&Preprocessor::new(&camera, field.line_width_m).prepare(picture, attitude));
+        scorer.line_fraction(pose).unwrap()
+    };
+    let (bright, dim) = (fraction(&bright), fraction(&dim));
+    assert!(bright > 0.4 && (bright - dim).abs() < 0.05, "{bright} in full light, {dim} in half");
+}
+
+#[test]
+fn poses_without_sense_have_a_weight_all_the_same() {
+    let (camera, field) = (test_scene::fisheye(), test_scene::field());
+    for kind in [ObservationKind::Gauss, ObservationKind::Distance, ObservationKind::Contrast] {
+        let scorer = CpuScorer::new(&camera, &field, ObservationConfig::new(kind));
+        let nowhere = CameraPose { x_m: f64::NAN, ..Default::default() };
+        let far = CameraPose { x_m: 1e30, height_m: -3.0, ..Default::default() };
+        assert!(scorer.log_weights(&[nowhere, far]).iter().all(|weight| weight.is_finite()));
+    }
+}
