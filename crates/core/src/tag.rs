@@ -44,6 +44,8 @@ const SURE_FRACTION: f64 = 0.25;
 const SURE_RATIO: f64 = 0.55;
 /// A place found by search is sure when the next best one is at least this much worse (log-weight).
 const SURE_MARGIN: f64 = 6.0;
+/// A pose is sure while its mirror image is less probable than this.
+const MAX_MIRROR_PROBABILITY: f64 = 0.05;
 /// A search must beat the filter's own place by this much (log-weight) to move the particles.
 const MOVE_MARGIN: f64 = 4.0;
 /// Places that a search finds worse than the best one by more than this (log-weight) get no particles.
@@ -109,7 +111,10 @@ pub struct TaggedFrame {
     pub filter: FilterEstimate,
     /// Fraction of the line in view that the picture shows where the pose puts it.
     pub line_fraction: f64,
-    /// False while the pose may be wrong: after a search with several answers, or when the lines do not fit.
+    /// False while the lines do not fit, or may fit elsewhere as well; a settled pose may still be the mirror image of
+    /// the right one.
+    pub settled: bool,
+    /// Settled, and not the mirror image of the right pose: false while the pose may be wrong.
     pub sure: bool,
     /// Probability that the pose turned by 180° about the field's centre is the right one.
     pub mirror_probability: f64,
@@ -158,6 +163,17 @@ struct Prediction {
     sigma: PlanarSigma,
     motion: Option<Motion2>,
     carried: bool,
+}
+
+impl Track {
+    /// How far from the anchor the camera may be; farther with every picture that did not fit, where there is doubt.
+    fn search_sigma(&self, doubt: bool) -> PlanarSigma {
+        let times = if doubt { 1.0 + f64::from(self.doubtful) } else { 0.0 };
+        PlanarSigma {
+            position_m: self.anchor_sigma.position_m.max(times * LOST_SIGMA.position_m),
+            yaw_rad: self.anchor_sigma.yaw_rad.max(times * LOST_SIGMA.yaw_rad),
+        }
+    }
 }
 
 impl Tagger {
@@ -255,9 +271,13 @@ impl Tagger {
         track.filter.predict(prediction.motion);
         track.anchor = track.anchor.moved(prediction.motion.unwrap_or_default());
         track.anchor_sigma = track.anchor_sigma.plus(prediction.sigma);
+        if prediction.carried {
+            // Whoever carried the robot may have turned it round.
+            track.mirror_log_odds = 0.0;
+        }
         let mut searched = false;
         if self.config.recovery && (prediction.carried || prediction.sigma.position_m > SEARCH_SIGMA_M) {
-            let prior = Prior { pose: track.anchor, sigma: track.anchor_sigma };
+            let prior = Prior { pose: track.anchor, sigma: track.search_sigma(track.doubtful > 0) };
             let modes = self.search_modes(picture, recorded.attitude, Some(prior));
             place(&mut track.filter, &modes);
             track.unsettled = (!is_clear(&modes)).then_some(0);
@@ -305,11 +325,7 @@ impl Tagger {
         attitude: Attitude,
         estimate: FilterEstimate,
     ) -> FilterEstimate {
-        let doubt = 1.0 + f64::from(track.doubtful);
-        let sigma = PlanarSigma {
-            position_m: track.anchor_sigma.position_m.max(doubt * LOST_SIGMA.position_m),
-            yaw_rad: track.anchor_sigma.yaw_rad.max(doubt * LOST_SIGMA.yaw_rad),
-        };
+        let sigma = track.search_sigma(true);
         let prior = Prior { pose: track.anchor, sigma };
         let modes = self.search_modes(picture, attitude, Some(prior));
         let Some(best) = modes.first() else { return estimate };
@@ -359,11 +375,11 @@ impl Tagger {
             None => None,
         };
         track.doubtful = if fits { 0 } else { (track.doubtful + 1).min(8) };
-        let sure = fits && track.unsettled.is_none();
-        if fits && !sure {
+        let settled = fits && track.unsettled.is_none();
+        if fits && !settled {
             (track.anchor, track.anchor_sigma) = (pose.planar(), LIKELY_SIGMA);
         }
-        if sure {
+        if settled {
             (track.anchor, track.anchor_sigma) = (pose.planar(), SURE_SIGMA);
             let weight = if track.slow_fraction == 0.0 { 1.0 } else { SLOW };
             track.slow_fraction += weight * (line_fraction - track.slow_fraction);
@@ -379,7 +395,8 @@ impl Tagger {
             fit,
             filter: estimate,
             line_fraction,
-            sure,
+            settled,
+            sure: settled && mirror_probability < MAX_MIRROR_PROBABILITY,
             mirror_probability,
             motion,
             searched,
@@ -396,7 +413,7 @@ impl Tagger {
         attitude: Attitude,
         best: CameraPose,
     ) -> CameraPose {
-        let prior = Prior { pose: track.anchor, sigma: track.anchor_sigma };
+        let prior = Prior { pose: track.anchor, sigma: track.search_sigma(track.doubtful > 0) };
         let candidates: Vec<CameraPose> =
             [best, attitude.at(track.anchor)].iter().chain(track.filter.rivals()).copied().collect();
         self.search.best_of(picture, &candidates, attitude, Some(prior)).map_or(best, |mode| mode.pose)
@@ -420,6 +437,7 @@ impl Tagger {
             tagged.fit = tagged.fit.map(PoseFit::mirrored);
         }
         tagged.mirror_probability = crate::goal_colors::probability(track.mirror_log_odds);
+        tagged.sure = tagged.settled && tagged.mirror_probability < MAX_MIRROR_PROBABILITY;
     }
 }
 
@@ -504,7 +522,9 @@ pub fn smooth_sequence(
             motion: frame.motion,
         })
         .collect();
-    let Some(first) = smooth_trajectory(&frames, tagger.config.tolerance) else { return Ok(None) };
+    let Some(first) = smooth_trajectory(&frames, tagger.config.tolerance, tagger.config.filter.noise) else {
+        return Ok(None);
+    };
     for (index, smoothed) in first.iter().enumerate() {
         frames[index].guess = smoothed.pose;
         if !smoothed.picture_used {
@@ -512,7 +532,7 @@ pub fn smooth_sequence(
             frames[index].fit = tagger.refit(&picture, smoothed.pose, attitude(index));
         }
     }
-    Ok(smooth_trajectory(&frames, tagger.config.tolerance))
+    Ok(smooth_trajectory(&frames, tagger.config.tolerance, tagger.config.filter.noise))
 }
 
 fn sequence_attitude(sequence: &Sequence, index: usize) -> Attitude {

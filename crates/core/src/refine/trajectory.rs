@@ -8,16 +8,17 @@ use super::picture::{
     AttitudeTolerance, PoseFit, attitude_error, median, moved, pose_difference, robust_sigma,
 };
 use crate::{
+    filter::MotionNoise,
     pose::{CameraPose, Motion2},
     preprocess::Attitude,
 };
 
 /// Rounds of Gauss–Newton; the chain is nearly linear.
 const ROUNDS: usize = 6;
-/// Least standard deviation of the odometry between two pictures that is believed: sway of the body, metres and radians.
-const MIN_ODOMETRY_SIGMA: [f64; 3] = [0.003, 0.003, 0.003];
-/// Where no picture tells, the odometry is worth this much, metres and radians.
-const DEFAULT_ODOMETRY_SIGMA: [f64; 3] = [0.02, 0.02, 0.02];
+/// Least sway of the body between two pictures that is believed: standard deviations, metres and radians.
+const MIN_SWAY: [f64; 3] = [0.003, 0.003, 0.003];
+/// Sway where the pictures do not tell.
+const DEFAULT_SWAY: [f64; 3] = [0.02, 0.02, 0.02];
 /// A picture's fit this many times farther from the chain than its covariance says is another line (χ² of six).
 const OUTLIER_CHI2: f64 = 40.0;
 
@@ -50,17 +51,18 @@ pub struct SmoothedPose {
 pub fn smooth_trajectory(
     frames: &[TrajectoryFrame],
     tolerance: AttitudeTolerance,
+    noise: MotionNoise,
 ) -> Option<Vec<SmoothedPose>> {
     if !frames.iter().any(|frame| frame.fit.is_some()) {
         return None;
     }
-    let odometry = odometry_information(frames);
+    let odometry = OdometryNoise::learn(frames, noise);
     let mut poses: Vec<CameraPose> =
         frames.iter().map(|frame| frame.fit.map_or(frame.guess, |fit| fit.pose)).collect();
     let mut used: Vec<bool> = frames.iter().map(|frame| frame.fit.is_some()).collect();
     let mut covariances = Vec::new();
     for round in 0..ROUNDS {
-        let chain = Chain::build(frames, &poses, &used, odometry, tolerance);
+        let chain = Chain::build(frames, &poses, &used, &odometry, tolerance);
         let (steps, marginals) = chain.solve()?;
         for (pose, step) in poses.iter_mut().zip(&steps) {
             *pose = moved(*pose, step);
@@ -96,7 +98,7 @@ impl Chain {
         frames: &[TrajectoryFrame],
         poses: &[CameraPose],
         used: &[bool],
-        odometry: Matrix3<f64>,
+        odometry: &OdometryNoise,
         tolerance: AttitudeTolerance,
     ) -> Self {
         let prior = tolerance.information();
@@ -116,7 +118,7 @@ impl Chain {
                 chain.right[index] += fit.information * pose_difference(poses[index], fit.pose);
             }
             if let (Some(motion), true) = (frames[index].motion, index > 0) {
-                chain.add_motion(index, poses[index - 1], poses[index], motion, odometry);
+                chain.add_motion(index, poses[index - 1], poses[index], motion, odometry.information(motion));
             }
         }
         chain
@@ -200,27 +202,47 @@ fn motion_gradients(from: CameraPose, to: CameraPose) -> (Matrix3x6<f64>, Matrix
     (j_from, j_to)
 }
 
-/// What the odometry is worth, from how well it agrees with neighbouring fits: the median deviation of each axis, less
-/// what the fits themselves contribute.
-fn odometry_information(frames: &[TrajectoryFrame]) -> Matrix3<f64> {
-    let pairs: Vec<(Vector3<f64>, Vector3<f64>)> = frames
-        .windows(2)
-        .filter_map(|pair| {
-            let (from, to) = (pair[0].fit?, pair[1].fit?);
-            let variances = planar_variances(&from) + planar_variances(&to);
-            Some((motion_error(from.pose, to.pose, pair[1].motion?), variances))
-        })
-        .collect();
-    Matrix3::from_diagonal(&Vector3::from_fn(|axis, _| {
-        let variance = if pairs.len() < 10 {
-            DEFAULT_ODOMETRY_SIGMA[axis].powi(2)
-        } else {
+/// What the odometry is worth: a part that grows with the motion, and sway of the body, which does not.
+struct OdometryNoise {
+    growing: MotionNoise,
+    sway: Vector3<f64>,
+}
+
+impl OdometryNoise {
+    /// Learns the sway from how well the odometry agrees with neighbouring fits: the median deviation of each axis, less
+    /// what the fits themselves and the growing part contribute.
+    fn learn(frames: &[TrajectoryFrame], noise: MotionNoise) -> Self {
+        let growing = MotionNoise { still_m: 0.0, still_rad: 0.0, ..noise };
+        let mut odometry = Self { growing, sway: Vector3::zeros() };
+        let pairs: Vec<(Vector3<f64>, Vector3<f64>)> = frames
+            .windows(2)
+            .filter_map(|pair| {
+                let (from, to, motion) = (pair[0].fit?, pair[1].fit?, pair[1].motion?);
+                let known = planar_variances(&from) + planar_variances(&to) + odometry.variances(motion);
+                Some((motion_error(from.pose, to.pose, motion), known))
+            })
+            .collect();
+        odometry.sway = Vector3::from_fn(|axis, _| {
+            if pairs.len() < 10 {
+                return DEFAULT_SWAY[axis].powi(2);
+            }
             let deviation = robust_sigma(pairs.iter().map(|(error, _)| error[axis]));
-            let of_fits = median(pairs.iter().map(|(_, variances)| variances[axis]));
-            (deviation * deviation - of_fits).max(MIN_ODOMETRY_SIGMA[axis].powi(2))
-        };
-        1.0 / variance
-    }))
+            let known = median(pairs.iter().map(|(_, known)| known[axis]));
+            (deviation * deviation - known).max(MIN_SWAY[axis].powi(2))
+        });
+        odometry
+    }
+
+    /// Variances forwards, to the left and in heading.
+    fn variances(&self, motion: Motion2) -> Vector3<f64> {
+        let sigma = self.growing.sigma(Some(motion));
+        let place = sigma.position_m * sigma.position_m;
+        self.sway + Vector3::new(place, place, sigma.yaw_rad * sigma.yaw_rad)
+    }
+
+    fn information(&self, motion: Motion2) -> Matrix3<f64> {
+        Matrix3::from_diagonal(&self.variances(motion).map(|variance| 1.0 / variance))
+    }
 }
 
 /// Variances of a fit forwards, sideways (both as their mean: the heading does not matter) and in heading.
@@ -247,6 +269,16 @@ mod tests {
     use super::*;
     use crate::filter::{Purpose, Stream};
 
+    /// The walk's odometry errs by the same, however far it goes.
+    const STEADY: MotionNoise = MotionNoise {
+        still_m: 0.0,
+        still_rad: 0.0,
+        m_per_m: 0.0,
+        rad_per_rad: 0.0,
+        rad_per_m: 0.0,
+        unknown_m: 0.0,
+        unknown_rad: 0.0,
+    };
     const TOLERANCE: AttitudeTolerance = AttitudeTolerance { height_m: 0.03, angle_rad: 0.01 };
 
     /// A walk whose pictures and odometry err as their covariances say; every third picture shows nothing.
@@ -305,7 +337,7 @@ mod tests {
     fn the_chain_is_solved_as_a_dense_system_would_be() {
         let (truth, frames) = walk(3, 9);
         let used = vec![true; 9];
-        let chain = Chain::build(&frames, &truth, &used, odometry_information(&frames), TOLERANCE);
+        let chain = Chain::build(&frames, &truth, &used, &OdometryNoise::learn(&frames, STEADY), TOLERANCE);
         let mut dense = DMatrix::zeros(54, 54);
         let mut right = DVector::zeros(54);
         for i in 0..9 {
@@ -330,7 +362,7 @@ mod tests {
         let (mut single, mut smooth, mut nees, mut gaps) = (0.0, 0.0, Vec::new(), 0.0_f64);
         for seed in 0..12 {
             let (truth, frames) = walk(seed, 60);
-            let smoothed = smooth_trajectory(&frames, TOLERANCE).unwrap();
+            let smoothed = smooth_trajectory(&frames, TOLERANCE, STEADY).unwrap();
             for ((truth, frame), pose) in truth.iter().zip(&frames).zip(&smoothed) {
                 let error = pose_difference(*truth, pose.pose);
                 match frame.fit {
@@ -357,11 +389,11 @@ mod tests {
         let (truth, mut frames) = walk(5, 40);
         let wrong = frames[21].fit.as_mut().unwrap();
         wrong.pose.x_m += 0.6;
-        let smoothed = smooth_trajectory(&frames, TOLERANCE).unwrap();
+        let smoothed = smooth_trajectory(&frames, TOLERANCE, STEADY).unwrap();
         assert!(!smoothed[21].picture_used);
         assert!((smoothed[21].pose.x_m - truth[21].x_m).abs() < 0.04);
         let none: Vec<TrajectoryFrame> =
             frames.iter().map(|frame| TrajectoryFrame { fit: None, ..*frame }).collect();
-        assert!(smooth_trajectory(&none, TOLERANCE).is_none());
+        assert!(smooth_trajectory(&none, TOLERANCE, STEADY).is_none());
     }
 }

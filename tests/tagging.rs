@@ -1,0 +1,141 @@
+//! What a recording's tags are worth, on the demonstration walk: from nowhere, after being carried, and smoothed.
+
+use std::path::Path;
+
+use reality_sim::{
+    CameraPose, ObservationKind, Pose2, Sequence, TagConfig, TaggedFrame, Tagger,
+    tag::{smooth_sequence, tag_sequence},
+};
+
+fn walk() -> Sequence {
+    Sequence::open(Path::new("assets/walk")).expect("the demonstration walk is part of the repository")
+}
+
+/// The frames of a range, as a recording of its own.
+fn cut(mut sequence: Sequence, frames: std::ops::Range<usize>) -> Sequence {
+    sequence.frames = sequence.frames[frames.clone()].to_vec();
+    sequence.groundtruth = sequence.groundtruth[frames].to_vec();
+    sequence
+}
+
+fn tag(sequence: &Sequence, start: Option<Pose2>, config: TagConfig) -> (Tagger, Vec<TaggedFrame>) {
+    let mut tagger = Tagger::new(&sequence.setup.camera, &sequence.field, start, config);
+    let tagged = tag_sequence(sequence, &mut tagger, |_, _, _, _| Ok(())).expect("every picture can be read");
+    (tagger, tagged)
+}
+
+fn is_right(pose: CameraPose, truth: CameraPose) -> bool {
+    let turn = (pose.yaw_rad - truth.yaw_rad).sin().atan2((pose.yaw_rad - truth.yaw_rad).cos());
+    (pose.x_m - truth.x_m).hypot(pose.y_m - truth.y_m) < 0.5 && turn.abs() < 0.5
+}
+
+#[test]
+fn found_from_nowhere_without_odometry_within_five_pictures() {
+    let config = TagConfig { odometry: false, ..TagConfig::new(ObservationKind::Contrast) };
+    for first in [0, 9, 21, 33, 47, 55] {
+        let sequence = cut(walk(), first..first + 5);
+        let (_, tagged) = tag(&sequence, None, config);
+        let (last, truth) = (&tagged[4], sequence.groundtruth[4].expect("exact truth"));
+        assert!(
+            is_right(last.pose, truth) || is_right(last.pose.mirrored(), truth),
+            "from picture {first}: {:?} instead of {truth:?}",
+            last.pose
+        );
+    }
+}
+
+#[test]
+fn goals_of_two_colours_tell_the_halves_apart() {
+    let config = TagConfig::new(ObservationKind::Contrast);
+    let sequence = walk();
+    let (_, tagged) = tag(&sequence, None, config);
+    let last = tagged.last().expect("sixty pictures");
+    assert!(is_right(last.pose, sequence.groundtruth[59].expect("exact truth")));
+    assert!(last.mirror_probability < 0.05, "{}", last.mirror_probability);
+
+    let plain = Sequence {
+        field: reality_sim::FieldDimensions {
+            goal_srgb_positive_x: None,
+            goal_srgb_negative_x: None,
+            ..sequence.field.clone()
+        },
+        ..cut(sequence, 0..3)
+    };
+    let (_, tagged) = tag(&plain, None, config);
+    assert!(tagged.iter().all(|frame| frame.mirror_probability == 0.5), "nothing tells them apart");
+}
+
+/// Carried while nobody looked: pictures are missing, and the odometry starts again.
+#[test]
+fn found_again_after_being_carried_and_never_sure_while_wrong() {
+    for kind in [ObservationKind::Contrast, ObservationKind::Gauss, ObservationKind::Distance] {
+        let mut sequence = walk();
+        let origin = sequence.frames[40].odometry.expect("the walk has odometry");
+        for frame in &mut sequence.frames[40..] {
+            let motion = origin.motion_to(frame.odometry.expect("the walk has odometry"));
+            frame.odometry = Some(Pose2::default().moved(motion));
+        }
+        sequence.frames.drain(10..40);
+        sequence.groundtruth.drain(10..40);
+        let (_, tagged) = tag(&sequence, sequence.start, TagConfig::new(kind));
+        for (index, frame) in tagged.iter().enumerate() {
+            let truth = sequence.groundtruth[index].expect("exact truth");
+            let right = is_right(frame.pose, truth);
+            assert!(right || !frame.sure, "{kind:?}: sure and wrong at picture {index}");
+            // Which half it was put down in, only the colours of the goals tell, once one is in view.
+            let found = right || is_right(frame.pose.mirrored(), truth);
+            assert!(found || (10..20).contains(&index), "{kind:?}: lost at picture {index}");
+        }
+    }
+}
+
+/// Pose errors in units of their covariance, against the quantiles of χ² with three degrees of freedom.
+#[test]
+fn smoothed_poses_are_exact_and_their_covariances_honest() {
+    let sequence = walk();
+    let config = TagConfig { refine: true, ..TagConfig::new(ObservationKind::Contrast) };
+    let (tagger, tagged) = tag(&sequence, sequence.start, config);
+    let smoothed = smooth_sequence(&sequence, &tagger, &tagged)
+        .expect("every picture can be read")
+        .expect("there are lines");
+    let (mut worst_m, mut inside) = (0.0_f64, [0; 3]);
+    for (pose, truth) in smoothed.iter().zip(&sequence.groundtruth) {
+        let truth = truth.expect("exact truth");
+        let error = [pose.pose.x_m - truth.x_m, pose.pose.y_m - truth.y_m, pose.pose.yaw_rad - truth.yaw_rad];
+        worst_m = worst_m.max(error[0].hypot(error[1]));
+        let planar = pose.covariance.fixed_view::<3, 3>(0, 0).into_owned();
+        let inverse = planar.try_inverse().expect("a covariance is positive");
+        let squared: f64 =
+            (0..3).map(|i| (0..3).map(|j| error[i] * inverse[(i, j)] * error[j]).sum::<f64>()).sum();
+        for (count, quantile) in inside.iter_mut().zip([2.366, 6.251, 7.815]) {
+            *count += usize::from(squared < quantile);
+        }
+    }
+    assert!(worst_m < 0.016, "{worst_m} m");
+    // Sixty poses: two standard errors of a count are 8, 5 and 4.
+    let [half, ninety, ninety_five] = inside;
+    assert!((20..=46).contains(&half), "{half} of 60 in the 50 % region");
+    assert!(
+        ninety >= 47 && ninety_five >= 51,
+        "{ninety} and {ninety_five} of 60 in the 90 % and 95 % regions"
+    );
+}
+
+#[test]
+fn tagging_without_memory_of_the_threads_it_ran_on() {
+    let sequence = cut(walk(), 0..4);
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
+        let mut poses = Vec::new();
+        pool.install(|| {
+            let config = TagConfig::new(ObservationKind::Contrast);
+            let mut tagger = Tagger::new(&sequence.setup.camera, &sequence.field, None, config);
+            for index in 0..sequence.frames.len() {
+                let picture = sequence.load_image(index).expect("every picture can be read");
+                poses.push(tagger.tag(reality_sim::tag::recorded(&sequence, index, &picture)).pose);
+            }
+        });
+        poses
+    };
+    assert_eq!(run(1), run(3));
+}
