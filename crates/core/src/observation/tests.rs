@@ -129,7 +129,7 @@ fn contrast_does_not_depend_on_the_light() {
     let bright = test_scene::render(&camera, pose, &field);
     let mut dim = bright.clone();
     dim.iter_mut().for_each(|value| *value = (f32::from(*value) * 0.55) as u8);
-    let mut fraction = |picture| {
+    let fraction = |picture| {
         let mut scorer = CpuScorer::new(&camera, &field, ObservationConfig::new(ObservationKind::Contrast));
         scorer.load(&Preprocessor::new(&camera, field.line_width_m).prepare(picture, attitude));
         scorer.line_fraction(pose).unwrap()

@@ -297,10 +297,10 @@ mod tests {
             };
             match (on_carpet(0.93), on_carpet(1.12)) {
                 (true, _) => {
-                    (carpet, lost) = (carpet + 1.0, lost + f64::from(u8::from(!border.contains(u, v))))
+                    (carpet, lost) = (carpet + 1.0, lost + f64::from(u8::from(!border.contains(u, v))));
                 }
                 (_, false) => {
-                    (other, kept) = (other + 1.0, kept + f64::from(u8::from(border.contains(u, v))))
+                    (other, kept) = (other + 1.0, kept + f64::from(u8::from(border.contains(u, v))));
                 }
                 _ => (),
             }
