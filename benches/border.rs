@@ -1,0 +1,20 @@
+//! The border of the field, carpet colour included.
+
+use criterion::Criterion;
+use reality_sim::preprocess::{BorderDetector, Preprocessor};
+
+use crate::scene::Scene;
+
+/// The border alone, and all of preprocessing that every model needs.
+pub fn bench(criterion: &mut Criterion, scene: &Scene) {
+    let detector = BorderDetector::new(&scene.walk.setup.camera);
+    let preprocessor = Preprocessor::new(&scene.walk.setup.camera, scene.walk.field.line_width_m);
+    let mut group = criterion.benchmark_group("border");
+    group.bench_function("detect", |bencher| {
+        bencher.iter(|| detector.detect(scene.picture(), scene.attitude()));
+    });
+    group.bench_function("prepare", |bencher| {
+        bencher.iter(|| preprocessor.prepare(scene.picture(), scene.attitude()));
+    });
+    group.finish();
+}

@@ -1,0 +1,23 @@
+//! Whole frames: what `reality-sim tag` does with every picture once it is decoded.
+
+use criterion::{BatchSize, Criterion, SamplingMode, Throughput};
+use reality_sim::{TagConfig, Tagger};
+
+use crate::{scene::Scene, scoring::MODELS};
+
+/// Elements are frames, tagged one after the other as in a recording.
+pub fn bench(criterion: &mut Criterion, scene: &Scene) {
+    let walk = &scene.walk;
+    let mut group = criterion.benchmark_group("frame");
+    group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(walk.frames.len() as u64));
+    for (name, kind) in MODELS {
+        group.bench_function(name, |bencher| {
+            bencher.iter_batched_ref(
+                || Tagger::new(&walk.setup.camera, &walk.field, walk.start, TagConfig::new(kind)),
+                |tagger| scene.recorded().map(|picture| tagger.tag(picture)).last(),
+                BatchSize::PerIteration,
+            );
+        });
+    }
+    group.finish();
+}

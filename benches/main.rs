@@ -1,0 +1,45 @@
+//! Benchmarks, one file a stage. `README.md` says how to read them.
+
+mod blur;
+mod border;
+mod frame;
+mod refinement;
+mod resampling;
+mod scaling;
+mod scene;
+mod scoring;
+mod search;
+mod smoothing;
+mod white_lines;
+
+use std::time::Duration;
+
+use criterion::Criterion;
+
+use crate::scene::Scene;
+
+fn main() {
+    let scene = Scene::load();
+    let mut criterion = Criterion::default()
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1))
+        .without_plots()
+        .configure_from_args();
+    let stages: [fn(&mut Criterion, &Scene); 10] = [
+        blur::bench,
+        border::bench,
+        white_lines::bench,
+        scoring::bench,
+        resampling::bench,
+        frame::bench,
+        refinement::bench,
+        smoothing::bench,
+        search::bench,
+        scaling::bench,
+    ];
+    for stage in stages {
+        stage(&mut criterion, &scene);
+    }
+    criterion.final_summary();
+}

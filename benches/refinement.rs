@@ -1,0 +1,21 @@
+//! One picture's pose fitted to a fraction of a pixel.
+
+use criterion::Criterion;
+use reality_sim::{
+    preprocess::Texture,
+    refine::{RefineConfig, Refiner},
+};
+
+use crate::scene::Scene;
+
+/// From 3 cm beside the true place.
+pub fn bench(criterion: &mut Criterion, scene: &Scene) {
+    let refiner = Refiner::new(&scene.walk.setup.camera, &scene.walk.field, RefineConfig::default());
+    let texture = Texture::pack(&scene.prepared().whiteness);
+    let contrast = f64::from(scene.prepared().levels.contrast());
+    let mut guess = scene.attitude().at(scene.pose());
+    guess.x_m += 0.03;
+    criterion.bench_function("refinement", |bencher| {
+        bencher.iter(|| refiner.fit(&texture, guess, scene.attitude(), contrast));
+    });
+}

@@ -1,0 +1,32 @@
+//! Choosing which of 800 particles survive.
+
+use criterion::{Criterion, Throughput};
+use reality_sim::{
+    ObservationKind,
+    filter::{Purpose, Resampling, Stream, normalise},
+    observation::{CpuScorer, ObservationConfig, Scorer},
+};
+
+use crate::scene::Scene;
+
+const PARTICLES: usize = 800;
+
+/// Elements are particles; their weights are those of a picture.
+pub fn bench(criterion: &mut Criterion, scene: &Scene) {
+    let config = ObservationConfig::new(ObservationKind::Gauss);
+    let mut scorer = CpuScorer::new(&scene.walk.setup.camera, &scene.walk.field, config);
+    scorer.load(scene.prepared());
+    let weights = normalise(&scorer.log_weights(&scene.particles(PARTICLES)));
+    let stream = Stream::new(0, Purpose::Resample, 0, 0);
+    let mut group = criterion.benchmark_group("resampling");
+    group.throughput(Throughput::Elements(PARTICLES as u64));
+    for (name, scheme) in [
+        ("residual", Resampling::Residual),
+        ("systematic", Resampling::Systematic),
+        ("stratified", Resampling::Stratified),
+        ("multinomial", Resampling::Multinomial),
+    ] {
+        group.bench_function(name, |bencher| bencher.iter(|| scheme.choose(&weights, PARTICLES, stream)));
+    }
+    group.finish();
+}

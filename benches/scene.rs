@@ -1,0 +1,81 @@
+//! What all benchmarks read: the first pictures of the demonstration walk, and particles around its true poses.
+
+use std::path::Path;
+
+use image::RgbImage;
+use reality_sim::{
+    CameraPose, Pose2, Sequence,
+    filter::{Purpose, Stream},
+    preprocess::{Attitude, Prepared, Preprocessor},
+    tag::{Recorded, recorded},
+};
+
+/// Pictures taken.
+const PICTURES: usize = 12;
+/// The picture that single stages are measured on: field border, goal and robots in view.
+const MIDDLE: usize = 6;
+/// Standard deviations of the particles around the true pose: place (metres) and heading (radians).
+const SPREAD: [f64; 2] = [0.03, 0.03];
+
+/// Decoded pictures with what is known of them.
+pub struct Scene {
+    /// The walk; its first frames only.
+    pub walk: Sequence,
+    pictures: Vec<RgbImage>,
+    prepared: Prepared,
+}
+
+impl Scene {
+    /// Reads the demonstration walk.
+    pub fn load() -> Self {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/walk");
+        let mut walk = Sequence::open(&folder).expect("the demonstration walk is part of the repository");
+        walk.frames.truncate(PICTURES);
+        walk.groundtruth.truncate(PICTURES);
+        let picture = |index| walk.load_image(index).expect("a picture of the demonstration walk");
+        let pictures: Vec<RgbImage> = (0..PICTURES).map(picture).collect();
+        let attitude = recorded(&walk, MIDDLE, &pictures[MIDDLE]).attitude;
+        let preprocessor = Preprocessor::new(&walk.setup.camera, walk.field.line_width_m);
+        let prepared = preprocessor.prepare(&pictures[MIDDLE], attitude);
+        Self { walk, pictures, prepared }
+    }
+
+    /// All pictures, as the tagger takes them.
+    pub fn recorded(&self) -> impl Iterator<Item = Recorded<'_>> {
+        self.pictures.iter().enumerate().map(|(index, picture)| recorded(&self.walk, index, picture))
+    }
+
+    /// The picture that single stages are measured on.
+    pub fn picture(&self) -> &RgbImage {
+        &self.pictures[MIDDLE]
+    }
+
+    /// The same, preprocessed.
+    pub fn prepared(&self) -> &Prepared {
+        &self.prepared
+    }
+
+    /// What joints and IMU say of it.
+    pub fn attitude(&self) -> Attitude {
+        recorded(&self.walk, MIDDLE, self.picture()).attitude
+    }
+
+    /// Where it was taken.
+    pub fn pose(&self) -> Pose2 {
+        self.walk.groundtruth[MIDDLE].expect("the demonstration walk has ground truth").planar()
+    }
+
+    /// Particles around that place.
+    pub fn particles(&self, count: usize) -> Vec<CameraPose> {
+        let stream = Stream::new(0, Purpose::Initialise, 0, 0);
+        let pose = self.pose();
+        let particle = |index| {
+            let n = stream.normals(index);
+            let [place, heading] = SPREAD;
+            let planar =
+                Pose2::new(pose.x_m + place * n[0], pose.y_m + place * n[1], pose.yaw_rad + heading * n[2]);
+            self.attitude().at(planar)
+        };
+        (0..count as u32).map(particle).collect()
+    }
+}

@@ -1,0 +1,40 @@
+//! Projecting and weighing 800 particles: the time that a particle filter is made of.
+
+use criterion::{Criterion, Throughput};
+use reality_sim::{
+    ObservationKind,
+    observation::{CpuScorer, ObservationConfig, Scorer},
+};
+
+use crate::scene::Scene;
+
+/// The paper's number of particles.
+const PARTICLES: usize = 800;
+
+/// Every model by the name that the command line knows it by.
+pub const MODELS: [(&str, ObservationKind); 3] = [
+    ("gauss", ObservationKind::Gauss),
+    ("distance", ObservationKind::Distance),
+    ("contrast", ObservationKind::Contrast),
+];
+
+/// Elements are samples, those out of view included. Each sample of `contrast` is projected and looked up three times.
+pub fn bench(criterion: &mut Criterion, scene: &Scene) {
+    let particles = scene.particles(PARTICLES);
+    let mut group = criterion.benchmark_group("scoring");
+    for (name, kind) in MODELS {
+        let mut scorer =
+            CpuScorer::new(&scene.walk.setup.camera, &scene.walk.field, ObservationConfig::new(kind));
+        scorer.load(scene.prepared());
+        group.throughput(Throughput::Elements((PARTICLES * scorer.samples()) as u64));
+        group.bench_function(name, |bencher| bencher.iter(|| scorer.log_weights(&particles)));
+    }
+    group.finish();
+    let mut group = criterion.benchmark_group("load");
+    for (name, kind) in MODELS {
+        let mut scorer =
+            CpuScorer::new(&scene.walk.setup.camera, &scene.walk.field, ObservationConfig::new(kind));
+        group.bench_function(name, |bencher| bencher.iter(|| scorer.load(scene.prepared())));
+    }
+    group.finish();
+}
