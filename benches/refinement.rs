@@ -3,7 +3,7 @@
 use criterion::Criterion;
 use reality_sim::{
     preprocess::Texture,
-    refine::{RefineConfig, Refiner},
+    refine::{Reach, RefineConfig, Refiner},
 };
 
 use crate::scene::Scene;
@@ -16,6 +16,6 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let mut guess = scene.attitude().at(scene.pose());
     guess.x_m += 0.03;
     criterion.bench_function("refinement", |bencher| {
-        bencher.iter(|| refiner.fit(&texture, guess, scene.attitude(), contrast));
+        bencher.iter(|| refiner.fit(&texture, guess, scene.attitude(), contrast, Reach::Wide));
     });
 }

@@ -13,7 +13,8 @@ use crate::{
     pose::{CameraPose, Motion2, Pose2},
     preprocess::{Attitude, FieldBorder, Prepared, Preprocessor, Texture},
     refine::{
-        AttitudeTolerance, PoseFit, RefineConfig, Refiner, SmoothedPose, TrajectoryFrame, smooth_trajectory,
+        AttitudeTolerance, PoseFit, Reach, RefineConfig, Refiner, SmoothedPose, TrajectoryFrame,
+        smooth_trajectory,
     },
     search::{GlobalSearch, Mode, Prior},
     sequence::{Sequence, SequenceError},
@@ -50,8 +51,6 @@ const MAX_MIRROR_PROBABILITY: f64 = 0.05;
 const MOVE_MARGIN: f64 = 4.0;
 /// Places that a search finds worse than the best one by more than this (log-weight) get no particles.
 const RIVAL_MARGIN: f64 = 4.0;
-/// The fit may lose this much log-weight, which the filter's best particle was chosen to maximise.
-const FIT_MARGIN: f64 = 4.0;
 /// Pictures in a row that must agree before a place found by search is sure without such a margin.
 const SURE_STREAK: u32 = 4;
 
@@ -109,7 +108,8 @@ pub struct TaggedFrame {
     pub fit: Option<PoseFit>,
     /// The filter's own estimate.
     pub filter: FilterEstimate,
-    /// Fraction of the line in view that the picture shows where the pose puts it.
+    /// Fraction of the line in view that the picture shows where the pose puts it, or where that is little, where the pose
+    /// next to it that fits best puts it.
     pub line_fraction: f64,
     /// False while the lines do not fit, or may fit elsewhere as well; a settled pose may still be the mirror image of
     /// the right one.
@@ -131,7 +131,6 @@ pub struct Tagger {
     config: TagConfig,
     preprocessor: Preprocessor,
     scorer: Box<dyn Scorer>,
-    monitor: CpuScorer,
     refiner: Refiner,
     search: GlobalSearch,
     goal_colors: Option<GoalColors>,
@@ -152,7 +151,7 @@ struct Track {
     /// Pictures in a row that fitted, since the last search that moved the particles; `None` where the start was given
     /// or the search had but one answer.
     unsettled: Option<u32>,
-    /// Pictures in a row that did not fit.
+    /// Pictures since the last one that fitted in which the filter may have been lost.
     doubtful: u32,
     /// Log-odds of the mirrored pose.
     mirror_log_odds: f64,
@@ -166,6 +165,17 @@ struct Prediction {
 }
 
 impl Track {
+    /// Goes on from what a search found.
+    fn relocate(&mut self, modes: &[Mode], prior: Prior) {
+        place(&mut self.filter, modes);
+        self.unsettled = (!is_clear(modes)).then_some(0);
+        if let Some(best) = modes.first().map(|mode| mode.pose.planar()) {
+            // The picture cannot tell the two halves apart: only what was known before can.
+            let odds = prior.log_probability(best.mirrored()) - prior.log_probability(best);
+            self.mirror_log_odds = self.mirror_log_odds.max(odds);
+        }
+    }
+
     /// How far from the anchor the camera may be; farther with every picture that did not fit, where there is doubt.
     fn search_sigma(&self, doubt: bool) -> PlanarSigma {
         let times = if doubt { 1.0 + f64::from(self.doubtful) } else { 0.0 };
@@ -196,7 +206,6 @@ impl Tagger {
             config,
             preprocessor: Preprocessor::new(camera, field.line_width_m),
             scorer,
-            monitor: CpuScorer::new(camera, field, ObservationConfig::coarse_contrast()),
             refiner: Refiner::new(camera, field, refine),
             search: GlobalSearch::new(camera, field, config.tolerance),
             goal_colors: GoalColors::new(camera, field),
@@ -219,7 +228,7 @@ impl Tagger {
     /// Fits a picture from a pose that is known from elsewhere.
     fn refit(&self, picture: &Prepared, guess: CameraPose, attitude: Attitude) -> Option<PoseFit> {
         let texture = Texture::pack(&picture.whiteness);
-        self.refiner.fit(&texture, guess, attitude, f64::from(picture.levels.contrast()))
+        self.refiner.fit(&texture, guess, attitude, f64::from(picture.levels.contrast()), Reach::Wide)
     }
 
     /// Tags the next picture.
@@ -227,10 +236,7 @@ impl Tagger {
         let begin = Instant::now();
         let picture = self.preprocessor.prepare(recorded.picture, recorded.attitude);
         self.scorer.load(&picture);
-        self.monitor.load(&picture);
-        if self.config.refine {
-            self.search.load(&picture);
-        }
+        self.search.load(&picture);
         let mut tagged = match self.state.take() {
             Some(track) => self.follow(track, &picture, recorded),
             None => self.begin(&picture, recorded),
@@ -263,7 +269,7 @@ impl Tagger {
             mirror_log_odds,
         };
         let motion = None;
-        self.finish(track, picture, recorded, Found { estimate, motion, searched: self.start.is_none() })
+        self.finish(track, recorded, Found { estimate, motion, searched: self.start.is_none() })
     }
 
     fn follow(&mut self, mut track: Track, picture: &Prepared, recorded: Recorded<'_>) -> TaggedFrame {
@@ -279,19 +285,18 @@ impl Tagger {
         if self.config.recovery && (prediction.carried || prediction.sigma.position_m > SEARCH_SIGMA_M) {
             let prior = Prior { pose: track.anchor, sigma: track.search_sigma(track.doubtful > 0) };
             let modes = self.search_modes(picture, recorded.attitude, Some(prior));
-            place(&mut track.filter, &modes);
-            track.unsettled = (!is_clear(&modes)).then_some(0);
+            track.relocate(&modes, prior);
             searched = true;
         }
         let diffusion = if searched { FOUND_SIGMA } else { prediction.sigma };
         let mut estimate = track.filter.update(&*self.scorer, recorded.attitude, diffusion);
-        if self.config.recovery && !searched && self.may_be_lost(&track, estimate.pose) {
+        if self.config.recovery && !searched && self.may_be_lost(&track, estimate.pose, recorded.attitude) {
             searched = true;
             estimate = self.recover(&mut track, picture, recorded.attitude, estimate);
         }
         track.pose = estimate.pose.planar();
         track.odometry = recorded.odometry;
-        self.finish(track, picture, recorded, Found { estimate, motion: prediction.motion, searched })
+        self.finish(track, recorded, Found { estimate, motion: prediction.motion, searched })
     }
 
     fn predict(&self, track: &Track, odometry: Option<Pose2>) -> Prediction {
@@ -312,9 +317,22 @@ impl Tagger {
         Prediction { sigma, motion, carried }
     }
 
-    fn may_be_lost(&self, track: &Track, pose: CameraPose) -> bool {
-        let fraction = self.monitor.line_fraction(pose).unwrap_or(0.0);
-        track.unsettled.is_some() || fraction < LOST_FRACTION.max(LOST_RATIO * track.slow_fraction)
+    fn may_be_lost(&self, track: &Track, pose: CameraPose, attitude: Attitude) -> bool {
+        let least = lost_below(track);
+        track.unsettled.is_some() || self.line_fraction_near(pose, attitude, least) < least
+    }
+
+    /// The line fraction of a pose, or where that is less than `enough`, of the pose next to it that fits the picture
+    /// best: joints and IMU that are wrong by a degree hide narrow lines from a pose in the right place.
+    fn line_fraction_near(&self, pose: CameraPose, attitude: Attitude, enough: f64) -> f64 {
+        let own = self.search.line_fraction(pose);
+        if own >= enough {
+            return own;
+        }
+        match self.search.best_of(&[pose], attitude, None) {
+            Some(near) if is_near(near.pose, pose) => own.max(self.search.line_fraction(near.pose)),
+            _ => own,
+        }
     }
 
     /// Searches the field; moves the particles only where another place fits clearly better than the filter's.
@@ -327,16 +345,17 @@ impl Tagger {
     ) -> FilterEstimate {
         let sigma = track.search_sigma(true);
         let prior = Prior { pose: track.anchor, sigma };
-        let modes = self.search_modes(picture, attitude, Some(prior));
+        let mut modes = self.search_modes(picture, attitude, Some(prior));
+        // From many places no line is in view, which fits every picture a little and none well.
+        modes.retain(|mode| self.search.line_fraction(mode.pose) >= LOST_FRACTION);
         let Some(best) = modes.first() else { return estimate };
-        let Some(own) = self.search.best_of(picture, &[estimate.pose], attitude, Some(prior)) else {
+        let Some(own) = self.search.best_of(&[estimate.pose], attitude, Some(prior)) else {
             return estimate;
         };
         if is_near(best.pose, own.pose) || best.log_weight - own.log_weight < MOVE_MARGIN {
             return estimate;
         }
-        place(&mut track.filter, &modes);
-        track.unsettled = (!is_clear(&modes)).then_some(0);
+        track.relocate(&modes, prior);
         track.filter.update(&*self.scorer, attitude, FOUND_SIGMA)
     }
 
@@ -345,36 +364,29 @@ impl Tagger {
         self.search.search(picture, attitude, prior, seed)
     }
 
-    fn finish(
-        &mut self,
-        mut track: Track,
-        picture: &Prepared,
-        recorded: Recorded<'_>,
-        found: Found,
-    ) -> TaggedFrame {
+    fn finish(&mut self, mut track: Track, recorded: Recorded<'_>, found: Found) -> TaggedFrame {
         let Found { estimate, motion, searched } = found;
         let mut pose = estimate.pose;
-        let mut line_fraction = self.monitor.line_fraction(pose).unwrap_or(0.0);
         let mut fit = None;
-        if self.config.refine {
-            pose = self.most_probable(&track, picture, recorded.attitude, pose);
-            let contrast = f64::from(picture.levels.contrast());
-            fit = self.refiner.fit(self.monitor.texture(), pose, recorded.attitude, contrast);
-            // A fit that finds fewer lines than before has slipped onto another line.
-            fit = fit.filter(|fit| {
-                self.monitor.log_weight(&fit.pose) >= self.monitor.log_weight(&pose) - FIT_MARGIN
-            });
-            pose = fit.map_or(pose, |fit| fit.pose);
-            line_fraction = self.monitor.line_fraction(pose).unwrap_or(0.0);
+        if self.config.refine
+            && let Some(mode) = self.most_probable(&track, recorded.attitude, pose)
+        {
+            (pose, fit) = (mode.pose, mode.fit);
         }
-        let fits = line_fraction >= SURE_FRACTION.max(SURE_RATIO * track.slow_fraction);
+        let least = SURE_FRACTION.max(SURE_RATIO * track.slow_fraction);
+        let line_fraction = self.line_fraction_near(pose, recorded.attitude, least);
+        let fits = line_fraction >= least;
         track.unsettled = match track.unsettled {
             Some(streak) if fits && streak + 1 < SURE_STREAK => Some(streak + 1),
             Some(_) if fits => None,
             Some(_) => Some(0),
             None => None,
         };
-        track.doubtful = if fits { 0 } else { (track.doubtful + 1).min(8) };
+        track.doubtful = match line_fraction {
+            _ if fits => 0,
+            fraction if fraction < lost_below(&track) => (track.doubtful + 1).min(8),
+            _ => track.doubtful,
+        };
         let settled = fits && track.unsettled.is_none();
         if fits && !settled {
             (track.anchor, track.anchor_sigma) = (pose.planar(), LIKELY_SIGMA);
@@ -406,17 +418,11 @@ impl Tagger {
 
     /// The best particle, its rivals and the prediction, each fitted to the picture: the most probable of them, by picture
     /// and prediction together.
-    fn most_probable(
-        &self,
-        track: &Track,
-        picture: &Prepared,
-        attitude: Attitude,
-        best: CameraPose,
-    ) -> CameraPose {
+    fn most_probable(&self, track: &Track, attitude: Attitude, best: CameraPose) -> Option<Mode> {
         let prior = Prior { pose: track.anchor, sigma: track.search_sigma(track.doubtful > 0) };
         let candidates: Vec<CameraPose> =
             [best, attitude.at(track.anchor)].iter().chain(track.filter.rivals()).copied().collect();
-        self.search.best_of(picture, &candidates, attitude, Some(prior)).map_or(best, |mode| mode.pose)
+        self.search.best_of(&candidates, attitude, Some(prior))
     }
 
     /// Lets the colours of the goals decide between a pose and its mirror image, and turns everything round when they
@@ -447,6 +453,11 @@ struct Found {
     estimate: FilterEstimate,
     motion: Option<Motion2>,
     searched: bool,
+}
+
+/// The line fraction below which the filter may be lost.
+fn lost_below(track: &Track) -> f64 {
+    LOST_FRACTION.max(LOST_RATIO * track.slow_fraction)
 }
 
 fn place(filter: &mut ParticleFilter, modes: &[Mode]) {

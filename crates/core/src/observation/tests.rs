@@ -93,8 +93,7 @@ proptest! {
 fn the_true_pose_scores_best() {
     let (camera, field) = (test_scene::fisheye(), test_scene::field());
     for pose in test_scene::poses() {
-        let attitude =
-            Attitude { height_m: pose.height_m, pitch_rad: pose.pitch_rad, roll_rad: pose.roll_rad };
+        let attitude = Attitude::of(pose);
         let picture = test_scene::render(&camera, pose, &field);
         let prepared = Preprocessor::new(&camera, field.line_width_m).prepare(&picture, attitude);
         for kind in [ObservationKind::Gauss, ObservationKind::Distance, ObservationKind::Contrast] {
@@ -125,7 +124,7 @@ fn the_true_pose_scores_best() {
 #[test]
 fn contrast_does_not_depend_on_the_light() {
     let (camera, field, pose) = (test_scene::fisheye(), test_scene::field(), test_scene::poses()[0]);
-    let attitude = Attitude { height_m: pose.height_m, pitch_rad: pose.pitch_rad, roll_rad: pose.roll_rad };
+    let attitude = Attitude::of(pose);
     let bright = test_scene::render(&camera, pose, &field);
     let mut dim = bright.clone();
     dim.iter_mut().for_each(|value| *value = (f32::from(*value) * 0.55) as u8);

@@ -279,14 +279,10 @@ mod tests {
     use super::*;
     use crate::{pose::CameraPose, test_scene};
 
-    fn attitude(pose: CameraPose) -> Attitude {
-        Attitude { height_m: pose.height_m, pitch_rad: pose.pitch_rad, roll_rad: pose.roll_rad }
-    }
-
     /// Fractions of carpet called outside, and of anything else called inside, among pixels not near the border.
     fn mistakes(picture: &RgbImage, pose: CameraPose) -> (f64, f64) {
         let (camera, field) = (test_scene::fisheye(), test_scene::field());
-        let border = BorderDetector::new(&camera).detect(picture, attitude(pose));
+        let border = BorderDetector::new(&camera).detect(picture, Attitude::of(pose));
         let extent = field.carpet_half_extent_m();
         let (mut carpet, mut lost, mut other, mut kept) = (0.0, 0.0, 0.0, 0.0);
         for (u, v, _) in picture.enumerate_pixels() {
@@ -337,7 +333,7 @@ mod tests {
         assert!(lost < 0.03 && kept < 0.03, "red carpet: {lost} lost, {kept} kept");
         for value in [0, 255] {
             let flat = RgbImage::from_pixel(320, 240, Rgb([value; 3]));
-            BorderDetector::new(&test_scene::fisheye()).detect(&flat, attitude(pose));
+            BorderDetector::new(&test_scene::fisheye()).detect(&flat, Attitude::of(pose));
         }
     }
 

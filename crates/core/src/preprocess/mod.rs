@@ -34,6 +34,11 @@ pub struct Attitude {
 }
 
 impl Attitude {
+    /// Height, pitch and roll of a pose.
+    pub fn of(pose: CameraPose) -> Self {
+        Self { height_m: pose.height_m, pitch_rad: pose.pitch_rad, roll_rad: pose.roll_rad }
+    }
+
     /// Rotation from the camera's axes to x along the heading, y left, z up.
     pub(crate) fn rotation_heading_from_camera(self) -> glam::DMat3 {
         self.at(crate::pose::Pose2::default()).rotation_world_from_camera()

@@ -209,8 +209,7 @@ mod tests {
     fn evidence_is_where_lines_are_drawn() {
         let (camera, field) = (test_scene::fisheye(), test_scene::field());
         for pose in test_scene::poses() {
-            let attitude =
-                Attitude { height_m: pose.height_m, pitch_rad: pose.pitch_rad, roll_rad: pose.roll_rad };
+            let attitude = Attitude::of(pose);
             let picture = test_scene::render(&camera, pose, &field);
             let prepared = Preprocessor::new(&camera, field.line_width_m).prepare(&picture, attitude);
             let evidence = prepared.evidence();

@@ -50,8 +50,10 @@ pub struct RefineConfig {
     pub spacing_m: f64,
     /// Distance between samples in the picture, pixels.
     pub spacing_px: f64,
-    /// Search range of each round, pixels.
-    pub search_px: [f64; 5],
+    /// Search range of each round from a rough guess, pixels.
+    pub wide_search_px: [f64; 5],
+    /// The same from a good one.
+    pub narrow_search_px: [f64; 5],
     /// Smallest standard deviation of one offset, pixels.
     pub offset_sigma_px: f64,
     /// Length of line over which errors of the offsets are one and the same error, pixels.
@@ -67,13 +69,23 @@ impl Default for RefineConfig {
         Self {
             spacing_m: 0.02,
             spacing_px: 4.0,
-            search_px: [12.0, 8.0, 5.0, 4.0, 4.0],
+            wide_search_px: [12.0, 8.0, 5.0, 4.0, 4.0],
+            narrow_search_px: [4.0; 5],
             offset_sigma_px: 0.08,
             correlation_px: 40.0,
             tolerance: AttitudeTolerance::default(),
             min_offsets: 12,
         }
     }
+}
+
+/// How far from where the guess puts it a line is looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reach {
+    /// [`RefineConfig::wide_search_px`].
+    Wide,
+    /// [`RefineConfig::narrow_search_px`].
+    Narrow,
 }
 
 /// A pose fitted to one picture.
@@ -151,10 +163,15 @@ impl Refiner {
         guess: CameraPose,
         attitude: Attitude,
         contrast: f64,
+        reach: Reach,
     ) -> Option<PoseFit> {
+        let rounds = match reach {
+            Reach::Wide => self.config.wide_search_px,
+            Reach::Narrow => self.config.narrow_search_px,
+        };
         let mut pose = guess;
         let mut fit = None;
-        for search_px in self.config.search_px {
+        for search_px in rounds {
             let visible =
                 visible_samples(&self.field, &self.samples, &self.camera, pose, self.config.spacing_px);
             let measure = MeasureConfig { search_px, min_contrast: 0.3 * contrast };
@@ -280,10 +297,6 @@ mod tests {
     use super::*;
     use crate::{preprocess::whiteness, test_scene};
 
-    fn attitude(pose: CameraPose) -> Attitude {
-        Attitude { height_m: pose.height_m, pitch_rad: pose.pitch_rad, roll_rad: pose.roll_rad }
-    }
-
     /// Pictures of 320 × 240 pixels: a pixel is about 1 cm of carpet near the camera.
     #[test]
     fn a_disturbed_pose_is_found_again_in_all_six_degrees_of_freedom() {
@@ -292,7 +305,7 @@ mod tests {
         for pose in test_scene::poses() {
             let texture = Texture::pack(&whiteness(&test_scene::render(&camera, pose, &field)));
             let guess = moved(pose, &Vector6::new(0.02, -0.03, 0.015, 0.01, 0.006, -0.005));
-            let fit = refiner.fit(&texture, guess, attitude(guess), 160.0).unwrap();
+            let fit = refiner.fit(&texture, guess, Attitude::of(guess), 160.0, Reach::Wide).unwrap();
             let error = pose_difference(pose, fit.pose);
             assert!(error.fixed_rows::<2>(0).norm() < 0.006, "{error:?}");
             assert!(error[2].abs() < 0.003 && error[3].abs() < 0.005, "{error:?}");
@@ -309,9 +322,9 @@ mod tests {
         let (camera, field, pose) = (test_scene::fisheye(), test_scene::field(), test_scene::poses()[0]);
         let refiner = Refiner::new(&camera, &field, RefineConfig::default());
         let grey = Texture::pack(&image::GrayImage::from_pixel(320, 240, image::Luma([90])));
-        assert!(refiner.fit(&grey, pose, attitude(pose), 100.0).is_none());
+        assert!(refiner.fit(&grey, pose, Attitude::of(pose), 100.0, Reach::Wide).is_none());
         let nowhere = CameraPose { x_m: f64::NAN, ..pose };
-        assert!(refiner.fit(&grey, nowhere, attitude(pose), 100.0).is_none());
+        assert!(refiner.fit(&grey, nowhere, Attitude::of(pose), 100.0, Reach::Wide).is_none());
     }
 
     #[test]
