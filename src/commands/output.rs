@@ -43,21 +43,6 @@ pub fn create_output_folder(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<(
     Ok(())
 }
 
-/// Writes a file under a temporary name in its folder, then gives it its name: whoever is killed in between leaves the
-/// old file or none.
-pub fn write_atomically(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    let write = || -> io::Result<()> {
-        let mut file = builder().tempfile_in(parent(path))?;
-        file.write_all(bytes)?;
-        file.as_file().sync_all()?;
-        file.persist(path)?;
-        Ok(())
-    };
-    write().with_context(|| {
-        format!("{}: cannot be written: check the permissions and the space on the disk", path.display())
-    })
-}
-
 /// Prints one JSON object on standard output.
 pub fn print_json(report: &impl Serialize) -> anyhow::Result<()> {
     print(&format!("{}\n", serde_json::to_string_pretty(report)?))
@@ -105,23 +90,7 @@ fn check_writable_folder(folder: &Path) -> anyhow::Result<()> {
             return Err(error).with_context(|| format!("{name}: cannot be read: check the path"));
         }
     }
-    builder()
-        .tempfile_in(folder)
+    tempfile::tempfile_in(folder)
         .map(drop)
         .with_context(|| format!("{name}: cannot be written to: check its permissions, or give another"))
-}
-
-/// Temporary files are private by default; a finished file has the permissions of any other.
-#[cfg(unix)]
-fn builder() -> tempfile::Builder<'static, 'static> {
-    use std::os::unix::fs::PermissionsExt;
-
-    let mut builder = tempfile::Builder::new();
-    builder.permissions(fs::Permissions::from_mode(0o666));
-    builder
-}
-
-#[cfg(not(unix))]
-fn builder() -> tempfile::Builder<'static, 'static> {
-    tempfile::Builder::new()
 }

@@ -30,9 +30,21 @@ const PRIOR_FLOOR: f64 = -20.0;
 const FIT_MARGIN: f64 = 4.0;
 /// Poses nearer than this to a better one belong to it, metres and radians.
 const SAME_PLACE: PlanarSigma = PlanarSigma { position_m: 0.35, yaw_rad: 0.25 };
-/// Particles and iterations that refine each grid pose.
-const REFINE_PARTICLES: usize = 60;
-const REFINE_ITERATIONS: u32 = 6;
+/// A small particle filter, standing still.
+#[derive(Debug, Clone, Copy)]
+struct Look {
+    particles: usize,
+    sigma: PlanarSigma,
+}
+
+/// Refines each grid pose.
+const FIRST_LOOK: Look = Look { particles: 60, sigma: PlanarSigma { position_m: 0.08, yaw_rad: 0.04 } };
+/// Looks farther around the best of them: a place where some of the lines fit may be next to the one where all do.
+const SECOND_LOOK: Look = Look { particles: 400, sigma: PlanarSigma { position_m: 0.3, yaw_rad: 0.06 } };
+/// Modes that get the second look.
+const LOOKED_AT_TWICE: usize = 8;
+/// Iterations of both.
+const LOOK_ITERATIONS: u32 = 6;
 
 /// A place the picture fits.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,7 +103,7 @@ impl GlobalSearch {
         }
     }
 
-    /// Takes over a new picture.
+    /// Takes over a new picture for what needs no search.
     pub fn load(&mut self, picture: &Prepared) {
         self.scorer.load(picture);
         self.white_contrast = f64::from(picture.levels.contrast());
@@ -103,7 +115,7 @@ impl GlobalSearch {
         self.scorer.line_fraction(pose).unwrap_or(0.0)
     }
 
-    /// The poses that the picture loaded last fits, best first. A field with equal halves fits every pose and its mirror image alike:
+    /// The poses the picture fits, best first. A field with equal halves fits every pose and its mirror image alike:
     /// without a prior only one of the two is searched, with one the prior decides.
     pub fn search(
         &mut self,
@@ -112,27 +124,29 @@ impl GlobalSearch {
         prior: Option<Prior>,
         seed: u64,
     ) -> Vec<Mode> {
+        self.load(picture);
         self.grid.load(picture);
         let mut places = self.best_on_grid(attitude, prior);
         if let Some(prior) = prior {
             places.push(prior.pose);
         }
-        let mut modes: Vec<Mode> = places
-            .par_iter()
-            .enumerate()
-            .map(|(i, place)| self.refine(*place, attitude, prior, seed ^ (i as u64) << 32))
-            .collect();
-        modes.sort_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
-        let mut modes = distinct(modes, |mode| mode.pose.planar());
+        let look_around = |places: &[Pose2], look: Look, seed: u64| -> Vec<Mode> {
+            let seed_of = |index: usize| seed ^ (index as u64) << 32;
+            let found = places.par_iter().enumerate();
+            found.map(|(i, place)| self.look(look, *place, attitude, prior, seed_of(i))).collect()
+        };
+        let mut modes = ranked(look_around(&places, FIRST_LOOK, seed));
+        let best: Vec<Pose2> = modes.iter().take(LOOKED_AT_TWICE).map(|mode| mode.pose.planar()).collect();
+        modes.extend(look_around(&best, SECOND_LOOK, !seed));
+        let mut modes = ranked(modes);
         modes.truncate(FITTED);
         // The place expected gets a fit of its own: the particles around it may have found a worse one.
         modes.extend(prior.map(|known| self.mode(attitude.at(known.pose), attitude, prior)));
         modes.par_iter_mut().for_each(|mode| *mode = self.fitted(*mode, attitude, prior));
-        modes.sort_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
-        with_probabilities(distinct(modes, |mode| mode.pose.planar()))
+        with_probabilities(ranked(modes))
     }
 
-    /// The most probable of some poses, each fitted to the picture loaded last.
+    /// The most probable of some poses, each fitted to the picture loaded or searched last.
     pub fn best_of(&self, poses: &[CameraPose], attitude: Attitude, prior: Option<Prior>) -> Option<Mode> {
         let fitted: Vec<Mode> = poses
             .par_iter()
@@ -202,19 +216,25 @@ impl GlobalSearch {
         places.into_iter().map(|(pose, _)| pose).collect()
     }
 
-    /// A small particle filter of its own around a grid pose, standing still.
-    fn refine(&self, place: Pose2, attitude: Attitude, prior: Option<Prior>, seed: u64) -> Mode {
+    /// The best pose that a small particle filter finds around a place.
+    fn look(&self, look: Look, place: Pose2, attitude: Attitude, prior: Option<Prior>, seed: u64) -> Mode {
         let config = FilterConfig {
-            particles: REFINE_PARTICLES,
-            iterations: REFINE_ITERATIONS,
+            particles: look.particles,
+            iterations: LOOK_ITERATIONS,
             seed,
             attitude_tolerance: Some(self.tolerance),
             ..FilterConfig::default()
         };
-        let sigma = PlanarSigma { position_m: 0.08, yaw_rad: 0.04 };
-        let estimate = ParticleFilter::new(config, place, sigma).update(&self.scorer, attitude, sigma);
+        let mut filter = ParticleFilter::new(config, place, look.sigma);
+        let estimate = filter.update(&self.scorer, attitude, look.sigma);
         self.mode(estimate.pose, attitude, prior)
     }
+}
+
+/// Best first, one of each place.
+fn ranked(mut modes: Vec<Mode>) -> Vec<Mode> {
+    modes.sort_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
+    distinct(modes, |mode| mode.pose.planar())
 }
 
 /// Drops everything near something better; the input is sorted, best first.

@@ -184,6 +184,17 @@ pub(crate) fn sum_along_lines(
     pose: &CameraFromGround,
     points: &GroundPoints,
 ) -> [f32; 2] {
+    sum_on_any_processor(texture, camera, pose, points)
+}
+
+/// What every build of [`sum_along_lines`] computes.
+#[inline(always)]
+pub(super) fn sum_on_any_processor(
+    texture: &Texture,
+    camera: &KernelCamera,
+    pose: &CameraFromGround,
+    points: &GroundPoints,
+) -> [f32; 2] {
     let (mut sum, mut seen) = ([0.0_f32; LANES], [0.0_f32; LANES]);
     for block in &points.blocks {
         let Some(pixels) = project_block(camera, pose, block) else { continue };
@@ -228,6 +239,18 @@ const MIN_CONTRAST: f32 = -0.25;
 /// not change it.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 pub(crate) fn contrast_along_lines(
+    texture: &Texture,
+    camera: &KernelCamera,
+    pose: &CameraFromGround,
+    points: &LinePoints,
+    scale: ContrastScale,
+) -> [f32; 2] {
+    contrast_on_any_processor(texture, camera, pose, points, scale)
+}
+
+/// What every build of [`contrast_along_lines`] computes.
+#[inline(always)]
+pub(super) fn contrast_on_any_processor(
     texture: &Texture,
     camera: &KernelCamera,
     pose: &CameraFromGround,

@@ -9,12 +9,13 @@
 mod grid;
 mod kernel;
 mod lens;
+mod normal_search;
 
 use image::GrayImage;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-pub use self::grid::GridScorer;
+pub use self::{grid::GridScorer, normal_search::NormalSearch};
 use self::{
     kernel::{CameraFromGround, ContrastScale, GroundPoints, LinePoints},
     lens::KernelCamera,

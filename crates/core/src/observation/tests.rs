@@ -1,7 +1,9 @@
 use proptest::prelude::*;
 
 use super::{
-    kernel::{project_block, sum_along_lines},
+    kernel::{
+        contrast_along_lines, contrast_on_any_processor, project_block, sum_along_lines, sum_on_any_processor,
+    },
     *,
 };
 use crate::{
@@ -62,6 +64,33 @@ proptest! {
                     }
                 }
             }
+        }
+    }
+
+    /// The build for this processor's widest registers and the one for any processor agree to the last bit: the same
+    /// recording gives the same poses everywhere.
+    #[test]
+    fn every_build_of_the_loops_gives_the_same_sums(pose in any_pose(), seed in any::<u32>()) {
+        let picture = GrayImage::from_fn(640, 480, |u, v| {
+            image::Luma([(u.wrapping_mul(seed | 1).wrapping_add(v * 31) % 251) as u8])
+        });
+        let (texture, field) = (Texture::pack(&picture), test_scene::field());
+        let samples = sample_lines(&field, 0.05);
+        let (plain, flanked) = (ground_points(&samples, 0.0), line_points(&samples, field.line_width_m));
+        let pose = CameraFromGround::new(pose);
+        let scale = ContrastScale { per_contrast: 2.0, dark_level: DARK_LEVEL, min_width_px: 0.7, per_width_px: 0.5, relative_area: 1.0 };
+        for camera in cameras() {
+            let camera = KernelCamera::new(&camera);
+            let (sum, sum_anywhere) = (
+                sum_along_lines(&texture, &camera, &pose, &plain),
+                sum_on_any_processor(&texture, &camera, &pose, &plain),
+            );
+            prop_assert_eq!(sum.map(f32::to_bits), sum_anywhere.map(f32::to_bits));
+            let (contrast, contrast_anywhere) = (
+                contrast_along_lines(&texture, &camera, &pose, &flanked, scale),
+                contrast_on_any_processor(&texture, &camera, &pose, &flanked, scale),
+            );
+            prop_assert_eq!(contrast.map(f32::to_bits), contrast_anywhere.map(f32::to_bits));
         }
     }
 

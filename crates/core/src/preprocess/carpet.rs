@@ -2,6 +2,8 @@
 
 /// Bins along each axis of the chromaticity histogram.
 const BINS: usize = 48;
+/// Weight of a pixel without any colour; that of others grows with their distance from grey, about 0.1 for dull carpets.
+const GREY_WEIGHT: f32 = 0.02;
 /// Pixels darker than this (sum of the channels) have no usable chromaticity.
 const MIN_SUM: u16 = 36;
 /// Smallest spread of the carpet's chromaticity: JPEG's colour noise.
@@ -77,11 +79,6 @@ impl CarpetColor {
         rr * dr * dr + 2.0 * rg * dr * dg + gg * dg * dg
     }
 
-    /// Whether a pixel has the carpet's colour.
-    pub fn is_carpet(&self, rgb: [u8; 3]) -> bool {
-        chromaticity(rgb).is_some_and(|(chroma, _)| self.is_near(chroma))
-    }
-
     /// Whether a chromaticity is the carpet's.
     pub(super) fn is_near(&self, chroma: [f32; 2]) -> bool {
         self.distance_squared(chroma) < GATE
@@ -134,17 +131,20 @@ fn chromaticity([r, g, b]: [u8; 3]) -> Option<([f32; 2], f32)> {
     (sum >= MIN_SUM).then(|| ([f32::from(r) / total, f32::from(g) / total], total))
 }
 
-/// The middle of the 3×3 bins that hold most samples.
+/// The middle of the 3×3 bins that hold most colour. Robots, shoes and shadows are grey: a colourless pixel counts
+/// little, so that the robot's own shoulder before the camera does not pass for the carpet.
 fn peak(samples: &[([f32; 2], f32)]) -> [f32; 2] {
+    const GREY: f32 = 1.0 / 3.0;
     let bin = |value: f32| ((value * BINS as f32) as usize).min(BINS - 1);
-    let mut histogram = vec![[0_u32; BINS]; BINS];
+    let mut histogram = vec![[0.0_f32; BINS]; BINS];
     for ([r, g], _) in samples {
-        histogram[bin(*r)][bin(*g)] += 1;
+        histogram[bin(*r)][bin(*g)] += GREY_WEIGHT + (r - GREY).hypot(g - GREY);
     }
-    let block = |r: usize, g: usize| -> u32 {
-        histogram[r - 1..=r + 1].iter().map(|row| row[g - 1..=g + 1].iter().sum::<u32>()).sum()
+    let block = |r: usize, g: usize| -> f32 {
+        histogram[r - 1..=r + 1].iter().map(|row| row[g - 1..=g + 1].iter().sum::<f32>()).sum()
     };
     let middles = (1..BINS - 1).flat_map(|r| (1..BINS - 1).map(move |g| (r, g)));
-    let (r, g) = middles.max_by_key(|&(r, g)| block(r, g)).unwrap_or((BINS / 3, BINS / 3));
+    let best = middles.max_by(|&(r, g), &(s, h)| block(r, g).total_cmp(&block(s, h)));
+    let (r, g) = best.unwrap_or((BINS / 3, BINS / 3));
     [r, g].map(|bin| (bin as f32 + 0.5) / BINS as f32)
 }

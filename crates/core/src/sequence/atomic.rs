@@ -9,7 +9,7 @@ use super::error::{Fault, SequenceError};
 
 /// Writes a file under a temporary name in its folder, then gives it its name: whoever is killed in between, or runs
 /// out of disk, leaves the old file or none.
-pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), SequenceError> {
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), SequenceError> {
     try_write(path, bytes).map_err(|error| SequenceError::of_file(path, Fault::Unwritable(error)))
 }
 

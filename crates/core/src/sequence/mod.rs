@@ -24,6 +24,7 @@ use std::{
 use image::RgbImage;
 
 pub use self::{
+    atomic::write_atomically,
     camera_file::{CameraSetup, Photometry, read_camera},
     error::{Fault, SequenceError},
     field_file::read_field,
@@ -48,6 +49,8 @@ use crate::{
 pub struct Sequence {
     /// Where it lies.
     pub folder: PathBuf,
+    /// The text files it was read from.
+    pub files: Vec<PathBuf>,
     /// What it is called.
     pub name: String,
     /// The camera on the robot.
@@ -66,7 +69,11 @@ impl Sequence {
     /// Reads and validates a sequence's text files, not its pictures.
     pub fn open(folder: &Path) -> Result<Self, SequenceError> {
         check_folder(folder)?;
-        let table = read_and_parse(&folder.join(SEQUENCE_FILE), parse_sequence)?;
+        let main_file = folder.join(SEQUENCE_FILE);
+        let table = read_and_parse(&main_file, parse_sequence)?;
+        let parts = [&table.camera, &table.field, &table.frames];
+        let parts = parts.into_iter().chain(&table.groundtruth).map(|name| folder.join(name));
+        let files = std::iter::once(main_file).chain(parts).collect();
         let setup = read_camera(&folder.join(&table.camera))?;
         let field = read_field(&folder.join(&table.field))?;
         let frames = read_and_parse(&folder.join(&table.frames), parse_frames)?;
@@ -79,6 +86,7 @@ impl Sequence {
         };
         Ok(Self {
             folder: folder.to_path_buf(),
+            files,
             name: table.name,
             setup,
             field,

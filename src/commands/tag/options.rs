@@ -1,32 +1,18 @@
-//! `reality-sim tag`: a camera pose for every picture of a sequence.
+//! The options of `tag`, and what they ask for.
 
 use std::{
-    fmt::Write,
-    fs,
     ops::Range,
     path::{Path, PathBuf},
 };
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clap::{Args, ValueEnum};
-use image::RgbImage;
-use serde::Serialize;
 
 use reality_sim::{
-    CameraPose, FieldDimensions, ObservationKind, Pose2, Sequence, StampedPose, TagConfig, TaggedFrame,
-    Tagger,
-    evaluation::{ErrorStatistics, PoseError, percentile},
+    FieldDimensions, ObservationKind, Pose2, Sequence, TagConfig,
     field::preset_names,
     filter::{Estimator, KldConfig, Resampling},
-    overlay::{BorderOutline, Overlay},
-    refine::SmoothedPose,
-    sequence::{read_camera, read_field, save_image},
-    tag::{recorded, smooth_sequence, tag_sequence},
-    write_tum,
-};
-
-use super::output::{
-    check_output_file, create_output_folder, frame_progress, print, print_json, write_atomically,
+    sequence::{read_camera, read_field},
 };
 
 /// Odometry that jumps to its origin by more than this was reset, metres.
@@ -36,7 +22,7 @@ const RESET_JUMP_M: f64 = 0.1;
 #[derive(Debug, Args)]
 pub struct TagArgs {
     /// Folder of the sequence: the one that holds sequence.toml
-    sequence: PathBuf,
+    pub sequence: PathBuf,
     /// Model that weighs the particles
     #[arg(long, value_enum, default_value = "contrast")]
     observation: Observation,
@@ -58,13 +44,13 @@ pub struct TagArgs {
     /// Use the whole recording for every pose: fit each picture to a fraction of a pixel, then all pictures, odometry and
     /// IMU together
     #[arg(long)]
-    smooth: bool,
+    pub smooth: bool,
     /// Same seed, same result
     #[arg(long, default_value_t = 0)]
     seed: u64,
     /// Where the particles are weighed
     #[arg(long, value_enum, default_value = "auto")]
-    backend: Backend,
+    pub backend: Backend,
     /// Sigma of the picture's Gaussian blur, pixels (gauss and contrast) [default: the model's own]
     #[arg(long, value_name = "PX", value_parser = blur_px)]
     blur: Option<f32>,
@@ -94,19 +80,19 @@ pub struct TagArgs {
     camera: Option<PathBuf>,
     /// Write the poses, as a TUM file
     #[arg(long, value_name = "FILE")]
-    out: Option<PathBuf>,
+    pub out: Option<PathBuf>,
     /// Write pose, standard deviations and the filter's state of every picture, as a CSV file
     #[arg(long, value_name = "FILE")]
-    details: Option<PathBuf>,
+    pub details: Option<PathBuf>,
     /// Write every picture with lines, border, particles and a map drawn into it
     #[arg(long, value_name = "FOLDER")]
-    overlay: Option<PathBuf>,
+    pub overlay: Option<PathBuf>,
     /// Only these pictures, counted from 0, without B; the start is then dead-reckoned by odometry
     #[arg(long, value_name = "A..B", value_parser = frame_range)]
-    frames: Option<FrameRange>,
+    pub frames: Option<FrameRange>,
     /// Print one JSON object on standard output
     #[arg(long)]
-    json: bool,
+    pub json: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -169,7 +155,7 @@ impl From<EstimatorKind> for Estimator {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Backend {
+pub enum Backend {
     /// The fastest one that is there
     Auto,
     Cpu,
@@ -178,8 +164,8 @@ enum Backend {
 
 /// A half-open range, open where nothing is given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct FrameRange {
-    first: usize,
+pub struct FrameRange {
+    pub first: usize,
     end: Option<usize>,
 }
 
@@ -234,7 +220,8 @@ impl TagArgs {
         }
     }
 
-    fn config(&self) -> TagConfig {
+    /// The filter's settings.
+    pub fn config(&self) -> TagConfig {
         let mut config = TagConfig::new(self.observation.into());
         let observation = &mut config.observation;
         observation.blur_sigma_px = self.blur.unwrap_or(observation.blur_sigma_px);
@@ -253,7 +240,7 @@ impl TagArgs {
     }
 
     /// The sequence as the options want it: other camera, other field, fewer frames, another start.
-    fn open_sequence(&self) -> anyhow::Result<Sequence> {
+    pub fn open_sequence(&self) -> anyhow::Result<Sequence> {
         let mut sequence = Sequence::open(&self.sequence)?;
         if let Some(camera) = &self.camera {
             sequence.setup = read_camera(camera)?;
@@ -298,11 +285,12 @@ impl TagArgs {
         (!reset).then(|| start.moved(odometry[0].motion_to(odometry[frame])))
     }
 
-    fn inputs(&self, sequence: &Sequence) -> anyhow::Result<Vec<PathBuf>> {
-        let mut inputs = sequence_files(&sequence.folder)?;
+    /// Every file that the command reads.
+    pub fn inputs(&self, sequence: &Sequence) -> Vec<PathBuf> {
+        let mut inputs = sequence.files.clone();
         inputs.extend(sequence.frames.iter().map(|frame| sequence.folder.join(&frame.image)));
         inputs.extend([&self.camera, &self.field].into_iter().flatten().cloned());
-        Ok(inputs)
+        inputs
     }
 }
 
@@ -317,272 +305,6 @@ fn field_by_name(name: &Path) -> anyhow::Result<FieldDimensions> {
         bail!("{name}: there is no such field preset or file: give a field.toml, or one of {presets}");
     }
     Ok(read_field(name)?)
-}
-
-/// The text files of a sequence that could be opened.
-fn sequence_files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    let path = folder.join("sequence.toml");
-    let table: toml::Table = fs::read_to_string(&path)
-        .map_err(anyhow::Error::from)
-        .and_then(|text| Ok(toml::from_str(&text)?))
-        .with_context(|| format!("{}: cannot be read again", path.display()))?;
-    let names =
-        ["camera", "field", "frames", "groundtruth"].into_iter().filter_map(|key| table.get(key)?.as_str());
-    Ok(names.map(|name| folder.join(name)).chain([path.clone()]).collect())
-}
-
-/// Runs the command.
-pub fn run(args: &TagArgs) -> anyhow::Result<()> {
-    if args.backend == Backend::Gpu {
-        bail!("--backend gpu: this build has no GPU support: use --backend cpu");
-    }
-    let sequence = args.open_sequence()?;
-    check_outputs(args, &sequence)?;
-
-    let config = args.config();
-    let mut tagger = Tagger::new(&sequence.setup.camera, &sequence.field, sequence.start, config);
-    let progress = frame_progress(sequence.frames.len())?;
-    let mut path = Vec::new();
-    let first = args.frames.map_or(0, |range| range.first);
-    let tagged = tag_sequence(&sequence, &mut tagger, |index, frame, picture, tagger| {
-        progress.inc(1);
-        if let Some(truth) = sequence.groundtruth[index] {
-            let error_cm = 100.0 * PoseError::new(frame.pose, truth).distance_m;
-            progress.set_message(format!("{error_cm:.1} cm off"));
-        }
-        match &args.overlay {
-            Some(folder) => {
-                path.push(frame.pose);
-                let file = folder.join(format!("{:06}.jpg", first + index));
-                save_image(&file, &draw(&sequence, index, frame, picture, tagger, &path))
-            }
-            None => Ok(()),
-        }
-    })
-    .inspect_err(|_| progress.finish_and_clear())?;
-    progress.finish_and_clear();
-
-    let results = if args.smooth { smoothed(&sequence, &tagger, &tagged)? } else { filtered(&tagged) };
-    let poses: Vec<CameraPose> = results.iter().map(|result| result.pose).collect();
-    if let Some(details) = &args.details {
-        write_atomically(details, details_csv(&sequence, &tagged, &results).as_bytes())?;
-    }
-    if let Some(out) = &args.out {
-        let stamped = sequence.frames.iter().zip(&poses);
-        let stamped: Vec<StampedPose> = stamped
-            .map(|(frame, pose)| StampedPose { timestamp_s: frame.timestamp_s, pose: *pose })
-            .collect();
-        write_tum(out, &stamped)?;
-    }
-    let report = Report::new(args, &sequence, &config, &tagged, &poses);
-    if args.json { print_json(&report) } else { print(&report.text(&sequence.name)) }
-}
-
-/// A pose to hand out, with what is known of its errors.
-struct PoseResult {
-    pose: CameraPose,
-    /// Standard deviations of x, y, yaw, height, pitch and roll, metres and radians.
-    sigmas: Option<[f64; 6]>,
-}
-
-/// Every picture's pose as it was found when the picture came.
-fn filtered(tagged: &[TaggedFrame]) -> Vec<PoseResult> {
-    let sigmas = |frame: &TaggedFrame| frame.fit.map(|fit| fit.covariance.diagonal().map(f64::sqrt).into());
-    tagged.iter().map(|frame| PoseResult { pose: frame.pose, sigmas: sigmas(frame) }).collect()
-}
-
-/// The most probable poses of the whole recording.
-fn smoothed(sequence: &Sequence, tagger: &Tagger, tagged: &[TaggedFrame]) -> anyhow::Result<Vec<PoseResult>> {
-    let Some(smoothed) = smooth_sequence(sequence, tagger, tagged)? else {
-        bail!(
-            "{}: no picture shows enough of the lines to smooth the poses: tag without --smooth",
-            sequence.folder.display()
-        );
-    };
-    let result = |pose: &SmoothedPose| PoseResult {
-        pose: pose.pose,
-        sigmas: Some(pose.covariance.diagonal().map(f64::sqrt).into()),
-    };
-    Ok(smoothed.iter().map(result).collect())
-}
-
-/// Whoever waited for an hour must not learn then that the result has no place.
-fn check_outputs(args: &TagArgs, sequence: &Sequence) -> anyhow::Result<()> {
-    let inputs = args.inputs(sequence)?;
-    for output in [&args.out, &args.details].into_iter().flatten() {
-        check_output_file(output, &inputs)?;
-    }
-    if let (Some(out), Some(details)) = (&args.out, &args.details)
-        && out == details
-    {
-        bail!("{}: is given for --out and for --details: give two names", out.display());
-    }
-    args.overlay.as_ref().map_or(Ok(()), |folder| create_output_folder(folder, &inputs))
-}
-
-fn draw(
-    sequence: &Sequence,
-    index: usize,
-    frame: &TaggedFrame,
-    picture: &RgbImage,
-    tagger: &Tagger,
-    path: &[CameraPose],
-) -> RgbImage {
-    let attitude = recorded(sequence, index, picture).attitude;
-    let border = tagger.border(picture, attitude);
-    let overlay = Overlay {
-        camera: &sequence.setup.camera,
-        field: &sequence.field,
-        pose: frame.pose,
-        truth: sequence.groundtruth[index],
-        border: Some(BorderOutline {
-            corners_in_heading: &border.outline_in_heading,
-            camera_in_heading: attitude.at(Pose2::default()),
-        }),
-        particles: tagger.particles(),
-        path,
-    };
-    overlay.draw(picture.clone())
-}
-
-/// One line a picture; what is not known is empty.
-fn details_csv(sequence: &Sequence, tagged: &[TaggedFrame], results: &[PoseResult]) -> String {
-    const DEGREES_OF_FREEDOM: [&str; 6] = ["x_m", "y_m", "yaw_rad", "height_m", "pitch_rad", "roll_rad"];
-    let mut csv = String::from("timestamp_s");
-    let sigmas = DEGREES_OF_FREEDOM.map(|name| format!("sigma_{name}"));
-    for name in DEGREES_OF_FREEDOM.into_iter().chain(sigmas.iter().map(String::as_str)) {
-        csv.push(',');
-        csv.push_str(name);
-    }
-    csv.push_str(
-        ",effective_sample_size,particles,line_fraction,sure,mirror_probability,searched,error_m,error_yaw_rad\n",
-    );
-    for (index, (frame, result)) in tagged.iter().zip(results).enumerate() {
-        let pose = result.pose;
-        // Writing into a string cannot fail.
-        let _ = write!(csv, "{}", sequence.frames[index].timestamp_s);
-        for value in [pose.x_m, pose.y_m, pose.yaw_rad, pose.height_m, pose.pitch_rad, pose.roll_rad] {
-            let _ = write!(csv, ",{value}");
-        }
-        for axis in 0..DEGREES_OF_FREEDOM.len() {
-            csv.push(',');
-            if let Some(sigmas) = &result.sigmas {
-                let _ = write!(csv, "{}", sigmas[axis]);
-            }
-        }
-        let _ = write!(
-            csv,
-            ",{},{},{},{},{},{}",
-            frame.filter.effective_sample_size,
-            frame.filter.particles,
-            frame.line_fraction,
-            frame.sure,
-            frame.mirror_probability,
-            frame.searched
-        );
-        let _ = match sequence.groundtruth[index].map(|truth| PoseError::new(pose, truth)) {
-            Some(error) => writeln!(csv, ",{},{}", error.distance_m, error.yaw_rad),
-            None => writeln!(csv, ",,"),
-        };
-    }
-    csv
-}
-
-/// What `--json` prints.
-#[derive(Debug, Serialize)]
-struct Report {
-    sequence: String,
-    frames: usize,
-    observation: ObservationKind,
-    backend: &'static str,
-    particles: usize,
-    iterations: u32,
-    resampling: Resampling,
-    estimator: Estimator,
-    adaptive: bool,
-    seed: u64,
-    smoothed: bool,
-    /// Median; decoding, drawing and writing excluded.
-    seconds_per_frame: f64,
-    sure_frames: usize,
-    searched_frames: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    error: Option<ErrorStatistics>,
-    out: Option<String>,
-    details: Option<String>,
-    overlay: Option<String>,
-}
-
-impl Report {
-    fn new(
-        args: &TagArgs,
-        sequence: &Sequence,
-        config: &TagConfig,
-        tagged: &[TaggedFrame],
-        poses: &[CameraPose],
-    ) -> Self {
-        let truths = sequence.groundtruth.iter().zip(poses);
-        let errors: Vec<PoseError> =
-            truths.filter_map(|(truth, pose)| Some(PoseError::new(*pose, (*truth)?))).collect();
-        let mut seconds: Vec<f64> = tagged.iter().map(|frame| frame.seconds).collect();
-        seconds.sort_by(f64::total_cmp);
-        Self {
-            sequence: shown(&args.sequence),
-            frames: tagged.len(),
-            observation: config.observation.kind,
-            backend: "cpu",
-            particles: config.filter.particles,
-            iterations: config.filter.iterations,
-            resampling: config.filter.resampling,
-            estimator: config.filter.estimator,
-            adaptive: config.filter.adaptive.is_some(),
-            seed: config.filter.seed,
-            smoothed: args.smooth,
-            seconds_per_frame: percentile(&seconds, 0.5).unwrap_or(0.0),
-            sure_frames: tagged.iter().filter(|frame| frame.sure).count(),
-            searched_frames: tagged.iter().filter(|frame| frame.searched).count(),
-            error: ErrorStatistics::new(&errors),
-            out: args.out.as_deref().map(shown),
-            details: args.details.as_deref().map(shown),
-            overlay: args.overlay.as_deref().map(shown),
-        }
-    }
-
-    /// The same for people.
-    fn text(&self, name: &str) -> String {
-        let observation = match self.observation {
-            ObservationKind::Gauss => "gauss",
-            ObservationKind::Distance => "distance",
-            ObservationKind::Contrast => "contrast",
-        };
-        let mut lines = vec![
-            ("sequence", format!("{name}, {} frames", self.frames)),
-            (
-                "model",
-                format!(
-                    "{observation}, {} particles, {} iterations, {}",
-                    self.particles, self.iterations, self.backend
-                ),
-            ),
-            ("time", format!("{:.1} ms a frame (median)", 1e3 * self.seconds_per_frame)),
-            ("sure", format!("{} frames; {} searched", self.sure_frames, self.searched_frames)),
-        ];
-        if let Some(error) = &self.error {
-            let cm = |metres: f64| format!("{:.2} cm", 100.0 * metres);
-            let [mean, median, p95, max] = [error.mean_m, error.median_m, error.p95_m, error.max_m].map(cm);
-            lines.push(("error", format!("mean {mean}, median {median}, 95 % below {p95}, largest {max}")));
-            let yaw = error.mean_yaw_rad.to_degrees();
-            lines.push(("", format!("yaw {yaw:.2}° in the mean; {} frames lost", error.lost_frames)));
-        }
-        for (name, path) in [("poses", &self.out), ("details", &self.details), ("overlay", &self.overlay)] {
-            lines.extend(path.iter().map(|path| (name, path.clone())));
-        }
-        lines.iter().map(|(name, value)| format!("{name:10}{value}\n")).collect()
-    }
-}
-
-fn shown(path: &Path) -> String {
-    path.display().to_string()
 }
 
 #[cfg(test)]

@@ -1,0 +1,110 @@
+//! Eq. 1 to the letter: from every projected sample, both ways across the projected line to the first white pixel.
+//!
+//! [`super::ObservationKind::Distance`] reads the same distance from a distance field, in any direction and many times
+//! faster; `docs/paper.md` compares the two.
+
+use glam::DVec2;
+use image::GrayImage;
+use rayon::prelude::*;
+
+use super::{ObservationConfig, POSES_PER_TASK, Scorer};
+use crate::{
+    camera::Camera,
+    field::{FieldDimensions, LineSample, sample_lines},
+    pose::CameraPose,
+    preprocess::Prepared,
+};
+
+/// Step along a line that gives its direction in the picture, metres.
+const TANGENT_STEP_M: f64 = 0.01;
+
+/// Scores poses by searching along the normals of the projected lines.
+#[derive(Debug, Clone)]
+pub struct NormalSearch {
+    camera: Camera,
+    samples: Vec<LineSample>,
+    evidence: GrayImage,
+    max_distance_px: u32,
+    alpha: f64,
+}
+
+impl NormalSearch {
+    /// Takes spacing, cap and α from the settings of the distance model.
+    pub fn new(camera: &Camera, field: &FieldDimensions, config: ObservationConfig) -> Self {
+        Self {
+            camera: camera.clone(),
+            samples: sample_lines(field, config.spacing_in(field)),
+            evidence: GrayImage::default(),
+            max_distance_px: config.max_distance_px as u32,
+            alpha: config.alpha,
+        }
+    }
+
+    fn log_weight(&self, pose: CameraPose) -> f64 {
+        let distances = self.samples.iter().filter_map(|sample| self.distance_px(pose, sample));
+        distances.map(|distance_px| f64::from(self.max_distance_px - distance_px)).sum::<f64>() / self.alpha
+    }
+
+    /// Distance from a projected sample to the next white pixel across the line, at most the cap; `None` out of view.
+    fn distance_px(&self, pose: CameraPose, sample: &LineSample) -> Option<u32> {
+        let project = |point: DVec2| self.camera.project(pose.camera_from_world(point.extend(0.0))).ok();
+        let pixel = project(sample.point_in_world)?;
+        let ahead = project(sample.point_in_world + TANGENT_STEP_M * sample.tangent_in_world)?;
+        let normal = (ahead - pixel).perp().try_normalize()?;
+        let white = |pixel: DVec2| {
+            let [u, v] = pixel.round().to_array();
+            // The casts saturate: what lies left of or above the picture is excluded first.
+            u >= 0.0
+                && v >= 0.0
+                && self.evidence.get_pixel_checked(u as u32, v as u32).is_some_and(|p| p.0[0] > 0)
+        };
+        let found = |distance: &u32| {
+            let across = f64::from(*distance) * normal;
+            white(pixel + across) || white(pixel - across)
+        };
+        Some((0..self.max_distance_px).find(found).unwrap_or(self.max_distance_px))
+    }
+}
+
+impl Scorer for NormalSearch {
+    fn load(&mut self, picture: &Prepared) {
+        self.evidence = picture.evidence();
+    }
+
+    fn log_weights(&self, poses: &[CameraPose]) -> Vec<f64> {
+        poses.par_iter().with_min_len(POSES_PER_TASK).map(|pose| self.log_weight(*pose)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        observation::{CpuScorer, ObservationKind},
+        preprocess::{Attitude, Preprocessor},
+        test_scene,
+    };
+
+    /// Straight to the next white pixel is never farther than across the line to one.
+    #[test]
+    fn the_distance_field_is_a_lower_bound_that_is_met_on_the_lines() {
+        let (camera, field) = (test_scene::fisheye(), test_scene::field());
+        let config = ObservationConfig::new(ObservationKind::Distance);
+        let (mut across, mut any) =
+            (NormalSearch::new(&camera, &field, config), CpuScorer::new(&camera, &field, config));
+        for pose in test_scene::poses() {
+            let picture = Preprocessor::new(&camera, field.line_width_m)
+                .prepare(&test_scene::render(&camera, pose, &field), Attitude::of(pose));
+            across.load(&picture);
+            any.load(&picture);
+            let beside = [0.0, 0.03, 0.1, 0.5].map(|dx| CameraPose { x_m: pose.x_m + dx, ..pose });
+            let (across, any) = (across.log_weights(&beside), any.log_weights(&beside));
+            for (across, any) in across.iter().zip(&any) {
+                assert!(*across <= 1.03 * any, "{across} along the normals, {any} in any direction");
+            }
+            // Far lines are white in places only: across the line there may be nothing where along it there is.
+            assert!(across[0] > 0.6 * any[0], "{} and {} in the right place", across[0], any[0]);
+            assert!(across.windows(2).all(|pair| pair[0] > pair[1]), "worse with the distance: {across:?}");
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! The paper's Table 2 and Fig. 9.
+
+use std::fmt::Write;
+
+use anyhow::Context;
+use plotters::prelude::*;
+use reality_sim::{ObservationKind, TagConfig};
+
+use crate::{
+    OUT,
+    recording::{Model, Recording, Runs},
+};
+
+const PARTICLES: [usize; 7] = [50, 100, 200, 400, 800, 1600, 3000];
+const MODELS: [(ObservationKind, &str); 3] = [
+    (ObservationKind::Gauss, "gauss"),
+    (ObservationKind::Distance, "distance"),
+    (ObservationKind::Contrast, "contrast"),
+];
+
+/// A model as in the paper: neither search nor refinement.
+fn as_in_the_paper(kind: ObservationKind) -> TagConfig {
+    let config = TagConfig::new(kind);
+    TagConfig { recovery: false, refine: false, ..config }
+}
+
+/// Appends both tables and writes the plots.
+pub fn write(recording: &Recording, seeds: u64, text: &mut String) -> anyhow::Result<()> {
+    table_2(recording, seeds, text)?;
+    figure_9(recording, seeds, text)
+}
+
+fn table_2(recording: &Recording, seeds: u64, text: &mut String) -> anyhow::Result<()> {
+    writeln!(
+        text,
+        "\n## Table 2: 800 particles\n\n| | mean error | smallest to largest of the seeds | frames lost | time a frame |\n|---|---|---|---|---|"
+    )?;
+    writeln!(text, "| the paper, Gauss-based, Intel i5 2.5 GHz | 18.1 cm | | | 850 ms |")?;
+    writeln!(text, "| the paper, distance-based | 18.5 cm | | | 1,760 ms |")?;
+    for (kind, name) in MODELS {
+        let paper = as_in_the_paper(kind);
+        table_2_row(recording, seeds, &format!("`{name}`, as in the paper"), paper, Model::Configured, text)?;
+        if kind == ObservationKind::Distance {
+            let label = "Eq. 1 to the letter, as in the paper";
+            table_2_row(recording, seeds, label, paper, Model::NormalSearch, text)?;
+        }
+        let default = TagConfig::new(kind);
+        table_2_row(recording, seeds, &format!("`{name}`, default"), default, Model::Configured, text)?;
+    }
+    Ok(())
+}
+
+fn table_2_row(
+    recording: &Recording,
+    seeds: u64,
+    label: &str,
+    config: TagConfig,
+    model: Model,
+    text: &mut String,
+) -> anyhow::Result<()> {
+    let runs = recording.runs(seeds, config, model);
+    let [low, high] = runs.range_cm();
+    writeln!(
+        text,
+        "| {label} | {:.2} cm | {low:.2} to {high:.2} cm | {:.1} | {:.1} ms |",
+        runs.mean_cm(),
+        runs.lost(),
+        runs.milliseconds()
+    )?;
+    Ok(())
+}
+
+fn figure_9(recording: &Recording, seeds: u64, text: &mut String) -> anyhow::Result<()> {
+    writeln!(
+        text,
+        "\n## Fig. 9: error and time against the number of particles\n\nMean error in cm (smallest to largest of the seeds), frames lost, milliseconds a frame; default settings.\n"
+    )?;
+    writeln!(text, "| particles | gauss | distance | contrast |\n|---|---|---|---|")?;
+    let mut curves: Vec<Vec<(f64, Runs)>> = MODELS.iter().map(|_| Vec::new()).collect();
+    for particles in PARTICLES {
+        write!(text, "| {particles} |")?;
+        for (curve, (kind, _)) in curves.iter_mut().zip(MODELS) {
+            let mut config = TagConfig::new(kind);
+            config.filter.particles = particles;
+            let runs = recording.runs(seeds, config, Model::Configured);
+            let [low, high] = runs.range_cm();
+            write!(
+                text,
+                " {:.2} ({low:.2} to {high:.2}), {:.1} lost, {:.1} ms |",
+                runs.mean_cm(),
+                runs.lost(),
+                runs.milliseconds()
+            )?;
+            curve.push((particles as f64, runs));
+        }
+        writeln!(text)?;
+    }
+    plot("error.svg", "mean error (cm)", &curves, Runs::mean_cm)?;
+    plot("time.svg", "time a frame (ms)", &curves, Runs::milliseconds)
+}
+
+/// A curve for each model over the number of particles, both axes logarithmic.
+fn plot(
+    file: &str,
+    label: &str,
+    curves: &[Vec<(f64, Runs)>],
+    value: impl Fn(&Runs) -> f64,
+) -> anyhow::Result<()> {
+    let path = format!("{OUT}/{file}");
+    let points: Vec<Vec<(f64, f64)>> =
+        curves.iter().map(|curve| curve.iter().map(|(x, runs)| (*x, value(runs))).collect()).collect();
+    let values = || points.iter().flatten().map(|(_, y)| *y);
+    let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
+    let root = SVGBackend::new(&path, (640, 420)).into_drawing_area();
+    root.fill(&WHITE)?;
+    let mut chart = ChartBuilder::on(&root)
+        .margin(12)
+        .x_label_area_size(40)
+        .y_label_area_size(56)
+        .build_cartesian_2d((45.0..3300.0).log_scale(), (0.8 * low..1.3 * high).log_scale())?;
+    chart.configure_mesh().x_desc("particles").y_desc(label).light_line_style(WHITE).draw()?;
+    for ((points, (_, name)), color) in
+        points.iter().zip(MODELS).zip([RGBColor(214, 96, 77), RGBColor(67, 147, 195), RGBColor(27, 120, 55)])
+    {
+        chart
+            .draw_series(LineSeries::new(points.iter().copied(), color.stroke_width(2)).point_size(3))?
+            .label(name)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2)));
+    }
+    chart.configure_series_labels().background_style(WHITE).border_style(BLACK).draw()?;
+    root.present().with_context(|| format!("{path}: cannot be written"))
+}

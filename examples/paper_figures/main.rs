@@ -1,0 +1,58 @@
+//! The paper's Table 2 and Fig. 9, and the sweep the defaults come from, on sequences with ground truth:
+//!
+//! `cargo run --release --example paper_figures -- figures FRAMES SEEDS SEQUENCE` writes `tables.md`, `error.svg` and
+//! `time.svg` into `docs/figures`;
+//! `cargo run --release --example paper_figures -- sweep FRAMES SEEDS SEQUENCE...` writes `sweep.md`.
+//!
+//! FRAMES is the largest number of pictures taken of each sequence.
+
+mod figures;
+mod recording;
+mod sweep;
+
+use std::{fmt::Write, fs, path::Path};
+
+use anyhow::{Context, bail};
+
+use crate::recording::Recording;
+
+const OUT: &str = "docs/figures";
+const USAGE: &str = "usage: paper_figures figures|sweep FRAMES SEEDS SEQUENCE...";
+
+fn main() -> anyhow::Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [what, frames, seeds, folders @ ..] = arguments.as_slice() else { bail!(USAGE) };
+    let number =
+        |text: &String| text.parse::<u32>().with_context(|| format!("{text}: is no number; {USAGE}"));
+    let (frames, seeds) = (number(frames)?, number(seeds)?);
+    let recordings = folders
+        .iter()
+        .map(|folder| Recording::open(Path::new(folder), frames as usize))
+        .collect::<anyhow::Result<Vec<_>>>()?;
+    fs::create_dir_all(OUT).with_context(|| format!("{OUT}: cannot be made"))?;
+    let mut text = header(what, frames, seeds, &recordings)?;
+    let file = match (what.as_str(), recordings.as_slice()) {
+        ("figures", [recording]) => {
+            figures::write(recording, u64::from(seeds), &mut text)?;
+            format!("{OUT}/tables.md")
+        }
+        ("sweep", [_, ..]) => {
+            sweep::write(&recordings, u64::from(seeds), &mut text)?;
+            format!("{OUT}/sweep.md")
+        }
+        _ => bail!(USAGE),
+    };
+    fs::write(&file, text).with_context(|| format!("{file}: cannot be written"))
+}
+
+/// Says how the file was made.
+fn header(what: &str, frames: u32, seeds: u32, recordings: &[Recording]) -> anyhow::Result<String> {
+    let mut text = format!(
+        "Made by `cargo run --release --example paper_figures -- {what} {frames} {seeds} SEQUENCE...`, {seeds} seeds, on"
+    );
+    for recording in recordings {
+        write!(text, " `{}` ({} pictures)", recording.sequence.name, recording.pictures.len())?;
+    }
+    text.push_str(".\n");
+    Ok(text)
+}

@@ -1,0 +1,119 @@
+//! A recording tagged with some settings and compared with its ground truth.
+
+use std::path::Path;
+
+use image::RgbImage;
+use reality_sim::{
+    Sequence, TagConfig, Tagger,
+    evaluation::{PoseError, percentile},
+    observation::NormalSearch,
+    tag::recorded,
+};
+
+/// The pictures of a sequence, decoded once for all runs.
+pub struct Recording {
+    pub sequence: Sequence,
+    pub pictures: Vec<RgbImage>,
+}
+
+/// What weighs the particles.
+#[derive(Clone, Copy)]
+pub enum Model {
+    /// The model that the settings name.
+    Configured,
+    /// Eq. 1 to the letter.
+    NormalSearch,
+}
+
+/// What one run over the recording came to.
+pub struct Run {
+    mean_m: f64,
+    /// Mean error of the pictures that were not lost.
+    kept_m: f64,
+    lost: usize,
+    seconds_per_frame: f64,
+}
+
+/// Runs that differ in nothing but the seed.
+pub struct Runs(Vec<Run>);
+
+impl Recording {
+    pub fn open(folder: &Path, frames: usize) -> anyhow::Result<Self> {
+        let mut sequence = Sequence::open(folder)?;
+        sequence.frames.truncate(frames);
+        sequence.groundtruth.truncate(frames);
+        let pictures =
+            (0..sequence.frames.len()).map(|index| sequence.load_image(index)).collect::<Result<_, _>>()?;
+        Ok(Self { sequence, pictures })
+    }
+
+    fn run(&self, config: TagConfig, model: Model) -> Run {
+        let Sequence { setup, field, start, groundtruth, .. } = &self.sequence;
+        let camera = &setup.camera;
+        let mut tagger = match model {
+            Model::Configured => Tagger::new(camera, field, *start, config),
+            Model::NormalSearch => {
+                let scorer = NormalSearch::new(camera, field, config.observation);
+                Tagger::with_scorer(camera, field, *start, config, Box::new(scorer))
+            }
+        };
+        let (mut errors, mut seconds) = (Vec::new(), Vec::new());
+        for (index, picture) in self.pictures.iter().enumerate() {
+            let frame = tagger.tag(recorded(&self.sequence, index, picture));
+            errors.extend(groundtruth[index].map(|truth| PoseError::new(frame.pose, truth)));
+            seconds.push(frame.seconds);
+        }
+        seconds.sort_by(f64::total_cmp);
+        let kept: Vec<f64> =
+            errors.iter().filter(|error| !error.is_lost()).map(|error| error.distance_m).collect();
+        Run {
+            mean_m: errors.iter().map(|error| error.distance_m).sum::<f64>() / errors.len().max(1) as f64,
+            kept_m: kept.iter().sum::<f64>() / kept.len().max(1) as f64,
+            lost: errors.iter().filter(|error| error.is_lost()).count(),
+            seconds_per_frame: percentile(&seconds, 0.5).unwrap_or(0.0),
+        }
+    }
+
+    pub fn runs(&self, seeds: u64, config: TagConfig, model: Model) -> Runs {
+        let seeded = |seed| {
+            let mut config = config;
+            config.filter.seed = seed;
+            self.run(config, model)
+        };
+        Runs((0..seeds.max(1)).map(seeded).collect())
+    }
+}
+
+impl Runs {
+    fn mean(&self, value: impl Fn(&Run) -> f64) -> f64 {
+        self.0.iter().map(value).sum::<f64>() / self.0.len() as f64
+    }
+
+    pub fn mean_cm(&self) -> f64 {
+        100.0 * self.mean(|run| run.mean_m)
+    }
+
+    /// Mean error of the pictures that were not lost, centimetres.
+    pub fn kept_cm(&self) -> f64 {
+        100.0 * self.mean(|run| run.kept_m)
+    }
+
+    /// Lost pictures of all seeds.
+    pub fn lost_in_all(&self) -> usize {
+        self.0.iter().map(|run| run.lost).sum()
+    }
+
+    /// Smallest and largest mean error of a run, centimetres.
+    pub fn range_cm(&self) -> [f64; 2] {
+        let means = || self.0.iter().map(|run| 100.0 * run.mean_m);
+        [means().fold(f64::INFINITY, f64::min), means().fold(0.0, f64::max)]
+    }
+
+    pub fn milliseconds(&self) -> f64 {
+        1e3 * self.mean(|run| run.seconds_per_frame)
+    }
+
+    pub fn lost(&self) -> f64 {
+        self.mean(|run| run.lost as f64)
+    }
+}

@@ -1,0 +1,160 @@
+//! What `tag` tells of its results: a line a picture, and a summary for people and for programs.
+
+use std::{fmt::Write, path::Path};
+
+use serde::Serialize;
+
+use reality_sim::{
+    CameraPose, ObservationKind, Sequence, TagConfig, TaggedFrame,
+    evaluation::{ErrorStatistics, PoseError, percentile},
+    filter::{Estimator, Resampling},
+};
+
+use super::options::TagArgs;
+
+/// A pose to hand out, with what is known of its errors.
+pub struct PoseResult {
+    pub pose: CameraPose,
+    /// Standard deviations of x, y, yaw, height, pitch and roll, metres and radians.
+    pub sigmas: Option<[f64; 6]>,
+}
+
+/// One line a picture; what is not known is empty.
+pub fn details_csv(sequence: &Sequence, tagged: &[TaggedFrame], results: &[PoseResult]) -> String {
+    const DEGREES_OF_FREEDOM: [&str; 6] = ["x_m", "y_m", "yaw_rad", "height_m", "pitch_rad", "roll_rad"];
+    let mut csv = String::from("timestamp_s");
+    let sigmas = DEGREES_OF_FREEDOM.map(|name| format!("sigma_{name}"));
+    for name in DEGREES_OF_FREEDOM.into_iter().chain(sigmas.iter().map(String::as_str)) {
+        csv.push(',');
+        csv.push_str(name);
+    }
+    csv.push_str(
+        ",effective_sample_size,particles,line_fraction,sure,mirror_probability,searched,error_m,error_yaw_rad\n",
+    );
+    for (index, (frame, result)) in tagged.iter().zip(results).enumerate() {
+        let pose = result.pose;
+        // Writing into a string cannot fail.
+        let _ = write!(csv, "{}", sequence.frames[index].timestamp_s);
+        for value in [pose.x_m, pose.y_m, pose.yaw_rad, pose.height_m, pose.pitch_rad, pose.roll_rad] {
+            let _ = write!(csv, ",{value}");
+        }
+        for axis in 0..DEGREES_OF_FREEDOM.len() {
+            csv.push(',');
+            if let Some(sigmas) = &result.sigmas {
+                let _ = write!(csv, "{}", sigmas[axis]);
+            }
+        }
+        let _ = write!(
+            csv,
+            ",{},{},{},{},{},{}",
+            frame.filter.effective_sample_size,
+            frame.filter.particles,
+            frame.line_fraction,
+            frame.sure,
+            frame.mirror_probability,
+            frame.searched
+        );
+        let _ = match sequence.groundtruth[index].map(|truth| PoseError::new(pose, truth)) {
+            Some(error) => writeln!(csv, ",{},{}", error.distance_m, error.yaw_rad),
+            None => writeln!(csv, ",,"),
+        };
+    }
+    csv
+}
+
+/// What `--json` prints.
+#[derive(Debug, Serialize)]
+pub struct Report {
+    sequence: String,
+    frames: usize,
+    observation: ObservationKind,
+    backend: &'static str,
+    particles: usize,
+    iterations: u32,
+    resampling: Resampling,
+    estimator: Estimator,
+    adaptive: bool,
+    seed: u64,
+    smoothed: bool,
+    /// Median; decoding, drawing and writing excluded.
+    seconds_per_frame: f64,
+    sure_frames: usize,
+    searched_frames: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<ErrorStatistics>,
+    out: Option<String>,
+    details: Option<String>,
+    overlay: Option<String>,
+}
+
+impl Report {
+    pub fn new(
+        args: &TagArgs,
+        sequence: &Sequence,
+        config: &TagConfig,
+        tagged: &[TaggedFrame],
+        poses: &[CameraPose],
+    ) -> Self {
+        let truths = sequence.groundtruth.iter().zip(poses);
+        let errors: Vec<PoseError> =
+            truths.filter_map(|(truth, pose)| Some(PoseError::new(*pose, (*truth)?))).collect();
+        let mut seconds: Vec<f64> = tagged.iter().map(|frame| frame.seconds).collect();
+        seconds.sort_by(f64::total_cmp);
+        Self {
+            sequence: shown(&args.sequence),
+            frames: tagged.len(),
+            observation: config.observation.kind,
+            backend: "cpu",
+            particles: config.filter.particles,
+            iterations: config.filter.iterations,
+            resampling: config.filter.resampling,
+            estimator: config.filter.estimator,
+            adaptive: config.filter.adaptive.is_some(),
+            seed: config.filter.seed,
+            smoothed: args.smooth,
+            seconds_per_frame: percentile(&seconds, 0.5).unwrap_or(0.0),
+            sure_frames: tagged.iter().filter(|frame| frame.sure).count(),
+            searched_frames: tagged.iter().filter(|frame| frame.searched).count(),
+            error: ErrorStatistics::new(&errors),
+            out: args.out.as_deref().map(shown),
+            details: args.details.as_deref().map(shown),
+            overlay: args.overlay.as_deref().map(shown),
+        }
+    }
+
+    /// The same for people.
+    pub fn text(&self, name: &str) -> String {
+        let observation = match self.observation {
+            ObservationKind::Gauss => "gauss",
+            ObservationKind::Distance => "distance",
+            ObservationKind::Contrast => "contrast",
+        };
+        let mut lines = vec![
+            ("sequence", format!("{name}, {} frames", self.frames)),
+            (
+                "model",
+                format!(
+                    "{observation}, {} particles, {} iterations, {}",
+                    self.particles, self.iterations, self.backend
+                ),
+            ),
+            ("time", format!("{:.1} ms a frame (median)", 1e3 * self.seconds_per_frame)),
+            ("sure", format!("{} frames; {} searched", self.sure_frames, self.searched_frames)),
+        ];
+        if let Some(error) = &self.error {
+            let cm = |metres: f64| format!("{:.2} cm", 100.0 * metres);
+            let [mean, median, p95, max] = [error.mean_m, error.median_m, error.p95_m, error.max_m].map(cm);
+            lines.push(("error", format!("mean {mean}, median {median}, 95 % below {p95}, largest {max}")));
+            let yaw = error.mean_yaw_rad.to_degrees();
+            lines.push(("", format!("yaw {yaw:.2}° in the mean; {} frames lost", error.lost_frames)));
+        }
+        for (name, path) in [("poses", &self.out), ("details", &self.details), ("overlay", &self.overlay)] {
+            lines.extend(path.iter().map(|path| (name, path.clone())));
+        }
+        lines.iter().map(|(name, value)| format!("{name:10}{value}\n")).collect()
+    }
+}
+
+fn shown(path: &Path) -> String {
+    path.display().to_string()
+}
