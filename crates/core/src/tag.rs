@@ -235,8 +235,7 @@ impl Tagger {
     pub fn tag(&mut self, recorded: Recorded<'_>) -> TaggedFrame {
         let begin = Instant::now();
         let picture = self.preprocessor.prepare(recorded.picture, recorded.attitude);
-        self.scorer.load(&picture);
-        self.search.load(&picture);
+        rayon::join(|| self.scorer.load(&picture), || self.search.load(&picture));
         let mut tagged = match self.state.take() {
             Some(track) => self.follow(track, &picture, recorded),
             None => self.begin(&picture, recorded),

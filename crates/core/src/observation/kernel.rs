@@ -14,27 +14,46 @@ pub(crate) const LANES: usize = 16;
 /// One value for each of sixteen points.
 pub(crate) type Lanes = [f32; LANES];
 
-/// Ground points in blocks of sixteen. The last block is filled up with NaN, which no camera sees.
+/// Sixteen ground points: neighbours on a line, hence close together.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Block {
+    /// x and y. A block with fewer points is filled up with NaN, which no camera sees.
+    place: [Lanes; 2],
+    /// A circle that holds all points.
+    centre: [f32; 2],
+    radius: f32,
+}
+
+impl Block {
+    fn new(points: &[glam::DVec2]) -> Self {
+        let mut place = [[f32::NAN; LANES]; 2];
+        for (lane, point) in points.iter().enumerate() {
+            place[0][lane] = point.x as f32;
+            place[1][lane] = point.y as f32;
+        }
+        let centre = points.iter().sum::<glam::DVec2>() / points.len() as f64;
+        let radius = points.iter().map(|point| point.distance(centre)).fold(0.0, f64::max);
+        // A little larger than that, for rounding.
+        Self { place, centre: [centre.x as f32, centre.y as f32], radius: 1.001 * radius as f32 + 1e-4 }
+    }
+}
+
+/// Ground points in blocks of sixteen.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct GroundPoints {
-    pub blocks: Vec<[Lanes; 2]>,
+    pub blocks: Vec<Block>,
 }
 
 impl GroundPoints {
     pub fn new(points: impl Iterator<Item = glam::DVec2>) -> Self {
         let points: Vec<_> = points.collect();
-        let blocks = points
-            .chunks(LANES)
-            .map(|chunk| {
-                let mut block = [[f32::NAN; LANES]; 2];
-                for (lane, point) in chunk.iter().enumerate() {
-                    block[0][lane] = point.x as f32;
-                    block[1][lane] = point.y as f32;
-                }
-                block
-            })
-            .collect();
+        let blocks = points.chunks(LANES).map(Block::new).collect();
         Self { blocks }
+    }
+
+    /// Number of points.
+    pub fn count(&self) -> usize {
+        self.blocks.iter().flat_map(|block| block.place[0]).filter(|x| !x.is_nan()).count()
     }
 }
 
@@ -57,6 +76,19 @@ impl CameraFromGround {
             height_m: position.z as f32,
         }
     }
+
+    /// Whether a block lies outside the lens's largest angle as a whole, told from its circle alone.
+    #[inline(always)]
+    fn is_beyond(&self, camera: &KernelCamera, block: &Block) -> bool {
+        let [a, b] = block.centre;
+        let [x, y, z] = std::array::from_fn(|axis| {
+            self.linear[axis][0] * a + self.linear[axis][1] * b + self.offset[axis]
+        });
+        let distance = (x * x + y * y + z * z).sqrt();
+        // The point of the circle that is seen at the smallest angle has at most this z, at least this distance.
+        let least_distance = distance - block.radius.copysign(camera.min_cos);
+        z + block.radius < camera.min_cos * least_distance
+    }
 }
 
 /// Pixels of sixteen ground points; `seen` is 1 where the point has a pixel, else 0.
@@ -71,11 +103,11 @@ pub(crate) struct Pixels {
 
 /// Projects a block; `None` where the camera sees none of it.
 #[inline(always)]
-pub(crate) fn project_block(
-    camera: &KernelCamera,
-    pose: &CameraFromGround,
-    ground: &[Lanes; 2],
-) -> Option<Pixels> {
+pub(crate) fn project_block(camera: &KernelCamera, pose: &CameraFromGround, block: &Block) -> Option<Pixels> {
+    if pose.is_beyond(camera, block) {
+        return None;
+    }
+    let ground = &block.place;
     let mut place = [[0.0_f32; LANES]; 3];
     for (axis, place) in place.iter_mut().enumerate() {
         let [a, b] = pose.linear[axis];
@@ -124,11 +156,16 @@ pub(crate) fn project_block(
             }
         }
     }
+    let mut any = 0u32;
     for i in 0..LANES {
         let (u, v) = (pixels.u[i], pixels.v[i]);
         let seen =
             (cos[i] >= camera.min_cos) & (u >= 0.0) & (u <= camera.max_u) & (v >= 0.0) & (v <= camera.max_v);
         pixels.seen[i] = f32::from(u8::from(seen));
+        any |= u32::from(seen);
+    }
+    if any == 0 {
+        return None;
     }
     if let Some([circle_u, circle_v, radius_squared]) = camera.circle {
         for i in 0..LANES {

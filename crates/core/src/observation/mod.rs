@@ -90,8 +90,8 @@ impl ObservationConfig {
             kind,
             spacing_m: 0.02,
             spacing_line_widths: 0.0,
-            blur_sigma_px: 1.5,
-            alpha: 1000.0,
+            blur_sigma_px: 1.0,
+            alpha: 300.0,
             mask_border: true,
             max_distance_px: 20.0,
             contrast_gain: 0.4,
@@ -169,7 +169,7 @@ impl CpuScorer {
 
     /// Number of line samples scored for each pose.
     pub fn samples(&self) -> usize {
-        self.points.centre.blocks.iter().flat_map(|block| block[0]).filter(|x| !x.is_nan()).count()
+        self.points.centre.count()
     }
 
     /// Fraction of the line in view that the picture shows where the pose puts it: 1 where every line is found, 0 for a

@@ -8,6 +8,7 @@
 
 use glam::Vec2;
 use image::{GrayImage, RgbImage};
+use rayon::prelude::*;
 
 use super::{
     Attitude,
@@ -28,6 +29,8 @@ const LEARNING_RADIUS_HEIGHTS: f32 = 8.0;
 
 /// Cells of carpet at a strip's near end that tell the next strip its colour.
 const NEAR_CELLS: usize = 8;
+/// Every how many cells the colour is learned from, and every how many bearings are looked at for where it shows best.
+const LEARNING_STEP: usize = 5;
 /// A sine of depression that no ray has.
 const NEVER_INSIDE: f32 = 2.0;
 /// This many bearings beside the hull are counted to it.
@@ -94,7 +97,10 @@ impl BorderDetector {
         let near = 1.0 / (1.0 + LEARNING_RADIUS_HEIGHTS * LEARNING_RADIUS_HEIGHTS).sqrt();
         let seen = || cells.iter().enumerate().filter_map(|(index, cell)| cell.map(|cell| (index, cell)));
         let carpet = CarpetColor::learn(
-            seen().filter(|(_, cell)| cell.depression > near).map(|(index, _)| color(index)),
+            seen()
+                .step_by(LEARNING_STEP)
+                .filter(|(_, cell)| cell.depression > near)
+                .map(|(index, _)| color(index)),
         );
         let mut strips = vec![[ColorSum::default(); DEPRESSIONS]; BEARINGS];
         for (index, cell) in seen() {
@@ -116,7 +122,7 @@ impl BorderDetector {
         let rotation = attitude.rotation_heading_from_camera().as_mat3();
         debug_assert_eq!(self.rays_in_camera.len(), (self.columns * self.rows) as usize);
         self.rays_in_camera
-            .iter()
+            .par_iter()
             .map(|&ray| {
                 let ray = rotation * glam::Vec3::from(ray);
                 (-ray.z >= MIN_DEPRESSION)
@@ -194,9 +200,9 @@ fn carpet_ends(strips: &[Strip], carpet: &CarpetColor) -> Vec<Option<f32>> {
         let near = strip.iter().filter(|cells| cells.mean().is_some_and(|mean| carpet.is_near(mean)));
         near.map(|cells| cells.count).sum()
     };
-    let likeness: Vec<f32> = strips.iter().map(likeness).collect();
     let count = strips.len();
-    let first = (0..count).max_by(|&a, &b| likeness[a].total_cmp(&likeness[b])).unwrap_or(0);
+    let looked_at = (0..count).step_by(LEARNING_STEP).map(|bin| (bin, likeness(&strips[bin])));
+    let first = looked_at.max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(bin, _)| bin);
     let mut ends = vec![None; count];
     for side in [1, count - 1] {
         let mut start = *carpet;
