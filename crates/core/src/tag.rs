@@ -22,6 +22,8 @@ use crate::{
 
 /// Predictions less certain than this are too wide for the particles: the field is searched around them.
 const SEARCH_SIGMA_M: f64 = 0.3;
+/// Predictions less certain than this may have led to the wrong one of two places that fit.
+const UNSURE_SIGMA_M: f64 = 0.15;
 /// Uncertainty of a start pose that the recording gives.
 const START_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.05, yaw_rad: 0.05 };
 /// Uncertainty after the odometry was reset: the robot was carried, or the recording has a gap.
@@ -32,6 +34,8 @@ const SURE_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.02, yaw_rad: 0.02 };
 const LIKELY_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.3, yaw_rad: 0.2 };
 /// Least uncertainty assumed of a filter that may be lost.
 const LOST_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.5, yaw_rad: 0.4 };
+/// Poses nearer than this are of one place.
+const SAME_PLACE: PlanarSigma = PlanarSigma { position_m: 0.3, yaw_rad: 0.2 };
 /// Particles spread around a place that a search found.
 const FOUND_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.06, yaw_rad: 0.04 };
 /// Weight of the newest picture in the slow average of the line fraction (Thrun's α_slow).
@@ -287,6 +291,10 @@ impl Tagger {
             track.relocate(&modes, prior);
             searched = true;
         }
+        if prediction.sigma.position_m > UNSURE_SIGMA_M {
+            // After a long way there may be more than one place that fits.
+            track.unsettled.get_or_insert(SURE_STREAK - 2);
+        }
         let diffusion = if searched { FOUND_SIGMA } else { prediction.sigma };
         let mut estimate = track.filter.update(&*self.scorer, recorded.attitude, diffusion);
         if self.config.recovery && !searched && self.may_be_lost(&track, estimate.pose, recorded.attitude) {
@@ -371,6 +379,10 @@ impl Tagger {
             && let Some(mode) = self.most_probable(&track, recorded.attitude, pose)
         {
             (pose, fit) = (mode.pose, mode.fit);
+            if !is_near(pose, estimate.pose) {
+                // The particles follow, or they would go on from a place that was given up.
+                track.filter.place(&[(pose.planar(), 1.0)], FOUND_SIGMA);
+            }
         }
         let least = SURE_FRACTION.max(SURE_RATIO * track.slow_fraction);
         let line_fraction = self.line_fraction_near(pose, recorded.attitude, least);
@@ -480,8 +492,10 @@ fn is_clear(modes: &[Mode]) -> bool {
     }
 }
 
+/// Whether two poses are of one place, so that particles around the one find the other.
 fn is_near(a: CameraPose, b: CameraPose) -> bool {
-    (a.x_m - b.x_m).hypot(a.y_m - b.y_m) < 0.3 && crate::pose::wrap_angle(a.yaw_rad - b.yaw_rad).abs() < 0.2
+    (a.x_m - b.x_m).hypot(a.y_m - b.y_m) < SAME_PLACE.position_m
+        && crate::pose::wrap_angle(a.yaw_rad - b.yaw_rad).abs() < SAME_PLACE.yaw_rad
 }
 
 /// Tags all pictures of a sequence in order. Pictures are decoded one ahead on a thread of their own; memory does not
