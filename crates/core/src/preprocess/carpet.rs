@@ -13,7 +13,7 @@ const MAX_SIGMA: f32 = 0.025;
 /// How much of a change of colour along the ground is followed at each step.
 const DRIFT: f32 = 0.15;
 /// Farther than this from the colour learned nothing is carpet.
-const MAX_DRIFT: f32 = 0.08;
+const MAX_DRIFT: f32 = 0.12;
 /// Squared distance, in spreads, up to which a pixel may be carpet.
 const GATE: f32 = 12.0;
 

@@ -24,8 +24,8 @@ fn assert_round_trip(sequence: &Sequence) {
         assert_eq!(a.is_some(), b.is_some());
         assert!(a.zip(*b).is_none_or(|(a, b)| difference(a, b) < 1e-9));
     }
-    let (folder, groundtruth) = (sequence.folder.clone(), sequence.groundtruth.clone());
-    assert_eq!(&Sequence { folder, groundtruth, ..again }, sequence);
+    let Sequence { folder, files, groundtruth, .. } = sequence.clone();
+    assert_eq!(&Sequence { folder, files, groundtruth, ..again }, sequence);
 }
 
 #[test]
