@@ -95,21 +95,23 @@ fn figure_9(recording: &Recording, seeds: u64, text: &mut String) -> anyhow::Res
         }
         writeln!(text)?;
     }
-    plot("error.svg", "mean error (cm)", &curves, Runs::mean_cm)?;
-    plot("time.svg", "time a frame (ms)", &curves, Runs::milliseconds)
+    plot("error.svg", "mean error (cm)", &curves, Runs::mean_cm, [18.1, 18.5])?;
+    plot("time.svg", "time a frame (ms)", &curves, Runs::milliseconds, [850.0, 1760.0])
 }
 
-/// A curve for each model over the number of particles, both axes logarithmic.
+/// A curve for each model over the number of particles, both axes logarithmic; beside them the paper's values for its
+/// Gauss-based and its distance-based model with 800 particles.
 fn plot(
     file: &str,
     label: &str,
     curves: &[Vec<(f64, Runs)>],
     value: impl Fn(&Runs) -> f64,
+    paper: [f64; 2],
 ) -> anyhow::Result<()> {
     let path = format!("{OUT}/{file}");
     let points: Vec<Vec<(f64, f64)>> =
         curves.iter().map(|curve| curve.iter().map(|(x, runs)| (*x, value(runs))).collect()).collect();
-    let values = || points.iter().flatten().map(|(_, y)| *y);
+    let values = || points.iter().flatten().map(|(_, y)| *y).chain(paper);
     let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
     let root = SVGBackend::new(&path, (640, 420)).into_drawing_area();
     root.fill(&WHITE)?;
@@ -118,10 +120,22 @@ fn plot(
         .x_label_area_size(40)
         .y_label_area_size(56)
         .build_cartesian_2d((45.0..3300.0).log_scale(), (0.8 * low..1.3 * high).log_scale())?;
-    chart.configure_mesh().x_desc("particles").y_desc(label).light_line_style(WHITE).draw()?;
-    for ((points, (_, name)), color) in
-        points.iter().zip(MODELS).zip([RGBColor(214, 96, 77), RGBColor(67, 147, 195), RGBColor(27, 120, 55)])
-    {
+    chart
+        .configure_mesh()
+        .x_desc("particles")
+        .y_desc(label)
+        .x_label_formatter(&tick)
+        .y_label_formatter(&tick)
+        .light_line_style(WHITE)
+        .draw()?;
+    let colors = [RGBColor(214, 96, 77), RGBColor(67, 147, 195), RGBColor(27, 120, 55)];
+    for ((value, (_, name)), color) in paper.into_iter().zip(MODELS).zip(colors) {
+        chart
+            .draw_series([Cross::new((800.0, value), 5, color.stroke_width(2))])?
+            .label(format!("the paper, {name}"))
+            .legend(move |(x, y)| Cross::new((x + 9, y), 5, color.stroke_width(2)));
+    }
+    for ((points, (_, name)), color) in points.iter().zip(MODELS).zip(colors) {
         chart
             .draw_series(LineSeries::new(points.iter().copied(), color.stroke_width(2)).point_size(3))?
             .label(name)
@@ -129,4 +143,15 @@ fn plot(
     }
     chart.configure_series_labels().background_style(WHITE).border_style(BLACK).draw()?;
     root.present().with_context(|| format!("{path}: cannot be written"))
+}
+
+/// Ticks of a logarithmic axis: 1, 2 and 5 in every decade, so that none covers another.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the form that the plotting library calls")]
+fn tick(value: &f64) -> String {
+    let decade = 10_f64.powf(value.log10().floor());
+    match (value / decade).round() as u32 {
+        1 | 2 | 5 if *value >= 1.0 => format!("{value:.0}"),
+        1 | 2 | 5 => format!("{value:.2}"),
+        _ => String::new(),
+    }
 }

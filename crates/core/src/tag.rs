@@ -291,13 +291,15 @@ impl Tagger {
             track.relocate(&modes, prior);
             searched = true;
         }
-        if prediction.sigma.position_m > UNSURE_SIGMA_M {
-            // After a long way there may be more than one place that fits.
+        // After a long way there may be more than one place that fits.
+        let long_way = prediction.sigma.position_m > UNSURE_SIGMA_M;
+        if long_way {
             track.unsettled.get_or_insert(SURE_STREAK - 2);
         }
         let diffusion = if searched { FOUND_SIGMA } else { prediction.sigma };
         let mut estimate = track.filter.update(&*self.scorer, recorded.attitude, diffusion);
-        if self.config.recovery && !searched && self.may_be_lost(&track, estimate.pose, recorded.attitude) {
+        let doubt = || long_way || self.may_be_lost(&track, estimate.pose, recorded.attitude);
+        if self.config.recovery && !searched && doubt() {
             searched = true;
             estimate = self.recover(&mut track, picture, recorded.attitude, estimate);
         }
@@ -326,7 +328,7 @@ impl Tagger {
 
     fn may_be_lost(&self, track: &Track, pose: CameraPose, attitude: Attitude) -> bool {
         let least = lost_below(track);
-        track.unsettled.is_some() || self.line_fraction_near(pose, attitude, least) < least
+        track.unsettled == Some(0) || self.line_fraction_near(pose, attitude, least) < least
     }
 
     /// The line fraction of a pose, or where that is less than `enough`, of the pose next to it that fits the picture
