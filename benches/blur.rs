@@ -10,7 +10,7 @@ const SIGMAS_PX: [f32; 3] = [0.7, 1.5, 3.0];
 
 /// Elements are pixels.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
-    let luma = &scene.prepared().luma;
+    let luma = &scene.prepared().luma();
     let mut group = criterion.benchmark_group("blur");
     group.throughput(Throughput::Elements(luma.len() as u64));
     for sigma_px in SIGMAS_PX {

@@ -14,7 +14,7 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
         bencher.iter(|| detector.detect(scene.picture(), scene.attitude()));
     });
     group.bench_function("prepare", |bencher| {
-        bencher.iter(|| preprocessor.prepare(scene.picture(), scene.attitude()));
+        bencher.iter(|| preprocessor.prepare(scene.picture().clone(), scene.attitude()));
     });
     group.finish();
 }

@@ -3,6 +3,8 @@
 mod blur;
 mod border;
 mod frame;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod refinement;
 mod resampling;
 mod scaling;
@@ -41,5 +43,7 @@ fn main() {
     for stage in stages {
         stage(&mut criterion, &scene);
     }
+    #[cfg(feature = "gpu")]
+    gpu::bench(&mut criterion, &scene);
     criterion.final_summary();
 }

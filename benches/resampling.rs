@@ -26,7 +26,7 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
         ("stratified", Resampling::Stratified),
         ("multinomial", Resampling::Multinomial),
     ] {
-        group.bench_function(name, |bencher| bencher.iter(|| scheme.choose(&weights, PARTICLES, stream)));
+        group.bench_function(name, |bencher| bencher.iter(|| scheme.resample(&weights, PARTICLES, stream)));
     }
     group.finish();
 }

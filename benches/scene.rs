@@ -1,6 +1,6 @@
 //! What all benchmarks read: the first pictures of the demonstration walk, and particles around its true poses.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use image::RgbImage;
 use reality_sim::{
@@ -21,7 +21,7 @@ const SPREAD: [f64; 2] = [0.03, 0.03];
 pub struct Scene {
     /// The walk; its first frames only.
     pub walk: Sequence,
-    pictures: Vec<RgbImage>,
+    pictures: Vec<Arc<RgbImage>>,
     prepared: Prepared,
 }
 
@@ -32,21 +32,21 @@ impl Scene {
         let mut walk = Sequence::open(&folder).expect("the demonstration walk is part of the repository");
         walk.frames.truncate(PICTURES);
         walk.groundtruth.truncate(PICTURES);
-        let picture = |index| walk.load_image(index).expect("a picture of the demonstration walk");
-        let pictures: Vec<RgbImage> = (0..PICTURES).map(picture).collect();
+        let picture = |index| Arc::new(walk.load_image(index).expect("a picture of the demonstration walk"));
+        let pictures: Vec<Arc<RgbImage>> = (0..PICTURES).map(picture).collect();
         let attitude = recorded(&walk, MIDDLE, &pictures[MIDDLE]).attitude;
         let preprocessor = Preprocessor::new(&walk.setup.camera, walk.field.line_width_m);
-        let prepared = preprocessor.prepare(&pictures[MIDDLE], attitude);
+        let prepared = preprocessor.prepare(pictures[MIDDLE].clone(), attitude);
         Self { walk, pictures, prepared }
     }
 
     /// All pictures, as the tagger takes them.
-    pub fn recorded(&self) -> impl Iterator<Item = Recorded<'_>> {
+    pub fn recorded(&self) -> impl Iterator<Item = Recorded> {
         self.pictures.iter().enumerate().map(|(index, picture)| recorded(&self.walk, index, picture))
     }
 
     /// The picture that single stages are measured on.
-    pub fn picture(&self) -> &RgbImage {
+    pub fn picture(&self) -> &Arc<RgbImage> {
         &self.pictures[MIDDLE]
     }
 

@@ -16,7 +16,10 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let walk = &scene.walk;
     let config = TagConfig::new(ObservationKind::Contrast);
     let mut tagger = Tagger::new(&walk.setup.camera, &walk.field, walk.start, config);
-    let tagged = scene.recorded().map(|picture| (tagger.tag(picture), picture.attitude));
+    let tagged = scene.recorded().map(|picture| {
+        let attitude = picture.attitude;
+        (tagger.tag(&picture).expect("the processor never fails"), attitude)
+    });
     let once: Vec<TrajectoryFrame> = tagged
         .map(|(frame, attitude)| TrajectoryFrame {
             guess: frame.pose,

@@ -28,8 +28,11 @@
 pub mod evaluation;
 pub mod overlay;
 
+#[cfg(feature = "gpu")]
+pub use reality_sim_gpu as gpu;
+
 pub use reality_sim_core::{
-    camera, field, filter, observation, pose, preprocess, refine, search, sequence, tag,
+    backend, camera, field, filter, observation, pose, preprocess, refine, search, sequence, tag,
 };
 pub use reality_sim_core::{
     camera::Camera,
@@ -37,5 +40,5 @@ pub use reality_sim_core::{
     observation::ObservationKind,
     pose::{CameraPose, Pose2},
     sequence::{Sequence, SequenceError, StampedPose, write_tum},
-    tag::{TagConfig, TaggedFrame, Tagger, tag_sequence},
+    tag::{TagConfig, TagError, TaggedFrame, Tagger, tag_sequence},
 };

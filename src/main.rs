@@ -17,6 +17,7 @@ struct Cli {
 }
 
 fn main() -> ExitCode {
+    quiet_drivers();
     let cli = Cli::parse();
     if let Err(message) = cli.command.check_usage() {
         Cli::command().error(ErrorKind::ArgumentConflict, message).exit();
@@ -28,6 +29,13 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Mesa's device-select layer looks for a display at every list of adapters and complains on standard error where there
+/// is none, in the midst of our own messages. Adapters are ordered without its help.
+fn quiet_drivers() {
+    // SAFETY: the program has no other thread yet that could read the environment at the same time.
+    unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
 }
 
 /// A message without line breaks and other control characters.

@@ -74,7 +74,7 @@ fn later_frames_start_where_odometry_leads() {
 
 #[test]
 fn json_is_one_object_with_all_keys_and_finite_numbers() {
-    let report = tag_json(&["--frames", "0..4", "--particles", "300", "--seed", "7"]);
+    let report = tag_json(&["--frames", "0..4", "--particles", "300", "--seed", "7", "--backend", "cpu"]);
     for (key, value) in [
         ("frames", Value::from(4)),
         ("particles", 300.into()),
@@ -329,7 +329,8 @@ fn options_that_cannot_be_met_are_named() {
     assert_fails(walk, &["--frames", "60.."], &["assets/walk", "60 frames"]);
     assert_fails(walk, &["--field", "no-such-field"], &["no-such-field", "humanoid-kidsize-2010"]);
     assert_fails(walk, &["--camera", "no-such.toml"], &["no-such.toml", "no such file"]);
-    assert_fails(walk, &["--backend", "gpu"], &["no GPU support", "--backend cpu"]);
+    assert_fails(walk, &["--adapter", "no-such-card"], &["no-such-card", "graphics adapter"]);
+    assert_fails(walk, &["--adaptive", "--backend", "gpu"], &["--adaptive", "--backend cpu"]);
 }
 
 #[test]
@@ -352,6 +353,7 @@ fn wrong_usage_exits_with_2() {
         &["tag", WALK, "--alpha", "10"],
         &["tag", WALK, "--blur", "-1"],
         &["tag", WALK, "--no-border-mask"],
+        &["tag", WALK, "--adapter", "any", "--backend", "cpu"],
         &["tag", WALK, "--no-such-option"],
     ] {
         let output = program().args(arguments).output().unwrap();
@@ -362,7 +364,7 @@ fn wrong_usage_exits_with_2() {
 
 #[test]
 fn help_and_version_exit_with_0() {
-    for arguments in [&["--help"] as &[&str], &["--version"], &["tag", "--help"]] {
+    for arguments in [&["--help"] as &[&str], &["--version"], &["tag", "--help"], &["doctor", "--help"]] {
         let output = program().args(arguments).output().unwrap();
         assert!(output.status.success() && !output.stdout.is_empty(), "{arguments:?}");
     }

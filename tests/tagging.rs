@@ -1,6 +1,6 @@
 //! What a recording's tags are worth, on the demonstration walk: from nowhere, after being carried, and smoothed.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use reality_sim::{
     CameraPose, ObservationKind, Pose2, Sequence, TagConfig, TaggedFrame, Tagger,
@@ -131,8 +131,9 @@ fn tagging_without_memory_of_the_threads_it_ran_on() {
             let config = TagConfig::new(ObservationKind::Contrast);
             let mut tagger = Tagger::new(&sequence.setup.camera, &sequence.field, None, config);
             for index in 0..sequence.frames.len() {
-                let picture = sequence.load_image(index).expect("every picture can be read");
-                poses.push(tagger.tag(reality_sim::tag::recorded(&sequence, index, &picture)).pose);
+                let picture = Arc::new(sequence.load_image(index).expect("every picture can be read"));
+                let tagged = tagger.tag(&reality_sim::tag::recorded(&sequence, index, &picture));
+                poses.push(tagged.expect("the processor never fails").pose);
             }
         });
         poses

@@ -58,7 +58,7 @@ fn table_2_row(
     model: Model,
     text: &mut String,
 ) -> anyhow::Result<()> {
-    let runs = recording.runs(seeds, config, model);
+    let runs = recording.runs(seeds, config, model)?;
     let [low, high] = runs.range_cm();
     writeln!(
         text,
@@ -82,7 +82,7 @@ fn figure_9(recording: &Recording, seeds: u64, text: &mut String) -> anyhow::Res
         for (curve, (kind, _)) in curves.iter_mut().zip(MODELS) {
             let mut config = TagConfig::new(kind);
             config.filter.particles = particles;
-            let runs = recording.runs(seeds, config, Model::Configured);
+            let runs = recording.runs(seeds, config, Model::Configured)?;
             let [low, high] = runs.range_cm();
             write!(
                 text,

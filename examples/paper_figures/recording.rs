@@ -1,19 +1,21 @@
 //! A recording tagged with some settings and compared with its ground truth.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use image::RgbImage;
 use reality_sim::{
-    Sequence, TagConfig, Tagger,
+    Camera, FieldDimensions, Sequence, TagConfig, Tagger,
+    backend::{Backend, BackendError, CpuBackend},
     evaluation::{PoseError, percentile},
-    observation::NormalSearch,
+    filter::{Filter, FilterConfig, ScoredFilter},
+    observation::{NormalSearch, ObservationConfig, Scorer},
     tag::recorded,
 };
 
 /// The pictures of a sequence, decoded once for all runs.
 pub struct Recording {
     pub sequence: Sequence,
-    pub pictures: Vec<RgbImage>,
+    pub pictures: Vec<Arc<RgbImage>>,
 }
 
 /// What weighs the particles.
@@ -23,6 +25,35 @@ pub enum Model {
     Configured,
     /// Eq. 1 to the letter.
     NormalSearch,
+}
+
+/// Weighs particles by Eq. 1 to the letter.
+struct NormalSearchBackend;
+
+impl Backend for NormalSearchBackend {
+    fn scorer(
+        &self,
+        camera: &Camera,
+        field: &FieldDimensions,
+        config: ObservationConfig,
+    ) -> Result<Box<dyn Scorer>, BackendError> {
+        CpuBackend.scorer(camera, field, config)
+    }
+
+    fn filter(
+        &self,
+        camera: &Camera,
+        field: &FieldDimensions,
+        observation: ObservationConfig,
+        config: FilterConfig,
+    ) -> Result<Box<dyn Filter>, BackendError> {
+        let scorer = NormalSearch::new(camera, field, observation);
+        Ok(Box::new(ScoredFilter::new(Box::new(scorer), config)))
+    }
+
+    fn status(&self) -> Result<(), BackendError> {
+        CpuBackend.status()
+    }
 }
 
 /// What one run over the recording came to.
@@ -42,45 +73,45 @@ impl Recording {
         let mut sequence = Sequence::open(folder)?;
         sequence.frames.truncate(frames);
         sequence.groundtruth.truncate(frames);
-        let pictures =
-            (0..sequence.frames.len()).map(|index| sequence.load_image(index)).collect::<Result<_, _>>()?;
+        let pictures = (0..sequence.frames.len())
+            .map(|index| sequence.load_image(index).map(Arc::new))
+            .collect::<Result<_, _>>()?;
         Ok(Self { sequence, pictures })
     }
 
-    fn run(&self, config: TagConfig, model: Model) -> Run {
+    fn run(&self, config: TagConfig, model: Model) -> anyhow::Result<Run> {
         let Sequence { setup, field, start, groundtruth, .. } = &self.sequence;
         let camera = &setup.camera;
         let mut tagger = match model {
             Model::Configured => Tagger::new(camera, field, *start, config),
             Model::NormalSearch => {
-                let scorer = NormalSearch::new(camera, field, config.observation);
-                Tagger::with_scorer(camera, field, *start, config, Box::new(scorer))
+                Tagger::with_backend(camera, field, *start, config, Arc::new(NormalSearchBackend))?
             }
         };
         let (mut errors, mut seconds) = (Vec::new(), Vec::new());
         for (index, picture) in self.pictures.iter().enumerate() {
-            let frame = tagger.tag(recorded(&self.sequence, index, picture));
+            let frame = tagger.tag(&recorded(&self.sequence, index, picture))?;
             errors.extend(groundtruth[index].map(|truth| PoseError::new(frame.pose, truth)));
             seconds.push(frame.seconds);
         }
         seconds.sort_by(f64::total_cmp);
         let kept: Vec<f64> =
             errors.iter().filter(|error| !error.is_lost()).map(|error| error.distance_m).collect();
-        Run {
+        Ok(Run {
             mean_m: errors.iter().map(|error| error.distance_m).sum::<f64>() / errors.len().max(1) as f64,
             kept_m: kept.iter().sum::<f64>() / kept.len().max(1) as f64,
             lost: errors.iter().filter(|error| error.is_lost()).count(),
             seconds_per_frame: percentile(&seconds, 0.5).unwrap_or(0.0),
-        }
+        })
     }
 
-    pub fn runs(&self, seeds: u64, config: TagConfig, model: Model) -> Runs {
+    pub fn runs(&self, seeds: u64, config: TagConfig, model: Model) -> anyhow::Result<Runs> {
         let seeded = |seed| {
             let mut config = config;
             config.filter.seed = seed;
             self.run(config, model)
         };
-        Runs((0..seeds.max(1)).map(seeded).collect())
+        Ok(Runs((0..seeds.max(1)).map(seeded).collect::<Result<_, _>>()?))
     }
 }
 

@@ -58,8 +58,10 @@ fn row(
     text: &mut String,
 ) -> anyhow::Result<()> {
     let config = TagConfig { observation, ..TagConfig::new(observation.kind) };
-    let runs: Vec<Runs> =
-        recordings.iter().map(|recording| recording.runs(seeds, config, Model::Configured)).collect();
+    let runs: Vec<Runs> = recordings
+        .iter()
+        .map(|recording| recording.runs(seeds, config, Model::Configured))
+        .collect::<anyhow::Result<_>>()?;
     let cells: Vec<String> =
         runs.iter().map(|runs| format!("{:.1} ({})", runs.kept_cm(), runs.lost_in_all())).collect();
     let lost: usize = runs.iter().map(Runs::lost_in_all).sum();

@@ -1,5 +1,8 @@
 //! The program's commands.
 
+mod device;
+#[cfg(feature = "gpu")]
+mod doctor;
 mod output;
 mod tag;
 
@@ -8,6 +11,9 @@ mod tag;
 pub enum Command {
     /// Tag every picture of a sequence with the pose of the camera
     Tag(Box<tag::TagArgs>),
+    /// List graphics adapters, and check that they compute what the CPU computes
+    #[cfg(feature = "gpu")]
+    Doctor(doctor::DoctorArgs),
 }
 
 impl Command {
@@ -15,6 +21,8 @@ impl Command {
     pub fn check_usage(&self) -> Result<(), String> {
         match self {
             Self::Tag(args) => args.check_usage(),
+            #[cfg(feature = "gpu")]
+            Self::Doctor(_) => Ok(()),
         }
     }
 
@@ -22,6 +30,8 @@ impl Command {
     pub fn run(&self) -> anyhow::Result<()> {
         match self {
             Self::Tag(args) => tag::run(args),
+            #[cfg(feature = "gpu")]
+            Self::Doctor(args) => doctor::run(args),
         }
     }
 }

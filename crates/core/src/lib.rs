@@ -3,6 +3,7 @@
 //!
 //! Metres, radians and seconds everywhere; the unit is part of the name. The frames are those of [`pose`].
 
+pub mod backend;
 pub mod camera;
 pub mod field;
 pub mod filter;

@@ -3,25 +3,26 @@
 
 use std::f64::consts::TAU;
 
+use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::{
+    backend::{Backend, BackendError, CpuBackend},
     camera::Camera,
     field::FieldDimensions,
     filter::{FilterConfig, ParticleFilter, PlanarSigma},
-    observation::{CpuScorer, GridScorer, ObservationConfig, Scorer},
+    observation::{CpuScorer, ObservationConfig, Scorer},
     pose::{CameraPose, Pose2, wrap_angle},
     preprocess::{Attitude, Prepared},
     refine::{AttitudeTolerance, PoseFit, Reach, RefineConfig, Refiner},
 };
 
-/// Grid step over line width, at least [`MIN_STEP_M`].
-const STEP_LINE_WIDTHS: f64 = 2.0;
-const MIN_STEP_M: f64 = 0.1;
-/// Headings on the grid.
-const HEADINGS: u32 = 120;
 /// Grid poses kept for refinement.
 const KEPT: usize = 60;
+/// Headings of one place that can be among them.
+const KEPT_HEADINGS: usize = 4;
+/// Places of the grid scored in one go.
+const PLACES_AT_ONCE: usize = 1024;
 /// Modes that are fitted to a fraction of a pixel before they are ranked.
 const FITTED: usize = 24;
 /// Least log-probability of a prior.
@@ -79,10 +80,43 @@ impl Prior {
     }
 }
 
+/// Places and headings over the whole carpet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SearchGrid {
+    /// Between neighbouring places along x and y, metres; a little less where the carpet's size is no multiple of it.
+    pub step_m: f64,
+    /// Headings at every place.
+    pub headings: u32,
+}
+
+impl SearchGrid {
+    /// As fine as the grid's score asks for on this field.
+    pub fn new(field: &FieldDimensions) -> Self {
+        Self { step_m: (2.0 * field.line_width_m).max(0.1), headings: 120 }
+    }
+
+    /// All places, column after column.
+    pub fn places(&self, field: &FieldDimensions) -> Vec<DVec2> {
+        let half_extent = field.carpet_half_extent_m();
+        let along = |half: f64| {
+            let steps = (2.0 * half / self.step_m).ceil().max(1.0);
+            (0..=steps as u32).map(move |index| -half + 2.0 * half * f64::from(index) / steps)
+        };
+        along(half_extent.x).flat_map(|x| along(half_extent.y).map(move |y| DVec2::new(x, y))).collect()
+    }
+
+    fn poses_at(&self, place: DVec2) -> impl Iterator<Item = Pose2> {
+        (0..self.headings).map(move |heading| {
+            let yaw_rad = wrap_angle(TAU * f64::from(heading) / f64::from(self.headings));
+            Pose2::new(place.x, place.y, yaw_rad)
+        })
+    }
+}
+
 /// Searches the whole field in pictures of one camera.
-#[derive(Debug, Clone)]
 pub struct GlobalSearch {
-    grid: GridScorer,
+    grid: SearchGrid,
+    grid_scorer: Box<dyn Scorer>,
     scorer: CpuScorer,
     white_contrast: f64,
     field: FieldDimensions,
@@ -91,16 +125,33 @@ pub struct GlobalSearch {
 }
 
 impl GlobalSearch {
-    /// Prepares the search.
+    /// Prepares the search on this processor.
     pub fn new(camera: &Camera, field: &FieldDimensions, tolerance: AttitudeTolerance) -> Self {
-        Self {
-            grid: GridScorer::new(camera, field),
+        Self::with_backend(camera, field, tolerance, &CpuBackend)
+            .unwrap_or_else(|error| unreachable!("this processor never fails: {error}"))
+    }
+
+    /// As [`GlobalSearch::new`], with the grid scored on the device of a backend.
+    pub fn with_backend(
+        camera: &Camera,
+        field: &FieldDimensions,
+        tolerance: AttitudeTolerance,
+        backend: &dyn Backend,
+    ) -> Result<Self, BackendError> {
+        Ok(Self {
+            grid: SearchGrid::new(field),
+            grid_scorer: backend.scorer(camera, field, ObservationConfig::grid(field))?,
             scorer: CpuScorer::new(camera, field, ObservationConfig::coarse_contrast()),
             white_contrast: 1.0,
             field: field.clone(),
             refiner: Refiner::new(camera, field, RefineConfig { tolerance, ..RefineConfig::default() }),
             tolerance,
-        }
+        })
+    }
+
+    /// Another grid.
+    pub fn set_grid(&mut self, grid: SearchGrid) {
+        self.grid = grid;
     }
 
     /// Takes over a new picture for what needs no search.
@@ -125,8 +176,7 @@ impl GlobalSearch {
         seed: u64,
     ) -> Vec<Mode> {
         self.load(picture);
-        self.grid.load(picture);
-        let mut places = self.best_on_grid(attitude, prior);
+        let mut places = self.best_on_grid(picture, attitude, prior);
         if let Some(prior) = prior {
             places.push(prior.pose);
         }
@@ -179,36 +229,37 @@ impl GlobalSearch {
         Mode { pose, log_weight, probability: 0.0, fit: None }
     }
 
-    fn best_on_grid(&self, attitude: Attitude, prior: Option<Prior>) -> Vec<Pose2> {
-        let half_extent = self.field.carpet_half_extent_m();
-        let step = (STEP_LINE_WIDTHS * self.field.line_width_m).max(MIN_STEP_M);
-        let count = |half: f64| (2.0 * half / step).ceil() as u32 + 1;
-        let along =
-            |index: u32, half: f64| -half + 2.0 * half * f64::from(index) / f64::from(count(half) - 1);
-        let columns: Vec<f64> = (0..count(half_extent.x)).map(|i| along(i, half_extent.x)).collect();
-        let rows = count(half_extent.y);
-        let mut scored: Vec<(Pose2, f64)> = columns
-            .into_par_iter()
+    /// Scores every pose of the grid, and gives the best that lie apart from each other.
+    pub fn best_on_grid(
+        &mut self,
+        picture: &Prepared,
+        attitude: Attitude,
+        prior: Option<Prior>,
+    ) -> Vec<Pose2> {
+        self.grid_scorer.load(picture);
+        let mut places = self.grid.places(&self.field);
+        if prior.is_none() {
             // The other half of the field looks the same turned by 180°.
-            .filter(|&x| prior.is_some() || x <= step)
-            .flat_map_iter(|x| {
-                let mut best = Vec::with_capacity(rows as usize * 4);
-                for row in 0..rows {
-                    let mut here: Vec<(Pose2, f64)> = (0..HEADINGS)
-                        .map(|heading| {
-                            let yaw = wrap_angle(TAU * f64::from(heading) / f64::from(HEADINGS));
-                            let pose = Pose2::new(x, along(row, half_extent.y), yaw);
-                            let prior = prior.map_or(0.0, |prior| prior.log_probability(pose));
-                            (pose, self.grid.log_weight(attitude.at(pose)) + prior)
-                        })
-                        .collect();
-                    // The best few headings of each place are all that can be among the best of the field.
+            places.retain(|place| place.x <= self.grid.step_m);
+        }
+        let mut scored: Vec<(Pose2, f64)> = Vec::new();
+        // In parts: a fine grid has millions of poses.
+        for places in places.chunks(PLACES_AT_ONCE) {
+            let poses: Vec<Pose2> = places.iter().flat_map(|&place| self.grid.poses_at(place)).collect();
+            let cameras: Vec<CameraPose> = poses.iter().map(|&pose| attitude.at(pose)).collect();
+            let log_weights = self.grid_scorer.log_weights(&cameras);
+            let headings = self.grid.headings as usize;
+            scored.extend(poses.chunks(headings).zip(log_weights.chunks(headings)).flat_map(
+                |(poses, scores)| {
+                    let prior = |pose: &Pose2| prior.map_or(0.0, |prior| prior.log_probability(*pose));
+                    let mut here: Vec<(Pose2, f64)> =
+                        poses.iter().zip(scores).map(|(pose, score)| (*pose, score + prior(pose))).collect();
                     here.sort_by(|a, b| b.1.total_cmp(&a.1));
-                    best.extend(here.into_iter().take(4));
-                }
-                best
-            })
-            .collect();
+                    here.truncate(KEPT_HEADINGS);
+                    here
+                },
+            ));
+        }
         scored.sort_by(|a, b| b.1.total_cmp(&a.1));
         scored.truncate(KEPT * 40);
         let mut places = distinct(scored, |(pose, _)| *pose);
@@ -277,7 +328,7 @@ mod tests {
         for (scene, pose) in test_scene::poses().into_iter().enumerate() {
             let attitude = Attitude::of(pose);
             let picture = Preprocessor::new(&camera, field.line_width_m)
-                .prepare(&test_scene::render(&camera, pose, &field), attitude);
+                .prepare(test_scene::render(&camera, pose, &field), attitude);
             search.load(&picture);
             let stream = Stream::new(7, Purpose::Initialise, scene as u32, 0);
             for index in 0..40 {
@@ -305,7 +356,7 @@ mod tests {
         for pose in test_scene::poses() {
             let attitude = Attitude::of(pose);
             let picture = Preprocessor::new(&camera, field.line_width_m)
-                .prepare(&test_scene::render(&camera, pose, &field), attitude);
+                .prepare(test_scene::render(&camera, pose, &field), attitude);
             search.load(&picture);
             let error = |found: CameraPose| {
                 (found.x_m - pose.x_m).hypot(found.y_m - pose.y_m)

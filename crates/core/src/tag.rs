@@ -1,15 +1,19 @@
 //! A camera pose for every picture of a recording: preprocessing, particle filter, recovery and refinement together.
 
-use std::{sync::mpsc, time::Instant};
+use std::{
+    sync::{Arc, mpsc},
+    time::Instant,
+};
 
 use image::RgbImage;
 
 use crate::{
+    backend::{Backend, BackendError, CpuBackend},
     camera::Camera,
     field::FieldDimensions,
-    filter::{FilterConfig, FilterEstimate, ParticleFilter, PlanarSigma},
+    filter::{Filter, FilterConfig, FilterEstimate, PlanarSigma},
     goal_colors::GoalColors,
-    observation::{CpuScorer, ObservationConfig, ObservationKind, Scorer},
+    observation::{ObservationConfig, ObservationKind},
     pose::{CameraPose, Motion2, Pose2},
     preprocess::{Attitude, FieldBorder, Prepared, Preprocessor, Texture},
     refine::{
@@ -93,10 +97,10 @@ impl TagConfig {
 }
 
 /// A picture with what the robot knew when it was taken.
-#[derive(Debug, Clone, Copy)]
-pub struct Recorded<'a> {
+#[derive(Debug, Clone)]
+pub struct Recorded {
     /// The picture; it has the camera's size.
-    pub picture: &'a RgbImage,
+    pub picture: Arc<RgbImage>,
     /// Dead-reckoned pose, where the recording has one.
     pub odometry: Option<Pose2>,
     /// Height, pitch and roll by joints and IMU.
@@ -134,7 +138,8 @@ pub struct TaggedFrame {
 pub struct Tagger {
     config: TagConfig,
     preprocessor: Preprocessor,
-    scorer: Box<dyn Scorer>,
+    backend: Arc<dyn Backend>,
+    filter: Box<dyn Filter>,
     refiner: Refiner,
     search: GlobalSearch,
     goal_colors: Option<GoalColors>,
@@ -145,7 +150,6 @@ pub struct Tagger {
 
 /// What is carried from picture to picture.
 struct Track {
-    filter: ParticleFilter,
     pose: Pose2,
     /// The last sure pose carried on by the odometry since, and how far it may be wrong by now.
     anchor: Pose2,
@@ -171,7 +175,6 @@ struct Prediction {
 impl Track {
     /// Goes on from what a search found.
     fn relocate(&mut self, modes: &[Mode], prior: Prior) {
-        place(&mut self.filter, modes);
         self.unsettled = (!is_clear(modes)).then_some(0);
         if let Some(best) = modes.first().map(|mode| mode.pose.planar()) {
             // The picture cannot tell the two halves apart: only what was known before can.
@@ -191,42 +194,43 @@ impl Track {
 }
 
 impl Tagger {
-    /// Tags pictures of a camera on a field from a start pose, or from anywhere.
+    /// Tags pictures of a camera on a field from a start pose, or from anywhere, on this processor.
     pub fn new(camera: &Camera, field: &FieldDimensions, start: Option<Pose2>, config: TagConfig) -> Self {
-        let scorer = Box::new(CpuScorer::new(camera, field, config.observation));
-        Self::with_scorer(camera, field, start, config, scorer)
+        Self::with_backend(camera, field, start, config, Arc::new(CpuBackend))
+            .unwrap_or_else(|error| unreachable!("this processor never fails: {error}"))
     }
 
-    /// As [`Tagger::new`], with particles weighed by another implementation of the observation model.
-    pub fn with_scorer(
+    /// As [`Tagger::new`], on the device of a backend.
+    pub fn with_backend(
         camera: &Camera,
         field: &FieldDimensions,
         start: Option<Pose2>,
         config: TagConfig,
-        scorer: Box<dyn Scorer>,
-    ) -> Self {
+        backend: Arc<dyn Backend>,
+    ) -> Result<Self, BackendError> {
         let refine = RefineConfig { tolerance: config.tolerance, ..RefineConfig::default() };
-        Self {
+        Ok(Self {
             config,
             preprocessor: Preprocessor::new(camera, field.line_width_m),
-            scorer,
+            filter: backend.filter(camera, field, config.observation, config.filter)?,
             refiner: Refiner::new(camera, field, refine),
-            search: GlobalSearch::new(camera, field, config.tolerance),
+            search: GlobalSearch::with_backend(camera, field, config.tolerance, &*backend)?,
             goal_colors: GoalColors::new(camera, field),
+            backend,
             state: None,
             start,
             frame: 0,
-        }
+        })
     }
 
     /// The particles after the last picture.
-    pub fn particles(&self) -> &[CameraPose] {
-        self.state.as_ref().map_or(&[], |track| track.filter.particles())
+    pub fn particles(&self) -> Vec<CameraPose> {
+        self.filter.particles()
     }
 
     /// The field's border in a picture, for drawing.
-    pub fn border(&self, picture: &RgbImage, attitude: Attitude) -> FieldBorder {
-        self.preprocessor.prepare(picture, attitude).border
+    pub fn border(&self, picture: &Arc<RgbImage>, attitude: Attitude) -> FieldBorder {
+        self.preprocessor.prepare(picture.clone(), attitude).border
     }
 
     /// Fits a picture from a pose that is known from elsewhere.
@@ -235,36 +239,41 @@ impl Tagger {
         self.refiner.fit(&texture, guess, attitude, f64::from(picture.levels.contrast()), Reach::Wide)
     }
 
+    /// The picture that follows the one tagged next, where it is known already: a device takes it over while it computes.
+    pub fn announce(&mut self, next: &Arc<RgbImage>) {
+        self.filter.announce(next);
+    }
+
     /// Tags the next picture.
-    pub fn tag(&mut self, recorded: Recorded<'_>) -> TaggedFrame {
+    pub fn tag(&mut self, recorded: &Recorded) -> Result<TaggedFrame, BackendError> {
         let begin = Instant::now();
-        let picture = self.preprocessor.prepare(recorded.picture, recorded.attitude);
-        rayon::join(|| self.scorer.load(&picture), || self.search.load(&picture));
+        let picture = self.preprocessor.prepare(recorded.picture.clone(), recorded.attitude);
+        rayon::join(|| self.filter.load(&picture), || self.search.load(&picture));
         let mut tagged = match self.state.take() {
             Some(track) => self.follow(track, &picture, recorded),
             None => self.begin(&picture, recorded),
         };
+        self.backend.status()?;
         self.update_mirror(&mut tagged, recorded);
         self.frame += 1;
         tagged.seconds = begin.elapsed().as_secs_f64();
-        tagged
+        Ok(tagged)
     }
 
-    fn begin(&mut self, picture: &Prepared, recorded: Recorded<'_>) -> TaggedFrame {
-        let mut filter = ParticleFilter::new(self.config.filter, self.start.unwrap_or_default(), START_SIGMA);
+    fn begin(&mut self, picture: &Prepared, recorded: &Recorded) -> TaggedFrame {
+        self.filter.place(&[(self.start.unwrap_or_default(), 1.0)], START_SIGMA);
         let (mut unsettled, mut mirror_log_odds) = (None, f64::NEG_INFINITY);
         if self.start.is_none() {
             let modes = self.search_modes(picture, recorded.attitude, None);
-            place(&mut filter, &modes);
+            place(&mut *self.filter, &modes);
             unsettled = (!is_clear(&modes)).then_some(0);
             mirror_log_odds = 0.0;
         }
-        let estimate = filter.update(&*self.scorer, recorded.attitude, self.config.filter.noise.sigma(None));
+        let estimate = self.filter.update(recorded.attitude, self.config.filter.noise.sigma(None));
         let track = Track {
             pose: estimate.pose.planar(),
             anchor: estimate.pose.planar(),
             anchor_sigma: CARRIED_SIGMA,
-            filter,
             odometry: recorded.odometry,
             slow_fraction: 0.0,
             unsettled,
@@ -275,9 +284,9 @@ impl Tagger {
         self.finish(track, recorded, Found { estimate, motion, searched: self.start.is_none() })
     }
 
-    fn follow(&mut self, mut track: Track, picture: &Prepared, recorded: Recorded<'_>) -> TaggedFrame {
+    fn follow(&mut self, mut track: Track, picture: &Prepared, recorded: &Recorded) -> TaggedFrame {
         let prediction = self.predict(&track, recorded.odometry);
-        track.filter.predict(prediction.motion);
+        self.filter.predict(prediction.motion);
         track.anchor = track.anchor.moved(prediction.motion.unwrap_or_default());
         track.anchor_sigma = track.anchor_sigma.plus(prediction.sigma);
         if prediction.carried {
@@ -288,6 +297,7 @@ impl Tagger {
         if self.config.recovery && (prediction.carried || prediction.sigma.position_m > SEARCH_SIGMA_M) {
             let prior = Prior { pose: track.anchor, sigma: track.search_sigma(track.doubtful > 0) };
             let modes = self.search_modes(picture, recorded.attitude, Some(prior));
+            place(&mut *self.filter, &modes);
             track.relocate(&modes, prior);
             searched = true;
         }
@@ -297,7 +307,7 @@ impl Tagger {
             track.unsettled.get_or_insert(SURE_STREAK - 2);
         }
         let diffusion = if searched { FOUND_SIGMA } else { prediction.sigma };
-        let mut estimate = track.filter.update(&*self.scorer, recorded.attitude, diffusion);
+        let mut estimate = self.filter.update(recorded.attitude, diffusion);
         let doubt = || long_way || self.may_be_lost(&track, estimate.pose, recorded.attitude);
         if self.config.recovery && !searched && doubt() {
             searched = true;
@@ -364,8 +374,9 @@ impl Tagger {
         if is_near(best.pose, own.pose) || best.log_weight - own.log_weight < MOVE_MARGIN {
             return estimate;
         }
+        place(&mut *self.filter, &modes);
         track.relocate(&modes, prior);
-        track.filter.update(&*self.scorer, attitude, FOUND_SIGMA)
+        self.filter.update(attitude, FOUND_SIGMA)
     }
 
     fn search_modes(&mut self, picture: &Prepared, attitude: Attitude, prior: Option<Prior>) -> Vec<Mode> {
@@ -373,7 +384,7 @@ impl Tagger {
         self.search.search(picture, attitude, prior, seed)
     }
 
-    fn finish(&mut self, mut track: Track, recorded: Recorded<'_>, found: Found) -> TaggedFrame {
+    fn finish(&mut self, mut track: Track, recorded: &Recorded, found: Found) -> TaggedFrame {
         let Found { estimate, motion, searched } = found;
         let mut pose = estimate.pose;
         let mut fit = None;
@@ -383,7 +394,7 @@ impl Tagger {
             (pose, fit) = (mode.pose, mode.fit);
             if !is_near(pose, estimate.pose) {
                 // The particles follow, or they would go on from a place that was given up.
-                track.filter.place(&[(pose.planar(), 1.0)], FOUND_SIGMA);
+                self.filter.place(&[(pose.planar(), 1.0)], FOUND_SIGMA);
             }
         }
         let least = SURE_FRACTION.max(SURE_RATIO * track.slow_fraction);
@@ -433,22 +444,22 @@ impl Tagger {
     /// and prediction together.
     fn most_probable(&self, track: &Track, attitude: Attitude, best: CameraPose) -> Option<Mode> {
         let prior = Prior { pose: track.anchor, sigma: track.search_sigma(track.doubtful > 0) };
-        let candidates: Vec<CameraPose> =
-            [best, attitude.at(track.anchor)].iter().chain(track.filter.rivals()).copied().collect();
+        let mut candidates = vec![best, attitude.at(track.anchor)];
+        candidates.extend(self.filter.rivals());
         self.search.best_of(&candidates, attitude, Some(prior))
     }
 
     /// Lets the colours of the goals decide between a pose and its mirror image, and turns everything round when they
     /// speak for the other.
-    fn update_mirror(&mut self, tagged: &mut TaggedFrame, recorded: Recorded<'_>) {
+    fn update_mirror(&mut self, tagged: &mut TaggedFrame, recorded: &Recorded) {
         let (Some(goal_colors), Some(track)) = (&self.goal_colors, &mut self.state) else { return };
         if track.mirror_log_odds == f64::NEG_INFINITY || tagged.line_fraction < SURE_FRACTION {
             return;
         }
-        track.mirror_log_odds += goal_colors.mirror_log_odds(recorded.picture, tagged.pose);
+        track.mirror_log_odds += goal_colors.mirror_log_odds(&recorded.picture, tagged.pose);
         if track.mirror_log_odds > 0.0 {
             track.mirror_log_odds = -track.mirror_log_odds;
-            track.filter.mirror();
+            self.filter.mirror();
             track.pose = track.pose.mirrored();
             track.anchor = track.anchor.mirrored();
             tagged.pose = tagged.pose.mirrored();
@@ -473,7 +484,7 @@ fn lost_below(track: &Track) -> f64 {
     LOST_FRACTION.max(LOST_RATIO * track.slow_fraction)
 }
 
-fn place(filter: &mut ParticleFilter, modes: &[Mode]) {
+fn place(filter: &mut dyn Filter, modes: &[Mode]) {
     let best = modes.first().map_or(0.0, |mode| mode.log_weight);
     let weighted: Vec<(Pose2, f64)> = modes
         .iter()
@@ -500,27 +511,43 @@ fn is_near(a: CameraPose, b: CameraPose) -> bool {
         && crate::pose::wrap_angle(a.yaw_rad - b.yaw_rad).abs() < SAME_PLACE.yaw_rad
 }
 
-/// Tags all pictures of a sequence in order. Pictures are decoded one ahead on a thread of their own; memory does not
-/// grow with the recording but for the results. `observe` sees every result as it comes, with the picture.
+/// Why a sequence could not be tagged.
+#[derive(Debug, thiserror::Error)]
+pub enum TagError {
+    /// A picture cannot be read, or a result not be written.
+    #[error(transparent)]
+    Sequence(#[from] SequenceError),
+    /// The device that weighs the particles failed.
+    #[error(transparent)]
+    Backend(#[from] BackendError),
+}
+
+/// Tags all pictures of a sequence in order. Pictures are decoded ahead on a thread of their own; memory does not grow
+/// with the recording but for the results. `observe` sees every result as it comes, with the picture.
 pub fn tag_sequence(
     sequence: &Sequence,
     tagger: &mut Tagger,
-    mut observe: impl FnMut(usize, &TaggedFrame, &RgbImage, &Tagger) -> Result<(), SequenceError>,
-) -> Result<Vec<TaggedFrame>, SequenceError> {
+    mut observe: impl FnMut(usize, &TaggedFrame, &Arc<RgbImage>, &Tagger) -> Result<(), SequenceError>,
+) -> Result<Vec<TaggedFrame>, TagError> {
     std::thread::scope(|scope| {
         let (sender, receiver) = mpsc::sync_channel(1);
         scope.spawn(move || {
             for index in 0..sequence.frames.len() {
                 // The receiver is gone once tagging has failed.
-                if sender.send(sequence.load_image(index)).is_err() {
+                if sender.send(sequence.load_image(index).map(Arc::new)).is_err() {
                     break;
                 }
             }
         });
         let mut tagged = Vec::with_capacity(sequence.frames.len());
-        for (index, picture) in receiver.iter().enumerate() {
+        let mut pictures = receiver.into_iter().peekable();
+        while let Some(picture) = pictures.next() {
             let picture = picture?;
-            let frame = tagger.tag(recorded(sequence, index, &picture));
+            if let Some(Ok(next)) = pictures.peek() {
+                tagger.announce(next);
+            }
+            let index = tagged.len();
+            let frame = tagger.tag(&recorded(sequence, index, &picture))?;
             observe(index, &frame, &picture, tagger)?;
             tagged.push(frame);
         }
@@ -554,7 +581,7 @@ pub fn smooth_sequence(
     for (index, smoothed) in first.iter().enumerate() {
         frames[index].guess = smoothed.pose;
         if !smoothed.picture_used {
-            let picture = tagger.preprocessor.prepare(&sequence.load_image(index)?, attitude(index));
+            let picture = tagger.preprocessor.prepare(sequence.load_image(index)?, attitude(index));
             frames[index].fit = tagger.refit(&picture, smoothed.pose, attitude(index));
         }
     }
@@ -571,9 +598,9 @@ fn sequence_attitude(sequence: &Sequence, index: usize) -> Attitude {
 }
 
 /// What the robot knew when it took a picture of a sequence.
-pub fn recorded<'a>(sequence: &Sequence, index: usize, picture: &'a RgbImage) -> Recorded<'a> {
+pub fn recorded(sequence: &Sequence, index: usize, picture: &Arc<RgbImage>) -> Recorded {
     Recorded {
-        picture,
+        picture: picture.clone(),
         odometry: sequence.frames[index].odometry,
         attitude: sequence_attitude(sequence, index),
     }

@@ -3,6 +3,8 @@
 mod options;
 mod report;
 
+use std::sync::Arc;
+
 use anyhow::bail;
 use image::RgbImage;
 
@@ -17,22 +19,18 @@ use reality_sim::{
 };
 
 pub use self::options::TagArgs;
-use self::{
-    options::Backend,
-    report::{PoseResult, Report, details_csv},
-};
+use self::report::{PoseResult, Report, details_csv};
 use super::output::{check_output_file, create_output_folder, frame_progress, print, print_json};
 
 /// Runs the command.
 pub fn run(args: &TagArgs) -> anyhow::Result<()> {
-    if args.backend == Backend::Gpu {
-        bail!("--backend gpu: this build has no GPU support: use --backend cpu");
-    }
     let sequence = args.open_sequence()?;
     check_outputs(args, &sequence)?;
 
     let config = args.config();
-    let mut tagger = Tagger::new(&sequence.setup.camera, &sequence.field, sequence.start, config);
+    let device = args.device()?;
+    let Sequence { setup, field, start, .. } = &sequence;
+    let mut tagger = Tagger::with_backend(&setup.camera, field, *start, config, device.backend.clone())?;
     let progress = frame_progress(sequence.frames.len())?;
     let mut path = Vec::new();
     let first = args.frames.map_or(0, |range| range.first);
@@ -66,7 +64,7 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
             .collect();
         write_tum(out, &stamped)?;
     }
-    let report = Report::new(args, &sequence, &config, &tagged, &poses);
+    let report = Report::new(args, &sequence, &config, &device, &tagged, &poses);
     if args.json { print_json(&report) } else { print(&report.text(&sequence.name)) }
 }
 
@@ -109,7 +107,7 @@ fn draw(
     sequence: &Sequence,
     index: usize,
     frame: &TaggedFrame,
-    picture: &RgbImage,
+    picture: &Arc<RgbImage>,
     tagger: &Tagger,
     path: &[CameraPose],
 ) -> RgbImage {
@@ -124,8 +122,8 @@ fn draw(
             corners_in_heading: &border.outline_in_heading,
             camera_in_heading: attitude.at(Pose2::default()),
         }),
-        particles: tagger.particles(),
+        particles: &tagger.particles(),
         path,
     };
-    overlay.draw(picture.clone())
+    overlay.draw((**picture).clone())
 }

@@ -15,6 +15,8 @@ use reality_sim::{
     sequence::{read_camera, read_field},
 };
 
+use crate::commands::device::{BackendArgs, Device};
+
 /// Odometry that jumps to its origin by more than this was reset, metres.
 const RESET_JUMP_M: f64 = 0.1;
 
@@ -48,9 +50,8 @@ pub struct TagArgs {
     /// Same seed, same result
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Where the particles are weighed
-    #[arg(long, value_enum, default_value = "auto")]
-    pub backend: Backend,
+    #[command(flatten)]
+    pub backend: BackendArgs,
     /// Sigma of the picture's Gaussian blur, pixels (gauss and contrast) [default: the model's own]
     #[arg(long, value_name = "PX", value_parser = blur_px)]
     blur: Option<f32>,
@@ -154,14 +155,6 @@ impl From<EstimatorKind> for Estimator {
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Backend {
-    /// The fastest one that is there
-    Auto,
-    Cpu,
-    Gpu,
-}
-
 /// A half-open range, open where nothing is given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FrameRange {
@@ -203,8 +196,9 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 impl TagArgs {
-    /// Refuses options that the observation model would ignore.
+    /// Refuses options that would be ignored.
     pub fn check_usage(&self) -> Result<(), String> {
+        self.backend.check_usage()?;
         let (contrast, distance) =
             (self.observation == Observation::Contrast, self.observation == Observation::Distance);
         let ignored = [
@@ -218,6 +212,14 @@ impl TagArgs {
             }
             None => Ok(()),
         }
+    }
+
+    /// The device that particles are weighed on.
+    pub fn device(&self) -> anyhow::Result<Device> {
+        if self.adaptive {
+            return self.backend.processor_only("--adaptive");
+        }
+        self.backend.device()
     }
 
     /// The filter's settings.

@@ -11,6 +11,7 @@ use reality_sim::{
 };
 
 use super::options::TagArgs;
+use crate::commands::device::Device;
 
 /// A pose to hand out, with what is known of its errors.
 pub struct PoseResult {
@@ -69,6 +70,11 @@ pub struct Report {
     frames: usize,
     observation: ObservationKind,
     backend: &'static str,
+    /// The graphics adapter's name.
+    adapter: Option<String>,
+    /// Why it is not the graphics card.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    backend_reason: Option<String>,
     particles: usize,
     iterations: u32,
     resampling: Resampling,
@@ -92,6 +98,7 @@ impl Report {
         args: &TagArgs,
         sequence: &Sequence,
         config: &TagConfig,
+        device: &Device,
         tagged: &[TaggedFrame],
         poses: &[CameraPose],
     ) -> Self {
@@ -104,7 +111,9 @@ impl Report {
             sequence: shown(&args.sequence),
             frames: tagged.len(),
             observation: config.observation.kind,
-            backend: "cpu",
+            backend: device.name,
+            adapter: device.adapter.clone(),
+            backend_reason: device.reason.clone(),
             particles: config.filter.particles,
             iterations: config.filter.iterations,
             resampling: config.filter.resampling,
@@ -122,6 +131,12 @@ impl Report {
         }
     }
 
+    fn backend_text(&self) -> String {
+        let why = self.adapter.as_ref().map(|name| format!(", {name}"));
+        let why = why.or_else(|| self.backend_reason.as_ref().map(|reason| format!(": {reason}")));
+        format!("{}{}", self.backend, why.unwrap_or_default())
+    }
+
     /// The same for people.
     pub fn text(&self, name: &str) -> String {
         let observation = match self.observation {
@@ -131,13 +146,8 @@ impl Report {
         };
         let mut lines = vec![
             ("sequence", format!("{name}, {} frames", self.frames)),
-            (
-                "model",
-                format!(
-                    "{observation}, {} particles, {} iterations, {}",
-                    self.particles, self.iterations, self.backend
-                ),
-            ),
+            ("model", format!("{observation}, {} particles, {} iterations", self.particles, self.iterations)),
+            ("backend", self.backend_text()),
             ("time", format!("{:.1} ms a frame (median)", 1e3 * self.seconds_per_frame)),
             ("sure", format!("{} frames; {} searched", self.sure_frames, self.searched_frames)),
         ];

@@ -6,14 +6,16 @@ mod motion;
 mod particle_filter;
 mod resample;
 mod rng;
+mod scored;
 mod weights;
 
 pub use self::{
     estimate::{Estimator, spread_m, weighted_mean},
     kld::KldConfig,
     motion::{MotionNoise, PlanarSigma},
-    particle_filter::{FilterConfig, FilterEstimate, ParticleFilter},
+    particle_filter::{FilterConfig, FilterEstimate, ParticleFilter, placed, rivals},
     resample::Resampling,
     rng::{Purpose, Stream},
+    scored::{Filter, ScoredFilter},
     weights::{best_index, effective_sample_size, normalise},
 };

@@ -89,9 +89,14 @@ pub struct ParticleFilter {
 impl ParticleFilter {
     /// Particles around a start pose.
     pub fn new(config: FilterConfig, start: Pose2, sigma: PlanarSigma) -> Self {
-        let mut filter = Self { config, particles: Vec::new(), frame: 0, placements: 0, rivals: Vec::new() };
+        let mut filter = Self::empty(config);
         filter.place(&[(start, 1.0)], sigma);
         filter
+    }
+
+    /// No particles yet.
+    pub fn empty(config: FilterConfig) -> Self {
+        Self { config, particles: Vec::new(), frame: 0, placements: 0, rivals: Vec::new() }
     }
 
     /// The particles after the last iteration.
@@ -117,16 +122,9 @@ impl ParticleFilter {
 
     /// Places all particles anew, around several poses in proportion to their weights.
     pub fn place(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) {
-        let weights: Vec<f64> = modes.iter().map(|(_, weight)| *weight).collect();
-        let stream = self.stream(Purpose::Initialise, self.placements);
+        self.particles =
+            placed(&self.config, modes, sigma, self.stream(Purpose::Initialise, self.placements));
         self.placements += 1;
-        let origin = Attitude { height_m: 0.0, pitch_rad: 0.0, roll_rad: 0.0 };
-        self.particles = Resampling::Systematic
-            .choose(&weights, self.config.particles, stream)
-            .into_iter()
-            .enumerate()
-            .map(|(index, mode)| origin.at(diffuse(modes[mode].0, sigma, &stream.normals(index as u32))))
-            .collect();
     }
 
     /// Carries the particles to the next picture. Without odometry the previous picture alone predicts this one, as in
@@ -138,7 +136,7 @@ impl ParticleFilter {
         let stream = self.stream(Purpose::Predict, 0);
         self.particles.par_iter_mut().enumerate().for_each(|(index, particle)| {
             let planar = particle.planar().moved(motion.unwrap_or_default());
-            *particle = particle.with_planar(diffuse(planar, sigma, &stream.normals(index as u32)));
+            *particle = particle.with_planar(diffused(planar, sigma, &stream.normals(index as u32)));
         });
     }
 
@@ -149,7 +147,7 @@ impl ParticleFilter {
         let mut last = (Vec::new(), Vec::new());
         for iteration in 0..self.config.iterations.max(1) {
             let scale = self.config.shrink.powi(iteration as i32);
-            self.diffuse_all(iteration, scale, sigma, attitude);
+            self.diffuse(iteration, scale, sigma, attitude);
             let log_weights = self.log_weights(scorer, attitude);
             if let Some(index) = best_index(&log_weights)
                 && best.is_none_or(|(_, largest)| log_weights[index] > largest)
@@ -164,14 +162,14 @@ impl ParticleFilter {
                 adaptive.particles_needed(&self.particles, self.config.particles)
             });
             let chosen =
-                self.config.resampling.choose(&weights, count, self.stream(Purpose::Resample, iteration));
+                self.config.resampling.resample(&weights, count, self.stream(Purpose::Resample, iteration));
             let survivors = chosen.iter().map(|&index| self.particles[index]).collect();
             last = (std::mem::replace(&mut self.particles, survivors), weights);
         }
-        self.estimate(best, &last.0, &last.1, attitude)
+        self.summarise(best, &last.0, &last.1, attitude)
     }
 
-    fn estimate(
+    fn summarise(
         &self,
         best: Option<(CameraPose, f64)>,
         particles: &[CameraPose],
@@ -197,7 +195,7 @@ impl ParticleFilter {
     }
 
     /// The first iteration only gives the particles their attitude: prediction has spread them already.
-    fn diffuse_all(&mut self, iteration: u32, scale: f64, sigma: PlanarSigma, attitude: Attitude) {
+    fn diffuse(&mut self, iteration: u32, scale: f64, sigma: PlanarSigma, attitude: Attitude) {
         let stream = self.stream(Purpose::Diffuse, iteration);
         let tolerance =
             self.config.attitude_tolerance.unwrap_or(AttitudeTolerance { height_m: 0.0, angle_rad: 0.0 });
@@ -207,7 +205,7 @@ impl ParticleFilter {
             if iteration == 0 {
                 *particle = attitude.at(particle.planar());
             } else {
-                *particle = particle.with_planar(diffuse(particle.planar(), planar, &normals));
+                *particle = particle.with_planar(diffused(particle.planar(), planar, &normals));
             }
             particle.height_m += scale * tolerance.height_m * normals[3];
             particle.pitch_rad += scale * tolerance.angle_rad * normals[4];
@@ -230,7 +228,24 @@ impl ParticleFilter {
     }
 }
 
-fn diffuse(pose: Pose2, sigma: PlanarSigma, normals: &[f64; 6]) -> Pose2 {
+/// As many particles as the settings say, around several poses in proportion to their weights.
+pub fn placed(
+    config: &FilterConfig,
+    modes: &[(Pose2, f64)],
+    sigma: PlanarSigma,
+    stream: Stream,
+) -> Vec<CameraPose> {
+    let weights: Vec<f64> = modes.iter().map(|(_, weight)| *weight).collect();
+    let origin = Attitude { height_m: 0.0, pitch_rad: 0.0, roll_rad: 0.0 };
+    Resampling::Systematic
+        .resample(&weights, config.particles, stream)
+        .into_iter()
+        .enumerate()
+        .map(|(index, mode)| origin.at(diffused(modes[mode].0, sigma, &stream.normals(index as u32))))
+        .collect()
+}
+
+fn diffused(pose: Pose2, sigma: PlanarSigma, normals: &[f64; 6]) -> Pose2 {
     Pose2 {
         x_m: pose.x_m + sigma.position_m * normals[0],
         y_m: pose.y_m + sigma.position_m * normals[1],
@@ -238,7 +253,8 @@ fn diffuse(pose: Pose2, sigma: PlanarSigma, normals: &[f64; 6]) -> Pose2 {
     }
 }
 
-fn rivals(particles: &[CameraPose], log_weights: &[f64]) -> Vec<CameraPose> {
+/// The best particles that lie apart from each other, best first.
+pub fn rivals(particles: &[CameraPose], log_weights: &[f64]) -> Vec<CameraPose> {
     let mut order: Vec<usize> = (0..particles.len()).filter(|&index| !log_weights[index].is_nan()).collect();
     order.sort_by(|&a, &b| log_weights[b].total_cmp(&log_weights[a]));
     let mut rivals: Vec<CameraPose> = Vec::new();

@@ -10,7 +10,8 @@ use super::rng::Stream;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Resampling {
-    /// ⌊n w⌋ copies for certain, the rest drawn from the remainders: the paper's.
+    /// ⌊n w⌋ copies for certain, the rest drawn from the remainders: the paper's. Liu and Chen, "Sequential Monte Carlo
+    /// methods for dynamic systems", 1998.
     #[default]
     Residual,
     /// One random offset, then equal steps.
@@ -22,64 +23,60 @@ pub enum Resampling {
 }
 
 impl Resampling {
-    /// Indices of `count` survivors, in ascending order for all schemes but residual and multinomial.
-    pub fn choose(self, weights: &[f64], count: usize, stream: Stream) -> Vec<usize> {
+    /// Indices of `count` survivors. Every slot finds its ancestor on its own, from prefix sums.
+    pub fn resample(self, weights: &[f64], count: usize, stream: Stream) -> Vec<usize> {
         if weights.is_empty() {
             return Vec::new();
         }
-        let n = count as f64;
-        match self {
-            Self::Systematic => {
-                let offset = stream.uniform(0);
-                inverse(weights, (0..count).map(|i| (i as f64 + offset) / n))
-            }
-            Self::Stratified => {
-                inverse(weights, (0..count).map(|i| (i as f64 + stream.uniform(i as u32)) / n))
-            }
-            Self::Multinomial => inverse(weights, sorted_uniforms(count, stream).into_iter()),
-            Self::Residual => residual(weights, count, stream),
+        let shares = self.cumulate(weights, count);
+        let certain = shares.copies.last().copied().unwrap_or(0);
+        let drawn = count - certain;
+        // All draws but systematic's one have a number of their own.
+        let place = |draw: usize| match self {
+            Self::Systematic => (draw as f64 + stream.uniform(0)) / drawn as f64,
+            Self::Stratified => (draw as f64 + stream.uniform(draw as u32)) / drawn as f64,
+            Self::Residual | Self::Multinomial => stream.uniform(draw as u32),
+        };
+        let ancestor = |slot: usize| match slot.checked_sub(certain) {
+            None => shares.copies.partition_point(|&copies| copies <= slot),
+            Some(draw) => shares.drawn_at(place(draw)),
+        };
+        (0..count).map(ancestor).collect()
+    }
+
+    /// What every particle gets for certain, and its share of what is drawn.
+    fn cumulate(self, weights: &[f64], count: usize) -> Shares {
+        let per_weight = count as f64 / weights.iter().sum::<f64>();
+        let (mut copies, mut rests) = (Vec::with_capacity(weights.len()), Vec::with_capacity(weights.len()));
+        let (mut copies_so_far, mut rest_so_far) = (0, 0.0);
+        for &weight in weights {
+            let expected = per_weight * weight;
+            let certain = if self == Self::Residual { expected.floor() } else { 0.0 };
+            copies_so_far = count.min(copies_so_far + certain as usize);
+            rest_so_far += expected - certain;
+            copies.push(copies_so_far);
+            rests.push(rest_so_far);
         }
+        Shares { copies, rests }
     }
 }
 
-/// Liu and Chen, "Sequential Monte Carlo methods for dynamic systems", 1998.
-fn residual(weights: &[f64], count: usize, stream: Stream) -> Vec<usize> {
-    let sum: f64 = weights.iter().sum();
-    let copies = |weight: f64| (count as f64 * weight / sum).floor();
-    let mut chosen = Vec::with_capacity(count);
-    for (index, &weight) in weights.iter().enumerate() {
-        chosen.extend(std::iter::repeat_n(index, (copies(weight) as usize).min(count - chosen.len())));
-    }
-    let left = count - chosen.len();
-    if left > 0 {
-        let rest: Vec<f64> =
-            weights.iter().map(|&weight| count as f64 * weight / sum - copies(weight)).collect();
-        chosen.extend(inverse(&rest, sorted_uniforms(left, stream).into_iter()));
-    }
-    chosen
+/// Prefix sums over the particles, each its own share included.
+struct Shares {
+    /// Copies for certain.
+    copies: Vec<usize>,
+    /// Expected copies beyond those.
+    rests: Vec<f64>,
 }
 
-fn sorted_uniforms(count: usize, stream: Stream) -> Vec<f64> {
-    let mut uniforms: Vec<f64> = (0..count as u32).map(|i| stream.uniform(i)).collect();
-    uniforms.sort_unstable_by(f64::total_cmp);
-    uniforms
-}
-
-/// Inverse of the cumulative weights at ascending places in [0, 1).
-fn inverse(weights: &[f64], places: impl Iterator<Item = f64>) -> Vec<usize> {
-    let sum: f64 = weights.iter().sum();
-    // Rounding may leave the last place beyond the last sum: the last particle with any weight takes it.
-    let last = weights.iter().rposition(|&weight| weight > 0.0).unwrap_or(weights.len() - 1);
-    let (mut index, mut cumulative) = (0, weights[0]);
-    places
-        .map(|place| {
-            while index < last && place * sum >= cumulative {
-                index += 1;
-                cumulative += weights[index];
-            }
-            index
-        })
-        .collect()
+impl Shares {
+    /// The particle at a place in [0, 1) of the drawn shares.
+    fn drawn_at(&self, place: f64) -> usize {
+        let all = self.rests.last().copied().unwrap_or(0.0);
+        let index = self.rests.partition_point(|&rest| rest <= place * all);
+        // Rounding may leave the last place beyond the last sum: the last particle with any share takes it.
+        index.min(self.rests.partition_point(|&rest| rest < all))
+    }
 }
 
 #[cfg(test)]
@@ -108,7 +105,7 @@ mod tests {
             let sum: f64 = raw.iter().sum();
             let weights: Vec<f64> = raw.iter().map(|w| w / sum).collect();
             for scheme in ALL {
-                let chosen = scheme.choose(&weights, count, Stream::new(seed, Purpose::Resample, 0, 0));
+                let chosen = scheme.resample(&weights, count, Stream::new(seed, Purpose::Resample, 0, 0));
                 prop_assert_eq!(chosen.len(), count);
                 prop_assert!(chosen.iter().all(|&index| weights[index] > 0.0), "{:?} chose a dead particle", scheme);
             }
@@ -123,8 +120,8 @@ mod tests {
             let weights: Vec<f64> = raw.iter().map(|w| w / sum).collect();
             let stream = Stream::new(seed, Purpose::Resample, 0, 0);
             let expected = |w: f64| 100.0 * w;
-            let residual = copies(&Resampling::Residual.choose(&weights, 100, stream), weights.len());
-            let systematic = copies(&Resampling::Systematic.choose(&weights, 100, stream), weights.len());
+            let residual = copies(&Resampling::Residual.resample(&weights, 100, stream), weights.len());
+            let systematic = copies(&Resampling::Systematic.resample(&weights, 100, stream), weights.len());
             for ((&w, &r), &s) in weights.iter().zip(&residual).zip(&systematic) {
                 prop_assert!(r as f64 >= (expected(w) - 1e-9).floor());
                 prop_assert!((s as f64 - expected(w)).abs() <= 1.0 + 1e-9);
@@ -139,7 +136,7 @@ mod tests {
         for scheme in ALL {
             let mut total = [0_usize; 5];
             for seed in 0..runs {
-                let chosen = scheme.choose(&weights, count, Stream::new(seed, Purpose::Resample, 0, 0));
+                let chosen = scheme.resample(&weights, count, Stream::new(seed, Purpose::Resample, 0, 0));
                 chosen.iter().for_each(|&index| total[index] += 1);
             }
             for (&weight, &copies) in weights.iter().zip(&total) {

@@ -51,21 +51,26 @@ impl GroundPoints {
         Self { blocks }
     }
 
-    /// Number of points.
-    pub fn count(&self) -> usize {
-        self.blocks.iter().flat_map(|block| block.place[0]).filter(|x| !x.is_nan()).count()
+    /// All points.
+    pub fn points(&self) -> impl Iterator<Item = [f32; 2]> {
+        let lanes = self.blocks.iter().flat_map(|block| block.place[0].into_iter().zip(block.place[1]));
+        lanes.filter(|(x, _)| !x.is_nan()).map(|(x, y)| [x, y])
     }
 }
 
 /// `camera = linear · ground + offset`: a pose for points with z = 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct CameraFromGround {
-    linear: [[f32; 2]; 3],
-    offset: [f32; 3],
-    height_m: f32,
+pub struct CameraFromGround {
+    /// A row for each of the camera's axes.
+    pub linear: [[f32; 2]; 3],
+    /// Of each of the camera's axes, metres.
+    pub offset: [f32; 3],
+    /// Of the camera above the ground, metres.
+    pub height_m: f32,
 }
 
 impl CameraFromGround {
+    /// The same pose in single precision.
     pub fn new(pose: CameraPose) -> Self {
         let rotation = pose.rotation_world_from_camera();
         let position = pose.position_in_world();
@@ -252,9 +257,9 @@ pub(crate) struct LinePoints {
     pub right: GroundPoints,
 }
 
-/// What [`contrast_along_lines`] needs to know of the picture.
+/// What the contrast model needs to know of the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ContrastScale {
+pub struct ContrastScale {
     /// One over the Michelson contrast of lines and carpet in this picture.
     pub per_contrast: f32,
     /// Added to the brightness that contrast is relative to, so that noise in the dark is no line, grey levels.

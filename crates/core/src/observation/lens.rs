@@ -4,28 +4,44 @@ use crate::camera::{Camera, Distortion};
 
 /// Coefficients of the radial polynomial: enough for 0.01 px in a picture that sees up to 90° from the optical axis; a test
 /// holds it to that.
-pub(crate) const RADIAL_TERMS: usize = 11;
+pub const RADIAL_TERMS: usize = 11;
 
 /// How a direction becomes a place in the plane of unit focal length.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Lens {
+pub enum Lens {
     /// `place = (x, y)/|p| · Σ cᵢ tⁱ`, t = z/|p| mapped to [−1, 1]. For Kannala–Brandt θ_d/sin θ is an even function of
     /// θ, hence a smooth function of cos θ = z/|p|: a short polynomial replaces square root and arc tangent.
-    Radial { coefficients: [f32; RADIAL_TERMS], scale: f32, offset: f32 },
+    Radial {
+        /// cᵢ.
+        coefficients: [f32; RADIAL_TERMS],
+        /// t = scale · z/|p| + offset.
+        scale: f32,
+        /// See `scale`.
+        offset: f32,
+    },
     /// `place = (x, y)/z` with Brown–Conrady distortion k1, k2, p1, p2, k3.
-    Perspective { distortion: [f32; 5] },
+    Perspective {
+        /// k1, k2, p1, p2, k3.
+        distortion: [f32; 5],
+    },
 }
 
 /// A camera for the scoring loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct KernelCamera {
+pub struct KernelCamera {
+    /// Direction to place in the plane of unit focal length.
     pub lens: Lens,
+    /// Focal lengths, pixels.
     pub fx: f32,
+    /// See `fx`.
     pub fy: f32,
+    /// Principal point, pixels.
     pub cx: f32,
+    /// See `cx`.
     pub cy: f32,
-    /// Largest valid column and row.
+    /// Largest valid column.
     pub max_u: f32,
+    /// Largest valid row.
     pub max_v: f32,
     /// Cosine of the largest valid angle.
     pub min_cos: f32,
@@ -34,6 +50,7 @@ pub(crate) struct KernelCamera {
 }
 
 impl KernelCamera {
+    /// The same camera in single precision.
     pub fn new(camera: &Camera) -> Self {
         let min_cos = camera.max_angle_rad().min(max_seen_angle_rad(camera)).cos();
         let lens = match camera.distortion {

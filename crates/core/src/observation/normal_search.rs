@@ -94,7 +94,7 @@ mod tests {
             (NormalSearch::new(&camera, &field, config), CpuScorer::new(&camera, &field, config));
         for pose in test_scene::poses() {
             let picture = Preprocessor::new(&camera, field.line_width_m)
-                .prepare(&test_scene::render(&camera, pose, &field), Attitude::of(pose));
+                .prepare(test_scene::render(&camera, pose, &field), Attitude::of(pose));
             across.load(&picture);
             any.load(&picture);
             let beside = [0.0, 0.03, 0.1, 0.5].map(|dx| CameraPose { x_m: pose.x_m + dx, ..pose });

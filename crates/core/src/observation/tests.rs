@@ -1,13 +1,16 @@
+use image::GrayImage;
 use proptest::prelude::*;
 
 use super::{
     kernel::{
         contrast_along_lines, contrast_on_any_processor, project_block, sum_along_lines, sum_on_any_processor,
     },
+    model::{DARK_LEVEL, ground_points, line_points},
     *,
 };
 use crate::{
     camera::{Distortion, Opencv, OpencvFisheye},
+    field::sample_lines,
     pose::Pose2,
     preprocess::{Attitude, Preprocessor},
     test_scene,
@@ -124,7 +127,7 @@ fn the_true_pose_scores_best() {
     for pose in test_scene::poses() {
         let attitude = Attitude::of(pose);
         let picture = test_scene::render(&camera, pose, &field);
-        let prepared = Preprocessor::new(&camera, field.line_width_m).prepare(&picture, attitude);
+        let prepared = Preprocessor::new(&camera, field.line_width_m).prepare(picture, attitude);
         for kind in [ObservationKind::Gauss, ObservationKind::Distance, ObservationKind::Contrast] {
             let mut scorer = CpuScorer::new(&camera, &field, ObservationConfig::new(kind));
             scorer.load(&prepared);
@@ -157,12 +160,12 @@ fn contrast_does_not_depend_on_the_light() {
     let bright = test_scene::render(&camera, pose, &field);
     let mut dim = bright.clone();
     dim.iter_mut().for_each(|value| *value = (f32::from(*value) * 0.55) as u8);
-    let fraction = |picture| {
+    let fraction = |picture: image::RgbImage| {
         let mut scorer = CpuScorer::new(&camera, &field, ObservationConfig::new(ObservationKind::Contrast));
         scorer.load(&Preprocessor::new(&camera, field.line_width_m).prepare(picture, attitude));
         scorer.line_fraction(pose).unwrap()
     };
-    let (bright, dim) = (fraction(&bright), fraction(&dim));
+    let (bright, dim) = (fraction(bright), fraction(dim));
     assert!(bright > 0.4 && (bright - dim).abs() < 0.05, "{bright} in full light, {dim} in half");
 }
 

@@ -11,19 +11,14 @@ pub fn gaussian_blur(picture: &GrayImage, sigma_px: f32) -> GrayImage {
     if kernel.len() == 1 || width == 0 || height == 0 {
         return picture.clone();
     }
-    let mut across = vec![0.0_f32; width * height];
-    across
-        .par_chunks_mut(width)
-        .zip(picture.as_raw().par_chunks(width))
-        .for_each(|(out, row)| blur_row(row, &kernel, out));
-    let mut blurred = vec![0_u8; width * height];
-    blurred.par_chunks_mut(width).enumerate().for_each(|(y, out)| blur_column(&across, y, &kernel, out));
+    let across = blur_rows(picture.as_raw(), width, &kernel);
+    let blurred = blur_columns(&across, width, &kernel);
     // One value a pixel is just what the buffer of this size holds.
     GrayImage::from_raw(picture.width(), picture.height(), blurred).unwrap_or_default()
 }
 
-/// Odd number of weights that sum to one.
-fn gaussian_kernel(sigma_px: f32) -> Vec<f32> {
+/// An odd number of weights that sum to one: just one for a sigma of zero (or below, or NaN).
+pub fn gaussian_kernel(sigma_px: f32) -> Vec<f32> {
     if !(sigma_px > 0.0 && sigma_px.is_finite()) {
         return vec![1.0];
     }
@@ -31,6 +26,20 @@ fn gaussian_kernel(sigma_px: f32) -> Vec<f32> {
     let weight = |i: i32| (-0.5 * (i as f32 / sigma_px).powi(2)).exp();
     let sum: f32 = (-radius..=radius).map(weight).sum();
     (-radius..=radius).map(|i| weight(i) / sum).collect()
+}
+
+fn blur_rows(values: &[u8], width: usize, kernel: &[f32]) -> Vec<f32> {
+    let mut across = vec![0.0_f32; values.len()];
+    let rows = across.par_chunks_mut(width).zip(values.par_chunks(width));
+    rows.for_each(|(out, row)| blur_row(row, kernel, out));
+    across
+}
+
+fn blur_columns(across: &[f32], width: usize, kernel: &[f32]) -> Vec<u8> {
+    let mut blurred = vec![0_u8; across.len()];
+    let rows = blurred.par_chunks_mut(width).enumerate();
+    rows.for_each(|(y, out)| blur_column(across, y, kernel, out));
+    blurred
 }
 
 fn blur_row(row: &[u8], kernel: &[f32], out: &mut [f32]) {

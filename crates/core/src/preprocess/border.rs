@@ -143,6 +143,17 @@ impl FieldBorder {
         self.depressions.get(((v / CELL_PX) * self.columns + u / CELL_PX) as usize).copied().unwrap_or(0.0)
     }
 
+    /// A bit for each cell of two by two pixels, row after row, the first in the lowest bit: whether it lies inside.
+    pub fn inside_bits(&self) -> Vec<u32> {
+        let word = |cells: &[f32]| {
+            cells
+                .iter()
+                .zip(0..)
+                .fold(0, |word, (&depression, bit)| word | u32::from(depression > 0.0) << bit)
+        };
+        self.depressions.chunks(32).map(word).collect()
+    }
+
     /// Sets all pixels outside the border to zero.
     pub fn mask(&self, picture: &mut GrayImage) {
         let width = picture.width().max(1) as usize;

@@ -4,21 +4,21 @@
 mod blur;
 mod border;
 mod carpet;
+mod distance;
 mod grey;
 mod prepared;
 mod texture;
 mod white_line;
 
 pub use self::{
-    blur::gaussian_blur,
+    blur::{gaussian_blur, gaussian_kernel},
     border::{BorderDetector, FieldBorder},
     carpet::CarpetColor,
+    distance::{DISTANCE_RADIUS_PX, DISTANCE_UNITS_PER_PX, distance_field},
     grey::{luma, whiteness},
     prepared::{Prepared, Preprocessor},
     texture::Texture,
-    white_line::{
-        DISTANCE_UNITS_PER_PX, LineScale, WhiteLevels, distance_field, white_levels, white_line_evidence,
-    },
+    white_line::{LineScale, WhiteLevels, white_levels, white_line_evidence},
 };
 use crate::pose::CameraPose;
 

@@ -1,5 +1,7 @@
 //! Everything the observation models read of one picture.
 
+use std::sync::Arc;
+
 use image::{GrayImage, RgbImage};
 
 use super::{
@@ -11,8 +13,8 @@ use crate::camera::Camera;
 /// A picture ready to be scored.
 #[derive(Debug, Clone)]
 pub struct Prepared {
-    /// Grey values.
-    pub luma: GrayImage,
+    /// The picture itself.
+    pub picture: Arc<RgbImage>,
     /// Smallest channel: bright only on white.
     pub whiteness: GrayImage,
     /// Whiteness of carpet and lines.
@@ -23,7 +25,12 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// White pixels (255) inside the border. Made anew at each call: not every observation model needs it.
+    /// Grey values. Made anew at each call: not every observation model needs them.
+    pub fn luma(&self) -> GrayImage {
+        luma(&self.picture)
+    }
+
+    /// White pixels (255) inside the border. Made anew at each call, as [`Prepared::luma`].
     pub fn evidence(&self) -> GrayImage {
         white_line_evidence(&self.whiteness, &self.border, self.scale, &self.levels)
     }
@@ -45,15 +52,16 @@ impl Preprocessor {
     }
 
     /// Prepares a picture taken with this attitude.
-    pub fn prepare(&self, picture: &RgbImage, attitude: Attitude) -> Prepared {
-        let (border, (luma, whiteness)) =
-            rayon::join(|| self.border.detect(picture, attitude), || (luma(picture), whiteness(picture)));
+    pub fn prepare(&self, picture: impl Into<Arc<RgbImage>>, attitude: Attitude) -> Prepared {
+        let picture = picture.into();
+        let (border, whiteness) =
+            rayon::join(|| self.border.detect(&picture, attitude), || whiteness(&picture));
         let scale = LineScale {
             focal_px: self.focal_px,
             line_width_m: self.line_width_m,
             height_m: attitude.height_m as f32,
         };
         let levels = white_levels(&whiteness, &border, scale);
-        Prepared { luma, whiteness, levels, border, scale }
+        Prepared { picture, whiteness, levels, border, scale }
     }
 }

@@ -1,4 +1,4 @@
-//! The evidence for white lines: which pixels inside the field's border are white, and how far every pixel is from one.
+//! The evidence for white lines: which pixels inside the field's border are white.
 
 use image::GrayImage;
 use rayon::prelude::*;
@@ -57,7 +57,7 @@ pub fn white_levels(whiteness: &GrayImage, border: &FieldBorder, scale: LineScal
     }
     match count > 0.0 {
         true => WhiteLevels { carpet: flank / count, line: line / count, threshold },
-        false => WhiteLevels { carpet: 0.0, line: 255.0, threshold },
+        false => WhiteLevels { threshold, ..WhiteLevels::default() },
     }
 }
 
@@ -120,6 +120,13 @@ pub struct WhiteLevels {
     pub threshold: u8,
 }
 
+impl Default for WhiteLevels {
+    /// Where no line is seen: black carpet, white lines.
+    fn default() -> Self {
+        Self { carpet: 0.0, line: 255.0, threshold: 0 }
+    }
+}
+
 impl WhiteLevels {
     /// Michelson contrast of lines and carpet, with `dark_level` added to the brightness it is relative to.
     pub fn michelson(&self, dark_level: f32) -> f32 {
@@ -132,78 +139,9 @@ impl WhiteLevels {
     }
 }
 
-/// Distance of every pixel from the nearest white one, pixels × [`DISTANCE_UNITS_PER_PX`], cut at 255: two passes of
-/// the 5-7-11 chamfer (Borgefors, 1986), at most 2 % from the Euclidean distance.
-pub fn distance_field(evidence: &GrayImage) -> GrayImage {
-    const FAR: u16 = 255 * 5;
-    let (width, height) = (evidence.width() as usize, evidence.height() as usize);
-    // A frame of two far pixels on every side spares all tests for the edge.
-    let stride = width + 4;
-    let mut field = vec![FAR; stride * (height + 4)];
-    for (y, row) in evidence.as_raw().chunks_exact(width.max(1)).enumerate() {
-        for (target, &white) in field[(y + 2) * stride + 2..].iter_mut().zip(row) {
-            *target = if white > 0 { 0 } else { FAR };
-        }
-    }
-    let s = stride;
-    let inner = |y: usize| (y + 2) * s + 2;
-    for y in 0..height {
-        for at in inner(y)..inner(y) + width {
-            let straight = field[at - 1].min(field[at - s]) + 5;
-            let diagonal = field[at - s - 1].min(field[at - s + 1]) + 7;
-            let knight = field[at - 2 * s - 1]
-                .min(field[at - 2 * s + 1])
-                .min(field[at - s - 2].min(field[at - s + 2]))
-                + 11;
-            field[at] = field[at].min(straight).min(diagonal).min(knight);
-        }
-    }
-    for y in (0..height).rev() {
-        for at in (inner(y)..inner(y) + width).rev() {
-            let straight = field[at + 1].min(field[at + s]) + 5;
-            let diagonal = field[at + s + 1].min(field[at + s - 1]) + 7;
-            let knight = field[at + 2 * s + 1]
-                .min(field[at + 2 * s - 1])
-                .min(field[at + s + 2].min(field[at + s - 2]))
-                + 11;
-            field[at] = field[at].min(straight).min(diagonal).min(knight);
-        }
-    }
-    GrayImage::from_fn(evidence.width(), evidence.height(), |u, v| {
-        let fifths = f32::from(field[inner(v as usize) + u as usize]);
-        image::Luma([(fifths / 5.0 * DISTANCE_UNITS_PER_PX).min(255.0) as u8])
-    })
-}
-
-/// Grey levels per pixel of distance in [`distance_field`].
-pub const DISTANCE_UNITS_PER_PX: f32 = 8.0;
-
 #[cfg(test)]
 mod tests {
-    use image::Luma;
-
-    use super::*;
     use crate::{preprocess::Attitude, preprocess::Preprocessor, test_scene};
-
-    #[test]
-    fn the_distance_field_is_nearly_euclidean() {
-        let white = [(5, 7), (40, 12), (22, 30), (23, 30)];
-        let evidence =
-            GrayImage::from_fn(48, 36, |u, v| Luma([if white.contains(&(u, v)) { 255 } else { 0 }]));
-        let field = distance_field(&evidence);
-        for (u, v, value) in field.enumerate_pixels() {
-            let distance = white
-                .iter()
-                .map(|&(x, y)| (x as f32 - u as f32).hypot(y as f32 - v as f32))
-                .fold(f32::INFINITY, f32::min);
-            let measured = f32::from(value.0[0]) / DISTANCE_UNITS_PER_PX;
-            let cut = 255.0 / DISTANCE_UNITS_PER_PX;
-            assert!(
-                (measured - distance.min(cut)).abs() <= 0.03 * distance + 0.2,
-                "({u}, {v}): {measured} {distance}"
-            );
-        }
-    }
 
     #[test]
     fn evidence_is_where_lines_are_drawn() {
@@ -211,7 +149,7 @@ mod tests {
         for pose in test_scene::poses() {
             let attitude = Attitude::of(pose);
             let picture = test_scene::render(&camera, pose, &field);
-            let prepared = Preprocessor::new(&camera, field.line_width_m).prepare(&picture, attitude);
+            let prepared = Preprocessor::new(&camera, field.line_width_m).prepare(picture, attitude);
             let evidence = prepared.evidence();
             let (mut right, mut wrong) = (0, 0);
             for (u, v, _) in evidence.enumerate_pixels().filter(|(_, _, pixel)| pixel.0[0] > 0) {

@@ -1,0 +1,178 @@
+//! The graphics device beside the CPU: whole frames of the filter, many particles, the search of the whole field. The
+//! groups carry the adapter's name; without an adapter there are none, and a line says so.
+
+use std::sync::Arc;
+
+use criterion::{BatchSize, BenchmarkId, Criterion, SamplingMode, Throughput};
+use reality_sim::{
+    ObservationKind, TagConfig,
+    backend::{Backend, CpuBackend},
+    filter::PlanarSigma,
+    gpu::{GpuBackend, GpuContext, GpuFilter},
+    observation::{CpuScorer, ObservationConfig},
+    refine::AttitudeTolerance,
+    search::{GlobalSearch, SearchGrid},
+};
+
+use crate::{scene::Scene, scoring::MODELS};
+
+const SIGMA: PlanarSigma = PlanarSigma { position_m: 0.03, yaw_rad: 0.03 };
+/// Scored at once by one iteration of the filter.
+const PARTICLES: [usize; 4] = [800, 10_000, 100_000, 1_000_000];
+/// A driver that runs on the processor is spared the largest numbers.
+const MOST_ON_PROCESSOR: usize = 100_000;
+/// 0.1 m and 1° on the demonstration walk's carpet: at least the paper's 720,000 poses.
+const GRID: SearchGrid = SearchGrid { step_m: 0.1, headings: 360 };
+
+/// Nothing but the adapter's name is printed where there is none.
+pub fn bench(criterion: &mut Criterion, scene: &Scene) {
+    match GpuContext::new(None) {
+        Ok(context) => bench_on(criterion, scene, &Arc::new(context)),
+        Err(error) => println!("gpu: absent: {error}"),
+    }
+}
+
+fn bench_on(criterion: &mut Criterion, scene: &Scene, context: &Arc<GpuContext>) {
+    let adapter = context.adapter().clone();
+    println!("gpu: {adapter:?}");
+    let gpu = GpuBackend::new(context.clone());
+    let backends: [(&str, &dyn Backend); 2] = [("cpu", &CpuBackend), (&adapter.name, &gpu)];
+    whole_frames(criterion, scene, &backends);
+    print_stages(scene, context);
+    many_particles(criterion, scene, &backends, adapter.is_processor);
+    search(criterion, scene, &backends);
+    start(criterion, scene, context, &adapter.name);
+}
+
+/// Upload, blur, five iterations of 800 particles, and the estimate read back; the border of the field, which is the
+/// CPU's work with both, excluded.
+fn whole_frames(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dyn Backend)]) {
+    let walk = &scene.walk;
+    for (name, kind) in MODELS {
+        let mut group = criterion.benchmark_group(format!("filter/{name}"));
+        group.sampling_mode(SamplingMode::Flat);
+        for (device, backend) in backends {
+            let config = TagConfig::new(kind);
+            let mut filter = backend
+                .filter(&walk.setup.camera, &walk.field, config.observation, config.filter)
+                .expect("a device that works");
+            filter.place(&[(scene.pose(), 1.0)], SIGMA);
+            group.bench_function(*device, |bencher| {
+                bencher.iter(|| {
+                    filter.load(scene.prepared());
+                    filter.predict(None);
+                    filter.update(scene.attitude(), SIGMA)
+                });
+            });
+        }
+        group.finish();
+    }
+}
+
+/// Where a frame's time goes, by the device's own clock: every kernel in a pass of its own, the mean of some frames.
+fn print_stages(scene: &Scene, context: &Arc<GpuContext>) {
+    use reality_sim::filter::Filter;
+
+    const FRAMES: usize = 8;
+    let walk = &scene.walk;
+    for (name, kind) in MODELS {
+        let config = TagConfig::new(kind);
+        let filter = GpuFilter::new(
+            context.clone(),
+            &walk.setup.camera,
+            &walk.field,
+            config.observation,
+            config.filter,
+        );
+        let mut filter = filter.expect("a device that works");
+        filter.place(&[(scene.pose(), 1.0)], SIGMA);
+        let mut stages: Vec<(&str, f64)> = Vec::new();
+        // The first frame warms everything up.
+        for frame in 0..=FRAMES {
+            filter.load(scene.prepared());
+            filter.predict(None);
+            let timed = match filter.timed_update(scene.attitude(), SIGMA) {
+                Ok(timed) => timed,
+                Err(error) => return println!("filter/{name}: stages: absent: {error}"),
+            };
+            for (stage, seconds) in timed.into_iter().filter(|_| frame > 0) {
+                let milliseconds = 1e3 * seconds / FRAMES as f64;
+                match stages.iter_mut().find(|(known, _)| *known == stage) {
+                    Some((_, sum)) => *sum += milliseconds,
+                    None => stages.push((stage, milliseconds)),
+                }
+            }
+        }
+        let total: f64 = stages.iter().map(|(_, milliseconds)| milliseconds).sum();
+        let lines: Vec<String> =
+            stages.iter().map(|(stage, milliseconds)| format!("{stage} {milliseconds:.3}")).collect();
+        println!("filter/{name}: stages, ms a frame: {}; together {total:.3}", lines.join(", "));
+    }
+}
+
+/// One iteration of `gauss`. Elements are samples scored.
+fn many_particles(
+    criterion: &mut Criterion,
+    scene: &Scene,
+    backends: &[(&str, &dyn Backend)],
+    is_processor: bool,
+) {
+    let walk = &scene.walk;
+    let observation = ObservationConfig::new(ObservationKind::Gauss);
+    let samples = CpuScorer::new(&walk.setup.camera, &walk.field, observation).samples();
+    for particles in PARTICLES.into_iter().filter(|&count| !is_processor || count <= MOST_ON_PROCESSOR) {
+        let mut group = criterion.benchmark_group(format!("one_iteration/{particles}"));
+        group.sampling_mode(SamplingMode::Flat);
+        group.throughput(Throughput::Elements((particles * samples) as u64));
+        for (device, backend) in backends {
+            let mut config = TagConfig::new(ObservationKind::Gauss).filter;
+            (config.particles, config.iterations) = (particles, 1);
+            let mut filter = backend
+                .filter(&walk.setup.camera, &walk.field, observation, config)
+                .expect("a device that holds them");
+            filter.load(scene.prepared());
+            filter.place(&[(scene.pose(), 1.0)], SIGMA);
+            group.bench_function(*device, |bencher| bencher.iter(|| filter.update(scene.attitude(), SIGMA)));
+        }
+        group.finish();
+    }
+}
+
+/// Elements are poses. Nothing is known of the place: half the carpet is searched, the other half is its mirror image.
+fn search(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dyn Backend)]) {
+    let walk = &scene.walk;
+    let poses = GRID.places(&walk.field).len() / 2 * GRID.headings as usize;
+    let mut group = criterion.benchmark_group("grid_search");
+    group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(poses as u64));
+    for (device, backend) in backends {
+        let tolerance = AttitudeTolerance::default();
+        let mut search = GlobalSearch::with_backend(&walk.setup.camera, &walk.field, tolerance, *backend)
+            .expect("a device that works");
+        search.set_grid(GRID);
+        group.bench_function(BenchmarkId::new(*device, poses), |bencher| {
+            bencher.iter(|| search.best_on_grid(scene.prepared(), scene.attitude(), None));
+        });
+    }
+    group.finish();
+}
+
+/// From nothing to a device, and from a device to a filter with all its pipelines.
+fn start(criterion: &mut Criterion, scene: &Scene, context: &Arc<GpuContext>, adapter: &str) {
+    let walk = &scene.walk;
+    let mut group = criterion.benchmark_group("start");
+    group.sampling_mode(SamplingMode::Flat);
+    group.bench_function(BenchmarkId::new("device", adapter), |bencher| {
+        bencher.iter(|| GpuContext::new(None));
+    });
+    let config = TagConfig::new(ObservationKind::Gauss);
+    group.bench_function(BenchmarkId::new("pipelines", adapter), |bencher| {
+        bencher.iter_batched(
+            || context.clone(),
+            |context| {
+                GpuFilter::new(context, &walk.setup.camera, &walk.field, config.observation, config.filter)
+            },
+            BatchSize::PerIteration,
+        );
+    });
+    group.finish();
+}

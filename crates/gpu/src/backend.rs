@@ -1,0 +1,57 @@
+//! A graphics device as a backend of the core.
+
+use std::sync::Arc;
+
+use reality_sim_core::{
+    backend::{Backend, BackendError},
+    camera::Camera,
+    field::FieldDimensions,
+    filter::{Filter, FilterConfig},
+    observation::{ObservationConfig, Scorer},
+};
+
+use crate::{GpuContext, GpuError, GpuFilter, GpuScorer};
+
+/// Scores and filters on one device.
+#[derive(Debug, Clone)]
+pub struct GpuBackend {
+    context: Arc<GpuContext>,
+}
+
+impl GpuBackend {
+    /// On a device that was opened before.
+    pub fn new(context: Arc<GpuContext>) -> Self {
+        Self { context }
+    }
+}
+
+impl From<GpuError> for BackendError {
+    fn from(error: GpuError) -> Self {
+        Self(error.to_string())
+    }
+}
+
+impl Backend for GpuBackend {
+    fn scorer(
+        &self,
+        camera: &Camera,
+        field: &FieldDimensions,
+        config: ObservationConfig,
+    ) -> Result<Box<dyn Scorer>, BackendError> {
+        Ok(Box::new(GpuScorer::new(self.context.clone(), camera, field, config)?))
+    }
+
+    fn filter(
+        &self,
+        camera: &Camera,
+        field: &FieldDimensions,
+        observation: ObservationConfig,
+        config: FilterConfig,
+    ) -> Result<Box<dyn Filter>, BackendError> {
+        Ok(Box::new(GpuFilter::new(self.context.clone(), camera, field, observation, config)?))
+    }
+
+    fn status(&self) -> Result<(), BackendError> {
+        Ok(self.context.status()?)
+    }
+}

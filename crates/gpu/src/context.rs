@@ -1,0 +1,189 @@
+//! One graphics device: chosen, opened, and watched for errors.
+
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
+
+use crate::GpuError;
+
+/// Errors kept of one device: the first few tell the cause.
+const KEPT_ERRORS: usize = 4;
+
+/// An adapter for people to choose from.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct AdapterSummary {
+    /// Its name.
+    pub name: String,
+    /// Vulkan, Metal or DX12.
+    pub backend: String,
+    /// Discrete, integrated, virtual or on the processor.
+    pub kind: String,
+    /// The driver's name and version.
+    pub driver: String,
+    /// Whether it is a driver that runs on the processor.
+    pub is_processor: bool,
+    /// Largest buffer, bytes.
+    pub max_buffer_bytes: u64,
+    /// Largest part of a buffer that a kernel can see, bytes.
+    pub max_storage_buffer_bytes: u64,
+    /// Workgroups along one dimension.
+    pub max_workgroups: u32,
+}
+
+/// A graphics device and its queue.
+#[derive(Debug)]
+pub struct GpuContext {
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+    adapter: AdapterSummary,
+    errors: Arc<Mutex<Vec<String>>>,
+}
+
+/// All adapters, the best first: cards, then what is built into the processor, then drivers that run on the processor.
+pub fn adapters() -> Vec<AdapterSummary> {
+    found().iter().map(summary).collect()
+}
+
+fn found() -> Vec<wgpu::Adapter> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+    let backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
+    adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    });
+    adapters
+}
+
+fn summary(adapter: &wgpu::Adapter) -> AdapterSummary {
+    let info = adapter.get_info();
+    AdapterSummary {
+        name: info.name,
+        backend: info.backend.to_string(),
+        kind: match info.device_type {
+            wgpu::DeviceType::DiscreteGpu => "graphics card",
+            wgpu::DeviceType::IntegratedGpu => "graphics unit of the processor",
+            wgpu::DeviceType::VirtualGpu => "graphics card of a virtual machine",
+            wgpu::DeviceType::Cpu => "driver that runs on the processor",
+            wgpu::DeviceType::Other => "unknown",
+        }
+        .to_owned(),
+        is_processor: info.device_type == wgpu::DeviceType::Cpu,
+        driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+        max_buffer_bytes: adapter.limits().max_buffer_size,
+        max_storage_buffer_bytes: adapter.limits().max_storage_buffer_binding_size,
+        max_workgroups: adapter.limits().max_compute_workgroups_per_dimension,
+    }
+}
+
+impl GpuContext {
+    /// Opens the best adapter, or the best of those whose name contains `name` (upper or lower case).
+    pub fn new(name: Option<&str>) -> Result<Self, GpuError> {
+        let adapters = found();
+        if adapters.is_empty() {
+            return Err(GpuError::NoAdapter);
+        }
+        let wanted = name.unwrap_or_default().to_lowercase();
+        let fits = |adapter: &&wgpu::Adapter| adapter.get_info().name.to_lowercase().contains(&wanted);
+        let Some(adapter) = adapters.iter().find(fits) else {
+            let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
+            return Err(GpuError::NoSuchAdapter {
+                wanted: name.unwrap_or_default().to_owned(),
+                found: names.join(", "),
+            });
+        };
+        Self::open(adapter)
+    }
+
+    fn open(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+        let summary = summary(adapter);
+        let available = adapter.limits();
+        let required_limits = wgpu::Limits {
+            max_storage_buffer_binding_size: available.max_storage_buffer_binding_size,
+            max_buffer_size: available.max_buffer_size,
+            ..wgpu::Limits::default()
+        };
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("Reality Sim"),
+            required_limits,
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| {
+            GpuError::NoDevice { adapter: summary.name.clone(), reason: error.to_string() }
+        })?;
+        let errors = Arc::new(Mutex::new(Vec::new()));
+        let (uncaptured, lost) = (errors.clone(), errors.clone());
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| keep(&uncaptured, error.to_string())));
+        device.set_device_lost_callback(move |reason, message| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                keep(&lost, format!("device lost: {message}"));
+            }
+        });
+        Ok(Self { device, queue, adapter: summary, errors })
+    }
+
+    /// The adapter in use.
+    pub fn adapter(&self) -> &AdapterSummary {
+        &self.adapter
+    }
+
+    /// What has gone wrong on the device so far, as one error.
+    pub fn status(&self) -> Result<(), GpuError> {
+        let errors = self.errors.lock().unwrap_or_else(PoisonError::into_inner);
+        if errors.is_empty() { Ok(()) } else { Err(GpuError::Failed { reason: errors.join("; ") }) }
+    }
+
+    /// Remembers an error that was dealt with where it happened.
+    pub(crate) fn report(&self, error: &GpuError) {
+        if !matches!(error, GpuError::Failed { .. }) {
+            keep(&self.errors, error.to_string());
+        }
+    }
+
+    /// Submits what is encoded, as one piece of work.
+    pub(crate) fn submit(&self, encode: impl FnOnce(&mut wgpu::CommandEncoder)) {
+        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encode(&mut encoder);
+        self.queue.submit([encoder.finish()]);
+    }
+
+    /// Waits for the work submitted so far and reads the first `bytes` of a buffer that can be mapped.
+    pub(crate) fn read<T: bytemuck::Pod>(
+        &self,
+        buffer: &wgpu::Buffer,
+        bytes: u64,
+    ) -> Result<Vec<T>, GpuError> {
+        let failed = |reason: String| {
+            keep(&self.errors, reason.clone());
+            GpuError::Failed { reason }
+        };
+        let (sender, receiver) = mpsc::channel();
+        let slice = buffer.slice(..bytes);
+        slice.map_async(wgpu::MapMode::Read, move |result| {
+            // The receiver waits below; it is gone only when waiting has failed.
+            let _ = sender.send(result);
+        });
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| failed(error.to_string()))?;
+        self.status()?;
+        match receiver.try_recv() {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => return Err(failed(error.to_string())),
+            Err(_) => return Err(failed("the device did not answer".to_owned())),
+        }
+        let view = slice.get_mapped_range().map_err(|error| failed(error.to_string()))?;
+        let values = bytemuck::pod_collect_to_vec(&view[..]);
+        drop(view);
+        buffer.unmap();
+        Ok(values)
+    }
+}
+
+/// Keeps the first few errors, each once.
+fn keep(errors: &Mutex<Vec<String>>, message: String) {
+    let mut errors = errors.lock().unwrap_or_else(PoisonError::into_inner);
+    if errors.len() < KEPT_ERRORS && !errors.contains(&message) {
+        errors.push(message);
+    }
+}

@@ -1,0 +1,255 @@
+//! Structures shared with the shaders, laid out as WGSL has them; a test compares every offset with naga's.
+
+use bytemuck::{Pod, Zeroable};
+use reality_sim_core::{
+    observation::{CameraFromGround, ContrastScale, KernelCamera, Lens, RADIAL_TERMS},
+    pose::CameraPose,
+};
+
+/// `Camera` in `shaders/shared/camera.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct CameraLayout {
+    focal_px: [f32; 2],
+    centre_px: [f32; 2],
+    largest_px: [f32; 2],
+    min_cos: f32,
+    padding: u32,
+    circle: [f32; 4],
+    lens_parameters: [f32; 16],
+}
+
+/// `CameraFromGround` in `shaders/shared/camera.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct PoseLayout {
+    x: [f32; 4],
+    y: [f32; 4],
+    z: [f32; 4],
+}
+
+/// `Settings` in `shaders/shared/scoring.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct SettingsLayout {
+    pub texture_width: u32,
+    pub samples: u32,
+    pub poses: u32,
+    pub groups_along_x: u32,
+    per_contrast: f32,
+    dark_level: f32,
+    min_width_px: f32,
+    per_width_px: f32,
+    relative_area: f32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
+}
+
+/// `Picture` in `shaders/shared/picture.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct PictureLayout {
+    pub width: u32,
+    pub height: u32,
+    pub mask_columns: u32,
+    pub blur_radius: u32,
+    pub nearness_cap: u32,
+    pub padding_0: u32,
+    pub padding_1: u32,
+    pub padding_2: u32,
+}
+
+/// `Particle` in `shaders/shared/filter.wgsl`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct ParticleLayout {
+    x_m: f32,
+    y_m: f32,
+    yaw_rad: f32,
+    height_m: f32,
+    pitch_rad: f32,
+    roll_rad: f32,
+    padding_0: f32,
+    padding_1: f32,
+}
+
+/// `Frame` in `shaders/shared/filter.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct FrameLayout {
+    pub seed: [u32; 2],
+    pub number: u32,
+    pub particles: u32,
+    pub resampling: u32,
+    pub estimator: u32,
+    pub rest_shift: u32,
+    pub forward_m: f32,
+    pub left_m: f32,
+    pub turn_rad: f32,
+    pub predict_sigma_m: f32,
+    pub predict_sigma_rad: f32,
+    pub diffuse_sigma_m: f32,
+    pub diffuse_sigma_rad: f32,
+    pub height_m: f32,
+    pub pitch_rad: f32,
+    pub roll_rad: f32,
+    pub height_sigma_m: f32,
+    pub angle_sigma_rad: f32,
+    pub per_value: f32,
+    pub per_seen: f32,
+    pub padding_0: u32,
+    pub padding_1: u32,
+    pub padding_2: u32,
+}
+
+/// `Iteration` in `shaders/shared/filter.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct IterationLayout {
+    pub number: u32,
+    pub scale: f32,
+    pub padding_0: u32,
+    pub padding_1: u32,
+}
+
+/// `Outcome` in `shaders/shared/filter.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct OutcomeLayout {
+    pub best: ParticleLayout,
+    pub estimate: ParticleLayout,
+    pub rivals: [ParticleLayout; 6],
+    pub rival_count: u32,
+    pub best_log_weight: f32,
+    pub effective_sample_size: f32,
+    pub spread_m: f32,
+}
+
+impl From<CameraPose> for ParticleLayout {
+    fn from(pose: CameraPose) -> Self {
+        Self {
+            x_m: pose.x_m as f32,
+            y_m: pose.y_m as f32,
+            yaw_rad: pose.yaw_rad as f32,
+            height_m: pose.height_m as f32,
+            pitch_rad: pose.pitch_rad as f32,
+            roll_rad: pose.roll_rad as f32,
+            padding_0: 0.0,
+            padding_1: 0.0,
+        }
+    }
+}
+
+impl From<ParticleLayout> for CameraPose {
+    fn from(particle: ParticleLayout) -> Self {
+        Self {
+            x_m: particle.x_m.into(),
+            y_m: particle.y_m.into(),
+            yaw_rad: particle.yaw_rad.into(),
+            height_m: particle.height_m.into(),
+            pitch_rad: particle.pitch_rad.into(),
+            roll_rad: particle.roll_rad.into(),
+        }
+    }
+}
+
+impl From<&KernelCamera> for CameraLayout {
+    fn from(camera: &KernelCamera) -> Self {
+        let mut lens_parameters = [0.0; 16];
+        match camera.lens {
+            Lens::Radial { coefficients, scale, offset } => {
+                lens_parameters[..RADIAL_TERMS].copy_from_slice(&coefficients);
+                lens_parameters[RADIAL_TERMS..RADIAL_TERMS + 2].copy_from_slice(&[scale, offset]);
+            }
+            Lens::Perspective { distortion } => {
+                lens_parameters[..distortion.len()].copy_from_slice(&distortion);
+            }
+        }
+        let [u, v, radius_squared] = camera.circle.unwrap_or([0.0, 0.0, -1.0]);
+        Self {
+            focal_px: [camera.fx, camera.fy],
+            centre_px: [camera.cx, camera.cy],
+            largest_px: [camera.max_u, camera.max_v],
+            min_cos: camera.min_cos,
+            padding: 0,
+            circle: [u, v, radius_squared, 0.0],
+            lens_parameters,
+        }
+    }
+}
+
+impl From<CameraFromGround> for PoseLayout {
+    fn from(pose: CameraFromGround) -> Self {
+        let row =
+            |axis: usize, last: f32| [pose.linear[axis][0], pose.linear[axis][1], pose.offset[axis], last];
+        Self { x: row(0, pose.height_m), y: row(1, 0.0), z: row(2, 0.0) }
+    }
+}
+
+impl SettingsLayout {
+    pub fn new(texture_width: u32, samples: u32, scale: ContrastScale) -> Self {
+        Self {
+            texture_width,
+            samples,
+            poses: 0,
+            groups_along_x: 1,
+            per_contrast: scale.per_contrast,
+            dark_level: scale.dark_level,
+            min_width_px: scale.min_width_px,
+            per_width_px: scale.per_width_px,
+            relative_area: scale.relative_area,
+            padding_0: 0,
+            padding_1: 0,
+            padding_2: 0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::{offset_of, size_of};
+
+    use naga::TypeInner;
+
+    use super::*;
+    use crate::shader::source;
+
+    /// Names and offsets of a struct's members, and its size, as a shader has them.
+    fn in_shader(shader: &str, name: &str) -> (Vec<(String, u32)>, u32) {
+        let module = naga::front::wgsl::parse_str(&source(shader).unwrap()).unwrap();
+        let (_, found) = module.types.iter().find(|(_, kind)| kind.name.as_deref() == Some(name)).unwrap();
+        let TypeInner::Struct { members, span } = &found.inner else { panic!("{name} is no struct") };
+        (members.iter().map(|member| (member.name.clone().unwrap(), member.offset)).collect(), *span)
+    }
+
+    macro_rules! assert_same_layout {
+        ($rust:ident in $shader:literal as $name:literal: $($member:ident)+) => {
+            // Without `..`: a member left out of the list does not compile.
+            let _ = |$rust { $($member: _),+ }: $rust| ();
+            let expected = vec![$((stringify!($member).to_owned(), offset_of!($rust, $member) as u32)),+];
+            assert_eq!(in_shader($shader, $name), (expected, size_of::<$rust>() as u32), $name);
+        };
+    }
+
+    #[test]
+    fn every_shared_struct_has_one_layout() {
+        assert_same_layout!(CameraLayout in "contrast_along_lines.wgsl" as "Camera":
+            focal_px centre_px largest_px min_cos padding circle lens_parameters);
+        assert_same_layout!(PoseLayout in "contrast_along_lines.wgsl" as "CameraFromGround": x y z);
+        assert_same_layout!(SettingsLayout in "contrast_along_lines.wgsl" as "Settings":
+            texture_width samples poses groups_along_x per_contrast dark_level min_width_px per_width_px relative_area
+            padding_0 padding_1 padding_2);
+        assert_same_layout!(PictureLayout in "pack.wgsl" as "Picture":
+            width height mask_columns blur_radius nearness_cap padding_0 padding_1 padding_2);
+        assert_same_layout!(ParticleLayout in "diffuse.wgsl" as "Particle":
+            x_m y_m yaw_rad height_m pitch_rad roll_rad padding_0 padding_1);
+        assert_same_layout!(FrameLayout in "diffuse.wgsl" as "Frame":
+            seed number particles resampling estimator rest_shift forward_m left_m turn_rad predict_sigma_m
+            predict_sigma_rad diffuse_sigma_m diffuse_sigma_rad height_m pitch_rad roll_rad height_sigma_m
+            angle_sigma_rad per_value per_seen padding_0 padding_1 padding_2);
+        assert_same_layout!(IterationLayout in "diffuse.wgsl" as "Iteration": number scale padding_0 padding_1);
+        assert_same_layout!(OutcomeLayout in "summarise.wgsl" as "Outcome":
+            best estimate rivals rival_count best_log_weight effective_sample_size spread_m);
+    }
+}

@@ -1,0 +1,262 @@
+//! A picture on the device: uploaded, turned grey, blurred, masked and packed for the scoring kernels.
+
+use std::sync::Arc;
+
+use image::RgbImage;
+use reality_sim_core::{
+    camera::Camera,
+    observation::{LineModel, ObservationKind},
+    preprocess::{Prepared, gaussian_kernel},
+};
+
+use crate::{
+    GpuContext, GpuError,
+    buffers::{storage, storage_of, uniform_of, write},
+    kernel::{BoundKernel, Kernel, Step, groups},
+    layout::PictureLayout,
+};
+
+/// Threads of a workgroup, each with a word of four pixels.
+const PICTURE_THREADS: u32 = 64;
+/// Pixels of a cell of the border's mask, along a side.
+const CELL_PX: u32 = 2;
+
+/// Takes pictures over and prepares them.
+#[derive(Debug)]
+pub(crate) struct PictureStage {
+    sources: Sources,
+    inside: wgpu::Buffer,
+    texels: wgpu::Buffer,
+    /// What follows the source's own kernel.
+    kernels: Vec<BoundKernel>,
+    groups: [u32; 2],
+}
+
+/// Where pictures come in.
+#[derive(Debug)]
+enum Sources {
+    /// Colour pictures in two buffers: the next one is uploaded while this one is computed with.
+    Color { slots: [ColorSlot; 2], current: usize },
+    /// Evidence for white lines.
+    Evidence(wgpu::Buffer),
+}
+
+#[derive(Debug)]
+struct ColorSlot {
+    buffer: wgpu::Buffer,
+    /// Held so that no other picture can lie at its place in memory.
+    picture: Option<Arc<RgbImage>>,
+    to_grey: BoundKernel,
+}
+
+impl PictureStage {
+    /// For pictures of a camera, as a model wants them.
+    pub fn new(context: &GpuContext, camera: &Camera, model: &LineModel) -> Result<Self, GpuError> {
+        let pixels = (camera.width * camera.height) as usize;
+        // Whole words of four pixels, and four bytes of work for each pixel at the most.
+        let (bytes, words) = (pixels.next_multiple_of(4), pixels.next_multiple_of(4));
+        let weights = gaussian_kernel(model.config.blur_sigma_px);
+        let mask_columns = camera.width.div_ceil(CELL_PX);
+        let layout = PictureLayout {
+            width: camera.width,
+            height: camera.height,
+            mask_columns,
+            blur_radius: (weights.len() / 2) as u32,
+            nearness_cap: u32::from(model.nearness_cap()),
+            padding_0: 0,
+            padding_1: 0,
+            padding_2: 0,
+        };
+        let picture = uniform_of(context, "the picture's size", layout)?;
+        let weights = storage_of(context, "the blur's weights", &weights)?;
+        let mask_bits = mask_columns * camera.height.div_ceil(CELL_PX);
+        let inside = storage(context, "the border's mask", 4 * mask_bits.div_ceil(32) as usize)?;
+        let grey = storage(context, "the grey picture", bytes)?;
+        let image = storage(context, "the picture scored", bytes)?;
+        let across = storage(context, "the picture half done", 4 * words)?;
+        let texels = storage(context, "the packed picture", 4 * words)?;
+
+        let bind = |name, buffers: &[&wgpu::Buffer]| Kernel::new(context, name).bind(context, buffers);
+        let is_blurred = layout.blur_radius > 0;
+        let mut kernels = Vec::new();
+        let sources = match model.config.kind {
+            ObservationKind::Distance => {
+                kernels.push(bind("distance_rows", &[&picture, &grey, &across]));
+                kernels.push(bind("distance_columns", &[&picture, &across, &image]));
+                kernels.push(bind("nearness", &[&picture, &image]));
+                Sources::Evidence(grey)
+            }
+            kind => {
+                let to_grey = Kernel::new(
+                    context,
+                    if kind == ObservationKind::Contrast { "whiteness" } else { "luma" },
+                );
+                let target = if is_blurred { &grey } else { &image };
+                let slot = || {
+                    let buffer = storage(context, "the colour picture", 3 * bytes)?;
+                    let to_grey = to_grey.bind(context, &[&picture, &buffer, target]);
+                    Ok(ColorSlot { buffer, picture: None, to_grey })
+                };
+                if is_blurred {
+                    kernels.push(bind("blur_rows", &[&picture, &grey, &weights, &across]));
+                    kernels.push(bind("blur_columns", &[&picture, &across, &weights, &image]));
+                }
+                Sources::Color { slots: [slot()?, slot()?], current: 0 }
+            }
+        };
+        if model.is_masked() {
+            kernels.push(bind("mask", &[&picture, &inside, &image]));
+        }
+        kernels.push(bind("pack", &[&picture, &image, &texels]));
+        let groups = groups(context, (words as u32 / 4).div_ceil(PICTURE_THREADS));
+        Ok(Self { sources, inside, texels, kernels, groups })
+    }
+
+    /// The packed picture that scoring kernels read.
+    pub fn texels(&self) -> &wgpu::Buffer {
+        &self.texels
+    }
+
+    /// Takes over a picture; uploads it unless that was done before.
+    pub fn load(&mut self, context: &GpuContext, picture: &Prepared) {
+        write(context, &self.inside, &picture.border.inside_bits());
+        match &mut self.sources {
+            Sources::Color { slots, current } => {
+                let known = slots.iter().position(|slot| slot.holds(&picture.picture));
+                *current = known.unwrap_or(1 - *current);
+                if known.is_none() {
+                    slots[*current].upload(context, &picture.picture);
+                }
+            }
+            Sources::Evidence(buffer) => write_padded(context, buffer, picture.evidence().as_raw(), 4),
+        }
+    }
+
+    /// Uploads the next picture beside the one in use.
+    pub fn upload_next(&mut self, context: &GpuContext, next: &Arc<RgbImage>) {
+        if let Sources::Color { slots, current } = &mut self.sources {
+            slots[1 - *current].upload(context, next);
+            // What is written waits for a submission: without one the copy would only begin with the next frame's work.
+            context.queue.submit([]);
+        }
+    }
+
+    /// Prepares the picture loaded last.
+    pub fn steps(&self) -> impl Iterator<Item = Step<'_>> {
+        let to_grey = match &self.sources {
+            Sources::Color { slots, current } => Some(&slots[*current].to_grey),
+            Sources::Evidence(_) => None,
+        };
+        to_grey.into_iter().chain(&self.kernels).map(|kernel| (kernel, self.groups))
+    }
+}
+
+impl ColorSlot {
+    fn holds(&self, picture: &Arc<RgbImage>) -> bool {
+        self.picture.as_ref().is_some_and(|held| Arc::ptr_eq(held, picture))
+    }
+
+    fn upload(&mut self, context: &GpuContext, picture: &Arc<RgbImage>) {
+        write_padded(context, &self.buffer, picture.as_raw(), 12);
+        self.picture = Some(picture.clone());
+    }
+}
+
+/// Writes bytes, filled up to a multiple of so many.
+fn write_padded(context: &GpuContext, buffer: &wgpu::Buffer, bytes: &[u8], multiple: usize) {
+    if bytes.len().is_multiple_of(multiple) {
+        write(context, buffer, bytes);
+    } else {
+        let mut padded = bytes.to_vec();
+        padded.resize(bytes.len().next_multiple_of(multiple), 0);
+        write(context, buffer, &padded);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use reality_sim_core::{
+        camera::{Distortion, OpencvFisheye},
+        field::FieldDimensions,
+        filter::{Purpose, Stream},
+        observation::ObservationConfig,
+        preprocess::{Attitude, Preprocessor, Texture},
+    };
+
+    use super::*;
+    use crate::{buffers::readback, kernel::run_steps, test_context};
+
+    /// A bright, noisy carpet with white stripes under a grey sky.
+    fn scene(camera: &Camera, seed: u64) -> Arc<RgbImage> {
+        let stream = Stream::new(seed, Purpose::Initialise, 0, 0);
+        let horizon = camera.height / 3 + seed as u32 * 7;
+        Arc::new(RgbImage::from_fn(camera.width, camera.height, |u, v| {
+            let noise = (stream.words(u, v)[0] >> 28) as u8;
+            image::Rgb(match (v < horizon, (u + 2 * v) % (60 + seed as u32) < 7) {
+                (true, _) => [120 + noise; 3],
+                (false, true) => [220 + noise; 3],
+                (false, false) => [40 + noise, 130 + noise, 50],
+            })
+        }))
+    }
+
+    fn on_device(context: &GpuContext, stage: &PictureStage, pixels: usize) -> Vec<u32> {
+        let bytes = 4 * pixels;
+        let target = readback(context, "the packed picture read back", bytes).unwrap();
+        context.submit(|encoder| {
+            run_steps(encoder, stage.steps());
+            encoder.copy_buffer_to_buffer(stage.texels(), 0, &target, 0, bytes as u64);
+        });
+        context.read(&target, bytes as u64).unwrap()
+    }
+
+    /// All kernels that prepare a picture, for pictures whose rows are and are not whole words.
+    #[test]
+    fn pictures_are_prepared_as_on_the_cpu() {
+        let context = test_context();
+        let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
+        let attitude = Attitude { height_m: 0.5, pitch_rad: 0.4, roll_rad: 0.05 };
+        for [width, height] in [[320, 240], [317, 239]] {
+            let lens = Distortion::OpencvFisheye(OpencvFisheye { k: [-0.05, 0.008, 0.0, 0.0] });
+            let centre = [f64::from(width) / 2.0, f64::from(height) / 2.0];
+            let camera = Camera::new([width, height], [110.0, 110.0, centre[0], centre[1]], lens).unwrap();
+            let preprocessor = Preprocessor::new(&camera, field.line_width_m);
+            let pixels = (width * height) as usize;
+            for (kind, blur_sigma_px) in [
+                (ObservationKind::Gauss, 1.5),
+                (ObservationKind::Gauss, 0.0),
+                (ObservationKind::Gauss, 6.0),
+                (ObservationKind::Distance, 0.0),
+                (ObservationKind::Contrast, 0.7),
+            ] {
+                let config = ObservationConfig { blur_sigma_px, ..ObservationConfig::new(kind) };
+                let model = LineModel::new(&camera, &field, config);
+                let mut stage = PictureStage::new(&context, &camera, &model).unwrap();
+                for seed in 0..6 {
+                    let picture = scene(&camera, seed);
+                    if seed % 2 == 1 {
+                        stage.upload_next(&context, &picture);
+                    }
+                    let prepared = preprocessor.prepare(picture, attitude);
+                    stage.load(&context, &prepared);
+                    let image = model.image(&prepared);
+                    assert!(!model.is_masked() || image.contains(&0), "something is masked");
+                    let expected = Texture::pack(&image);
+                    let texels = on_device(&context, &stage, pixels);
+                    // The blur's last digit decides between two grey levels where a value lies between them.
+                    let bytes =
+                        |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
+                    let (found, expected) = (bytes(&texels), bytes(&expected.texels()[..pixels]));
+                    let off = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
+                    let most = found.iter().zip(&expected).map(|(a, b)| a.abs_diff(*b)).max();
+                    let allowed = if blur_sigma_px > 0.0 { found.len() / 500 } else { 0 };
+                    assert!(
+                        off <= allowed && most <= Some(1),
+                        "{kind:?}, {blur_sigma_px} px, {width}x{height}, seed {seed}: {off} bytes differ, {most:?}"
+                    );
+                }
+            }
+        }
+        context.status().unwrap();
+    }
+}

@@ -1,0 +1,78 @@
+//! The scoring kernels: the sums along the lines of every pose in a buffer.
+
+use reality_sim_core::{
+    observation::{Lens, LineModel, ObservationKind},
+    preprocess::WhiteLevels,
+};
+
+use crate::{
+    GpuContext, GpuError,
+    buffers::{storage_of, uniform, uniform_of, write},
+    kernel::{BoundKernel, Kernel, groups},
+    layout::{CameraLayout, SettingsLayout},
+};
+
+/// A camera and the samples of a field's lines on the device.
+#[derive(Debug)]
+pub(crate) struct LineScoring {
+    model: LineModel,
+    levels: WhiteLevels,
+    kernel: Kernel,
+    camera: wgpu::Buffer,
+    settings: wgpu::Buffer,
+    samples: wgpu::Buffer,
+    sample_count: u32,
+    texture_width: u32,
+}
+
+impl LineScoring {
+    /// Prepares a model for pictures so many pixels wide.
+    pub fn new(context: &GpuContext, model: LineModel, texture_width: u32) -> Result<Self, GpuError> {
+        let kernel = match model.config.kind {
+            ObservationKind::Contrast => "contrast_along_lines",
+            ObservationKind::Gauss | ObservationKind::Distance => "sum_along_lines",
+        };
+        let is_radial = matches!(model.camera.lens, Lens::Radial { .. });
+        let places = model.places();
+        Ok(Self {
+            levels: WhiteLevels::default(),
+            kernel: Kernel::with_constants(context, kernel, &[("is_radial", f64::from(u8::from(is_radial)))]),
+            camera: uniform_of(context, "the camera", CameraLayout::from(&model.camera))?,
+            settings: uniform::<SettingsLayout>(context, "the scoring's settings")?,
+            samples: storage_of(context, "the line samples", &places)?,
+            sample_count: places.len() as u32,
+            texture_width,
+            model,
+        })
+    }
+
+    /// The model that is scored.
+    pub fn model(&self) -> &LineModel {
+        &self.model
+    }
+
+    /// How bright lines and carpet are in the picture scored next.
+    pub fn set_levels(&mut self, levels: WhiteLevels) {
+        self.levels = levels;
+    }
+
+    pub fn bind(
+        &self,
+        context: &GpuContext,
+        texels: &wgpu::Buffer,
+        poses: &wgpu::Buffer,
+        sums: &wgpu::Buffer,
+    ) -> BoundKernel {
+        self.kernel.bind(context, &[&self.camera, &self.settings, &self.samples, texels, poses, sums])
+    }
+
+    /// Tells the kernel how many poses come; gives the workgroups it takes.
+    pub fn configure(&self, context: &GpuContext, poses: usize) -> [u32; 2] {
+        let groups = groups(context, poses as u32);
+        let scale = self.model.contrast_scale(&self.levels);
+        let mut settings = SettingsLayout::new(self.texture_width, self.sample_count, scale);
+        (settings.poses, settings.groups_along_x) = (poses as u32, groups[0]);
+        write(context, &self.settings, &[settings]);
+        groups
+    }
+}

@@ -1,0 +1,131 @@
+//! Do the shaders compute on this device what their twins compute on the CPU? On seeded scenes, with every lens model.
+
+use std::sync::Arc;
+
+use image::{Rgb, RgbImage};
+use reality_sim_core::{
+    camera::{Camera, Distortion, ImageCircle, InvalidCamera, Opencv, OpencvFisheye},
+    field::FieldDimensions,
+    filter::{Purpose, Stream},
+    observation::{CpuScorer, ObservationConfig, ObservationKind, Scorer},
+    pose::{CameraPose, Pose2},
+    preprocess::{Attitude, Preprocessor},
+};
+
+use crate::{GpuContext, GpuError, GpuScorer};
+
+/// Sums along the lines may differ by this, relative to what they sum up: the order of the additions differs.
+pub const SCORE_TOLERANCE: f64 = 1e-4;
+/// So many poses may have a sample that falls to the picture's other side at its very edge.
+pub const EDGE_TOLERANCE: f64 = 0.03;
+/// Poses of a scene.
+const POSES: u32 = 200;
+
+/// How far a scoring kernel is from its twin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScoreComparison {
+    /// The observation model.
+    pub kind: ObservationKind,
+    /// The lens, by COLMAP's name.
+    pub lens: &'static str,
+    /// Poses scored.
+    pub poses: usize,
+    /// Poses that see any line.
+    pub seeing: usize,
+    /// Largest difference of a pose's sum, relative; samples at the picture's edge apart.
+    pub worst: f64,
+    /// Fraction of the poses that have a sample at the picture's edge which only one of the two sees.
+    pub edges: f64,
+}
+
+impl ScoreComparison {
+    /// Whether both compute the same.
+    pub fn agrees(&self) -> bool {
+        self.worst <= SCORE_TOLERANCE && self.edges <= EDGE_TOLERANCE && 2 * self.seeing > self.poses
+    }
+}
+
+/// Compares every model with every lens on so many scenes.
+pub fn compare_scores(context: &Arc<GpuContext>, scenes: u64) -> Result<Vec<ScoreComparison>, GpuError> {
+    let field = FieldDimensions::preset("humanoid-kidsize-2010").expect("a preset of the core");
+    let cameras = cameras().expect("lenses that are valid");
+    let mut comparisons = Vec::new();
+    for kind in [ObservationKind::Gauss, ObservationKind::Distance, ObservationKind::Contrast] {
+        // Noise has no border.
+        let config = ObservationConfig { mask_border: false, ..ObservationConfig::new(kind) };
+        for camera in &cameras {
+            let gpu = GpuScorer::new(context.clone(), camera, &field, config)?;
+            let cpu = CpuScorer::new(camera, &field, config);
+            comparisons.push(compare(kind, camera, &field, gpu, cpu, scenes)?);
+        }
+    }
+    Ok(comparisons)
+}
+
+fn compare(
+    kind: ObservationKind,
+    camera: &Camera,
+    field: &FieldDimensions,
+    mut gpu: GpuScorer,
+    mut cpu: CpuScorer,
+    scenes: u64,
+) -> Result<ScoreComparison, GpuError> {
+    let lens = camera.distortion.colmap_name();
+    let mut comparison = ScoreComparison { kind, lens, poses: 0, seeing: 0, worst: 0.0, edges: 0.0 };
+    let mut edges = 0;
+    for seed in 0..scenes {
+        let (picture, poses) = scene(camera, seed);
+        let prepared = Preprocessor::new(camera, field.line_width_m).prepare(picture, Attitude::of(poses[0]));
+        gpu.load(&prepared);
+        cpu.load(&prepared);
+        for (pose, gpu) in poses.iter().zip(gpu.sums(&poses)?) {
+            let ([sum, weight], [gpu_sum, gpu_weight]) = (cpu.sums(pose).map(f64::from), gpu.map(f64::from));
+            // One sample more or less at the edge adds its value and its weight.
+            let weight_of_edges = (weight - gpu_weight).abs();
+            let [largest_value, least_weight] =
+                if kind == ObservationKind::Contrast { [1.0, 1e-2] } else { [255.0, 0.5] };
+            let is_edge = weight_of_edges > least_weight;
+            let difference = ((sum - gpu_sum).abs() - largest_value * weight_of_edges).max(0.0);
+            comparison.worst = comparison.worst.max(difference / sum.abs().max(weight).max(1.0));
+            comparison.poses += 1;
+            comparison.seeing += usize::from(weight > 0.0);
+            edges += usize::from(is_edge);
+        }
+    }
+    comparison.edges = f64::from(edges as u32) / comparison.poses.max(1) as f64;
+    Ok(comparison)
+}
+
+/// One camera of every model, and one with an image circle.
+pub(crate) fn cameras() -> Result<Vec<Camera>, InvalidCamera> {
+    let fisheye = |k| Distortion::OpencvFisheye(OpencvFisheye { k });
+    let opencv = Opencv { k1: -0.12, k2: 0.03, p1: 0.001, p2: -0.002, k3: 0.0 };
+    let circle = ImageCircle { cx: 300.0, cy: 390.0, radius: 380.0 };
+    Ok(vec![
+        Camera::new([640, 480], [214.9, 214.9, 319.5, 239.5], fisheye([-0.058, 0.0082, -0.0009, 0.00005]))?,
+        Camera::new([608, 800], [330.2, 330.2, 292.1, 401.3], fisheye([-0.033, 0.001, 0.0, 0.0]))?
+            .with_image_circle(Some(circle)),
+        Camera::new([640, 480], [620.0, 618.0, 306.9, 231.7], Distortion::Opencv(opencv))?,
+        // Not a multiple of four pixels.
+        Camera::new([317, 239], [250.0, 250.0, 160.0, 120.0], Distortion::Pinhole)?,
+    ])
+}
+
+/// A picture with light and dark at all scales, and poses all over the field.
+pub(crate) fn scene(camera: &Camera, seed: u64) -> (RgbImage, Vec<CameraPose>) {
+    let stream = Stream::new(seed, Purpose::Initialise, 0, 0);
+    let picture = RgbImage::from_fn(camera.width, camera.height, |u, v| {
+        let value = stream.words(u / (1 + v % 7), v / 5)[0] as u8;
+        Rgb([value / 2, value, value / 3 + 20])
+    });
+    let poses = (0..POSES).map(|index| {
+        let n = stream.normals(index + 1000);
+        let attitude = Attitude {
+            height_m: 0.5 + 0.05 * n[3].clamp(-3.0, 3.0),
+            pitch_rad: 0.3 + 0.2 * n[4],
+            roll_rad: 0.1 * n[5],
+        };
+        attitude.at(Pose2::new(1.5 * n[0], n[1], 2.0 * n[2]))
+    });
+    (picture, poses.collect())
+}

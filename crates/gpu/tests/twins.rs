@@ -1,0 +1,30 @@
+//! The shaders against their twins on the CPU. Needs an adapter; the package mesa-vulkan-drivers has one that runs on the
+//! processor.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test")]
+
+use std::sync::Arc;
+
+use reality_sim_gpu::{GpuContext, compare_scores};
+
+fn context() -> Arc<GpuContext> {
+    let context = GpuContext::new(None).unwrap();
+    println!("on {:?}", context.adapter());
+    Arc::new(context)
+}
+
+#[test]
+fn the_shaders_score_as_their_twins_do() {
+    let context = context();
+    let comparisons = compare_scores(&context, 24).unwrap();
+    comparisons.iter().for_each(|comparison| println!("{comparison:?}"));
+    assert_eq!(comparisons.len(), 12, "three models, four cameras");
+    assert!(comparisons.iter().all(reality_sim_gpu::ScoreComparison::agrees));
+    context.status().unwrap();
+}
+
+#[test]
+fn an_adapter_that_is_not_there_is_named_with_those_that_are() {
+    let error = GpuContext::new(Some("no such card")).unwrap_err().to_string();
+    assert!(error.contains("no such card") && error.contains("there is "), "{error}");
+}

@@ -1,0 +1,46 @@
+// Smallest distance over the column, from the distances along the rows, eight grey levels a pixel. Twin:
+// `distance_columns` in crates/core/src/preprocess/distance.rs.
+
+#import shared/picture.wgsl
+
+@group(0) @binding(0) var<uniform> picture: Picture;
+@group(0) @binding(1) var<storage, read> across: array<u32>;
+@group(0) @binding(2) var<storage, read_write> image: array<u32>;
+
+/// `DISTANCE_RADIUS_PX`.
+const RADIUS: u32 = 32u;
+/// `DISTANCE_UNITS_PER_PX`.
+const UNITS_PER_PX: f32 = 8.0;
+
+fn distance_of(pixel: u32) -> u32 {
+    let row = pixel / picture.width;
+    let column = pixel - row * picture.width;
+    var nearest = 2u * RADIUS * RADIUS;
+    let end = min(row + RADIUS + 1u, picture.height);
+    for (var other = max(row, RADIUS) - RADIUS; other < end; other++) {
+        let source = other * picture.width + column;
+        let distance = byte_of(across[source / 4u], source);
+        let along = max(row, other) - min(row, other);
+        nearest = min(nearest, distance * distance + along * along);
+    }
+    return min(u32(sqrt(f32(nearest)) * UNITS_PER_PX + 0.5), 255u);
+}
+
+@compute @workgroup_size(PICTURE_THREADS)
+fn distance_columns(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    let index = thread_number(group, groups, thread);
+    if index >= words_of(picture) {
+        return;
+    }
+    let pixel = 4u * index;
+    image[index] = word_of(vec4<u32>(
+        distance_of(pixel),
+        distance_of(pixel + 1u),
+        distance_of(pixel + 2u),
+        distance_of(pixel + 3u),
+    ));
+}

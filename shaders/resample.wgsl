@@ -1,0 +1,84 @@
+// Every slot finds its ancestor on its own. Twin: `Resampling::resample` in crates/core/src/filter/resample.rs.
+
+#import shared/filter.wgsl
+#import shared/angles.wgsl
+#import shared/random.wgsl
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<uniform> iteration: Iteration;
+@group(0) @binding(2) var<storage, read> shares: array<vec2<u32>>;
+@group(0) @binding(3) var<storage, read> particles: array<Particle>;
+@group(0) @binding(4) var<storage, read_write> survivors: array<Particle>;
+
+/// The first particle with more copies for certain than this.
+fn ancestor_of_copy(copy: u32) -> u32 {
+    var low = 0u;
+    var high = frame.particles - 1u;
+    while low < high {
+        let middle = (low + high) / 2u;
+        if shares[middle].x > copy {
+            high = middle;
+        } else {
+            low = middle + 1u;
+        }
+    }
+    return low;
+}
+
+/// The first particle whose shares, with those before, exceed this.
+fn ancestor_of_share(share: u32) -> u32 {
+    var low = 0u;
+    var high = frame.particles - 1u;
+    while low < high {
+        let middle = (low + high) / 2u;
+        if shares[middle].y > share {
+            high = middle;
+        } else {
+            low = middle + 1u;
+        }
+    }
+    return low;
+}
+
+/// numerator / denominator as a fraction of 2³², for a numerator below the denominator and both below 2³¹.
+fn fraction(numerator: u32, denominator: u32) -> u32 {
+    var rest = numerator;
+    var quotient = 0u;
+    for (var bit = 0u; bit < 32u; bit++) {
+        rest *= 2u;
+        quotient *= 2u;
+        if rest >= denominator {
+            rest -= denominator;
+            quotient += 1u;
+        }
+    }
+    return quotient;
+}
+
+/// Where in [0, 1), as a fraction of 2³², one of the draws looks.
+fn place_of(draw: u32, drawn: u32) -> u32 {
+    let resample = stream(RESAMPLE, iteration.number);
+    // 24 bits, as `unit` takes them.
+    if frame.resampling == SYSTEMATIC || frame.resampling == STRATIFIED {
+        let random = words(resample, select(draw, 0u, frame.resampling == SYSTEMATIC), 0u).x & 0xffffff00u;
+        return fraction(draw, drawn) + random / drawn;
+    }
+    return words(resample, draw, 0u).x & 0xffffff00u;
+}
+
+@compute @workgroup_size(THREADS)
+fn resample(@builtin(global_invocation_id) id: vec3<u32>) {
+    let index = id.x;
+    if index >= frame.particles {
+        return;
+    }
+    let all = shares[frame.particles - 1u];
+    var ancestor: u32;
+    if index < all.x {
+        ancestor = ancestor_of_copy(index);
+    } else {
+        let place = place_of(index - all.x, frame.particles - all.x);
+        ancestor = ancestor_of_share(wide_product(place, all.y).x);
+    }
+    survivors[index] = particles[ancestor];
+}

@@ -1,0 +1,78 @@
+// Ground points through a pose and the lens to pixels: the same steps, in the same order, as `project_block` in
+// crates/core/src/observation/kernel.rs.
+
+#import shared/pose.wgsl
+
+/// Set when the pipeline is made: whether the lens is the radial one, or else the perspective one. A branch on a value
+/// read would cost both sides where a driver runs on a processor.
+override is_radial: bool = true;
+
+/// `KernelCamera`, laid out for a uniform buffer.
+struct Camera {
+    /// fx, fy.
+    focal_px: vec2<f32>,
+    /// cx, cy.
+    centre_px: vec2<f32>,
+    /// Largest valid column and row.
+    largest_px: vec2<f32>,
+    /// Cosine of the largest valid angle.
+    min_cos: f32,
+    padding: u32,
+    /// Centre and squared radius of the image circle; a negative radius where the lens fills the picture.
+    circle: vec4<f32>,
+    /// Radial: eleven coefficients, scale, offset. Perspective: k1, k2, p1, p2, k3.
+    lens_parameters: array<vec4<f32>, 4>,
+}
+
+struct Pixel {
+    place: vec2<f32>,
+    /// One over the distance from the camera, per metre.
+    nearness: f32,
+    seen: bool,
+}
+
+fn project(camera: Camera, pose: CameraFromGround, ground: vec2<f32>) -> Pixel {
+    let p = vec3<f32>(
+        pose.x.x * ground.x + pose.x.y * ground.y + pose.x.z,
+        pose.y.x * ground.x + pose.y.y * ground.y + pose.y.z,
+        pose.z.x * ground.x + pose.z.y * ground.y + pose.z.z,
+    );
+    let nearness = 1.0 / sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+    let cosine = p.z * nearness;
+    // Written out: an index that is no constant makes a load of every step.
+    let c0 = camera.lens_parameters[0];
+    let c1 = camera.lens_parameters[1];
+    let c2 = camera.lens_parameters[2];
+    var place: vec2<f32>;
+    if is_radial {
+        let t = cosine * c2.w + camera.lens_parameters[3].x;
+        // Estrin's scheme: short chains of operations that wait for each other.
+        let t2 = t * t;
+        let t4 = t2 * t2;
+        let low = (c0.x + c0.y * t) + (c0.z + c0.w * t) * t2;
+        let middle = (c1.x + c1.y * t) + (c1.z + c1.w * t) * t2;
+        let high = (c2.x + c2.y * t) + c2.z * t2;
+        let h = low + (middle + high * t4) * t4;
+        place = p.xy * (h * nearness);
+    } else {
+        let k1 = c0.x;
+        let k2 = c0.y;
+        let p1 = c0.z;
+        let p2 = c0.w;
+        let k3 = c1.x;
+        let a = p.x / p.z;
+        let b = p.y / p.z;
+        let r2 = a * a + b * b;
+        let radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+        let ab2 = 2.0 * a * b;
+        place = vec2<f32>(
+            a * radial + p1 * ab2 + p2 * (r2 + 2.0 * a * a),
+            b * radial + p1 * (r2 + 2.0 * b * b) + p2 * ab2,
+        );
+    }
+    place = camera.focal_px * place + camera.centre_px;
+    let from_circle = place - camera.circle.xy;
+    let in_circle = camera.circle.z < 0.0 || dot(from_circle, from_circle) <= camera.circle.z;
+    let in_picture = all(place >= vec2<f32>(0.0)) && all(place <= camera.largest_px);
+    return Pixel(place, nearness, cosine >= camera.min_cos && in_circle && in_picture);
+}

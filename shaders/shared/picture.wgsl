@@ -1,0 +1,36 @@
+// Grey pictures in storage buffers: four pixels a word, row after row, the first in the lowest byte.
+
+/// Of every picture of a camera.
+struct Picture {
+    width: u32,
+    height: u32,
+    /// Cells of the border's mask in a row.
+    mask_columns: u32,
+    /// Radius of the blur, pixels.
+    blur_radius: u32,
+    /// Distances are cut here, grey levels.
+    nearness_cap: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
+}
+
+/// Pixels of a workgroup's threads: a word each.
+const PICTURE_THREADS: u32 = 64u;
+
+/// A thread's number, of as many as there are words; the groups of large pictures lie in two dimensions.
+fn thread_number(group: vec3<u32>, groups: vec3<u32>, thread: u32) -> u32 {
+    return (group.y * groups.x + group.x) * PICTURE_THREADS + thread;
+}
+
+fn words_of(picture: Picture) -> u32 {
+    return (picture.width * picture.height + 3u) / 4u;
+}
+
+fn byte_of(word: u32, index: u32) -> u32 {
+    return (word >> (8u * (index % 4u))) & 255u;
+}
+
+fn word_of(bytes: vec4<u32>) -> u32 {
+    return bytes.x | (bytes.y << 8u) | (bytes.z << 16u) | (bytes.w << 24u);
+}

@@ -1,0 +1,45 @@
+// What the scoring kernels share: their inputs, and the sum over a workgroup. One workgroup scores one pose.
+
+const THREADS: u32 = 32u;
+
+/// Settings of one dispatch.
+struct Settings {
+    texture_width: u32,
+    /// Number of line samples.
+    samples: u32,
+    /// Number of poses.
+    poses: u32,
+    /// Workgroups along x: a dispatch of more poses than that uses y as well.
+    groups_along_x: u32,
+    /// One over the picture's line contrast.
+    per_contrast: f32,
+    dark_level: f32,
+    min_width_px: f32,
+    per_width_px: f32,
+    relative_area: f32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
+}
+
+@group(0) @binding(0) var<uniform> camera: Camera;
+@group(0) @binding(1) var<uniform> settings: Settings;
+/// Centre (x, y) and, for contrast, left flank (x, y) of a line sample; the right flank mirrors the left one.
+@group(0) @binding(2) var<storage, read> samples: array<vec4<f32>>;
+@group(0) @binding(3) var<storage, read> texels: array<u32>;
+@group(0) @binding(4) var<storage, read> poses: array<CameraFromGround>;
+@group(0) @binding(5) var<storage, read_write> sums: array<vec2<f32>>;
+
+var<workgroup> partial_sums: array<vec2<f32>, THREADS>;
+
+/// The sum of all threads' values, in the first thread.
+fn sum_of_workgroup(thread: u32, value: vec2<f32>) -> vec2<f32> {
+    partial_sums[thread] = value;
+    for (var half = THREADS / 2u; half > 0u; half /= 2u) {
+        workgroupBarrier();
+        if thread < half {
+            partial_sums[thread] += partial_sums[thread + half];
+        }
+    }
+    return partial_sums[thread];
+}

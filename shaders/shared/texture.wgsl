@@ -1,0 +1,15 @@
+// Bilinear values of an 8-bit picture whose texels hold their right, lower and lower right neighbours too: the twin of
+// `sample_block` in crates/core/src/observation/kernel.rs and of `Texture` in crates/core/src/preprocess/texture.rs.
+
+fn sample(place: vec2<f32>) -> f32 {
+    let corner = floor(place);
+    let f = place - corner;
+    let texel = texels[u32(corner.y) * settings.texture_width + u32(corner.x)];
+    let top = mix_bytes(texel & 255u, (texel >> 8u) & 255u, f.x);
+    let bottom = mix_bytes((texel >> 16u) & 255u, texel >> 24u, f.x);
+    return top + f.y * (bottom - top);
+}
+
+fn mix_bytes(a: u32, b: u32, fraction: f32) -> f32 {
+    return f32(a) + fraction * (f32(b) - f32(a));
+}

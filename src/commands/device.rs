@@ -1,0 +1,92 @@
+//! The device that a command computes on, chosen once.
+
+use std::sync::Arc;
+
+use anyhow::bail;
+use clap::{Args, ValueEnum};
+
+use reality_sim::backend::{Backend, CpuBackend};
+
+/// Where to compute.
+#[derive(Debug, Args)]
+pub struct BackendArgs {
+    /// Where the particles are weighed: auto takes a graphics card where there is one
+    #[arg(long, value_enum, default_value = "auto")]
+    backend: Choice,
+    /// The graphics adapter whose name contains this; `reality-sim doctor` lists them
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Choice {
+    Auto,
+    Cpu,
+    Gpu,
+}
+
+/// A device that was chosen.
+pub struct Device {
+    pub backend: Arc<dyn Backend>,
+    /// `cpu` or `gpu`.
+    pub name: &'static str,
+    /// The graphics adapter's name, where it is one.
+    pub adapter: Option<String>,
+    /// Why it is not the graphics card, in a sentence; empty where nobody would ask.
+    pub reason: Option<String>,
+}
+
+impl Device {
+    fn processor(reason: Option<String>) -> Self {
+        Self { backend: Arc::new(CpuBackend), name: "cpu", adapter: None, reason }
+    }
+}
+
+impl BackendArgs {
+    /// Refuses a graphics adapter for the CPU.
+    pub fn check_usage(&self) -> Result<(), String> {
+        match (self.backend, &self.adapter) {
+            (Choice::Cpu, Some(_)) => {
+                Err("--adapter has no effect with --backend cpu: leave one of them out".to_owned())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The processor, for what no graphics card does.
+    pub fn processor_only(&self, option: &str) -> anyhow::Result<Device> {
+        if self.backend == Choice::Gpu || self.adapter.is_some() {
+            bail!("{option}: is not computed on the graphics card: leave it out, or use --backend cpu");
+        }
+        Ok(Device::processor(None))
+    }
+
+    /// The device asked for.
+    #[cfg(feature = "gpu")]
+    pub fn device(&self) -> anyhow::Result<Device> {
+        use reality_sim::gpu::{GpuBackend, GpuContext};
+
+        if self.backend == Choice::Cpu {
+            return Ok(Device::processor(None));
+        }
+        let is_asked_for = self.backend == Choice::Gpu || self.adapter.is_some();
+        let context = match GpuContext::new(self.adapter.as_deref()) {
+            Ok(context) => context,
+            Err(error) if is_asked_for => return Err(error.into()),
+            Err(error) => return Ok(Device::processor(Some(error.to_string()))),
+        };
+        if !is_asked_for && context.adapter().is_processor {
+            let reason = "there is no graphics card, only a driver that runs on the processor".to_owned();
+            return Ok(Device::processor(Some(reason)));
+        }
+        let adapter = Some(context.adapter().name.clone());
+        let backend = Arc::new(GpuBackend::new(Arc::new(context)));
+        Ok(Device { backend, name: "gpu", adapter, reason: None })
+    }
+
+    /// The processor: this build knows nothing else.
+    #[cfg(not(feature = "gpu"))]
+    pub fn device(&self) -> anyhow::Result<Device> {
+        self.processor_only("--backend gpu")
+    }
+}

@@ -1,0 +1,131 @@
+//! `reality-sim doctor`: which graphics adapters there are, and whether they compute what the CPU computes.
+
+use std::{fmt::Write, sync::Arc, time::Instant};
+
+use anyhow::bail;
+use clap::Args;
+use serde::Serialize;
+
+use reality_sim::gpu::{AdapterSummary, GpuContext, GpuError, SCORE_TOLERANCE, adapters, compare_scores};
+
+use super::output::{print, print_json};
+
+/// Scenes that every model and every lens is compared on.
+const SCENES: u64 = 4;
+
+/// Options of `doctor`.
+#[derive(Debug, Args)]
+pub struct DoctorArgs {
+    /// Only the adapters whose name contains this
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+    /// Print one JSON object on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Report {
+    adapters: Vec<AdapterReport>,
+    /// What to do where there is no graphics card.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    advice: Option<String>,
+}
+
+#[derive(Serialize)]
+struct AdapterReport {
+    #[serde(flatten)]
+    summary: AdapterSummary,
+    /// From nothing to a device, without the list of adapters, seconds.
+    start_seconds: f64,
+    /// Largest relative difference of a pose's score from the CPU's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    worst_difference: Option<f64>,
+    agrees: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<String>,
+}
+
+/// Runs the command.
+pub fn run(args: &DoctorArgs) -> anyhow::Result<()> {
+    let wanted = args.adapter.as_deref().unwrap_or_default().to_lowercase();
+    let found = adapters();
+    let chosen = found.iter().filter(|adapter| adapter.name.to_lowercase().contains(&wanted));
+    let reports: Vec<AdapterReport> = chosen.map(examine).collect();
+    if reports.is_empty() && !found.is_empty() {
+        let names: Vec<String> = found.into_iter().map(|adapter| adapter.name).collect();
+        let wanted = args.adapter.clone().unwrap_or_default();
+        return Err(GpuError::NoSuchAdapter { wanted, found: names.join(", ") }.into());
+    }
+    let advice = match reports.iter().any(|report| !report.summary.is_processor) {
+        true => None,
+        false if reports.is_empty() => Some(GpuError::NoAdapter.to_string()),
+        false => Some(
+            "there is no graphics card, only a driver that runs on the processor: install your card's Vulkan driver (on \
+             Debian and Ubuntu mesa-vulkan-drivers for AMD and Intel, nvidia-driver for NVIDIA), or use the CPU"
+                .to_owned(),
+        ),
+    };
+    let report = Report { adapters: reports, advice };
+    if args.json {
+        print_json(&report)?;
+    } else {
+        print(&text(&report))?;
+    }
+    match report.adapters.iter().find(|adapter| !adapter.agrees) {
+        Some(adapter) => bail!(
+            "{}: does not compute what the CPU computes: update its driver, or use --backend cpu",
+            adapter.summary.name
+        ),
+        None => Ok(()),
+    }
+}
+
+fn examine(summary: &AdapterSummary) -> AdapterReport {
+    let begin = Instant::now();
+    let context = GpuContext::new(Some(&summary.name));
+    let start_seconds = begin.elapsed().as_secs_f64();
+    let comparisons = context.and_then(|context| {
+        let context = Arc::new(context);
+        let comparisons = compare_scores(&context, SCENES)?;
+        context.status().map(|()| comparisons)
+    });
+    let (worst_difference, agrees, error) = match comparisons {
+        Ok(all) => {
+            let worst = all.iter().map(|comparison| comparison.worst).fold(0.0, f64::max);
+            (Some(worst), all.iter().all(reality_sim::gpu::ScoreComparison::agrees), None)
+        }
+        Err(error) => (None, false, Some(error.to_string())),
+    };
+    AdapterReport { summary: summary.clone(), start_seconds, worst_difference, agrees, error }
+}
+
+fn text(report: &Report) -> String {
+    let mut text = String::new();
+    for adapter in &report.adapters {
+        let AdapterSummary { name, backend, kind, driver, .. } = &adapter.summary;
+        let mebibytes = |bytes: u64| bytes >> 20;
+        let verdict = match (&adapter.error, adapter.worst_difference) {
+            (Some(error), _) => format!("failed: {error}"),
+            (None, Some(worst)) => format!(
+                "{} the CPU: scores differ by {worst:.0e} at most, {SCORE_TOLERANCE:.0e} allowed",
+                if adapter.agrees { "computes as" } else { "DOES NOT compute as" }
+            ),
+            (None, None) => "not compared".to_owned(),
+        };
+        // Writing into a string cannot fail.
+        let _ = write!(
+            text,
+            "{name}\n  kind      {kind}, {backend}\n  driver    {driver}\n  limits    buffers of {} MiB, {} of them bound as \
+             storage; {} workgroups along one dimension\n  start     {:.0} ms\n  kernels   {verdict}\n",
+            mebibytes(adapter.summary.max_buffer_bytes),
+            mebibytes(adapter.summary.max_storage_buffer_bytes),
+            adapter.summary.max_workgroups,
+            1e3 * adapter.start_seconds,
+        );
+    }
+    if let Some(advice) = &report.advice {
+        let _ = writeln!(text, "{advice}");
+    }
+    text
+}
