@@ -4,7 +4,6 @@ const THREADS: u32 = 32u;
 
 /// Settings of one dispatch.
 struct Settings {
-    texture_width: u32,
     /// Number of line samples.
     samples: u32,
     /// Number of poses.
@@ -17,16 +16,13 @@ struct Settings {
     min_width_px: f32,
     per_width_px: f32,
     relative_area: f32,
-    padding_0: u32,
-    padding_1: u32,
-    padding_2: u32,
 }
 
 @group(0) @binding(0) var<uniform> camera: Camera;
 @group(0) @binding(1) var<uniform> settings: Settings;
 /// Centre (x, y) and, for contrast, left flank (x, y) of a line sample; the right flank mirrors the left one.
 @group(0) @binding(2) var<storage, read> samples: array<vec4<f32>>;
-@group(0) @binding(3) var<storage, read> texels: array<u32>;
+@group(0) @binding(3) var texels: texture_2d<u32>;
 @group(0) @binding(4) var<storage, read> poses: array<CameraFromGround>;
 @group(0) @binding(5) var<storage, read_write> sums: array<vec2<f32>>;
 

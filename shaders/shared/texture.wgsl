@@ -4,7 +4,7 @@
 fn sample(place: vec2<f32>) -> f32 {
     let corner = floor(place);
     let f = place - corner;
-    let texel = texels[u32(corner.y) * settings.texture_width + u32(corner.x)];
+    let texel = textureLoad(texels, vec2<u32>(corner), 0).x;
     let top = mix_bytes(texel & 255u, (texel >> 8u) & 255u, f.x);
     let bottom = mix_bytes((texel >> 16u) & 255u, texel >> 24u, f.x);
     return top + f.y * (bottom - top);

@@ -92,7 +92,7 @@ impl GpuFilter {
         }
         let model = LineModel::new(camera, field, observation);
         let picture = PictureStage::new(&context, camera, &model)?;
-        let scoring = LineScoring::new(&context, model, camera.width)?;
+        let scoring = LineScoring::new(&context, model)?;
         let (buffers, kernels) = bound(&context, &config, &picture, &scoring)?;
         context.status()?;
         Ok(Self {

@@ -17,6 +17,21 @@ pub(crate) struct BoundKernel {
     bindings: wgpu::BindGroup,
 }
 
+/// A buffer or a texture that a kernel works on.
+pub(crate) struct Binding<'a>(wgpu::BindingResource<'a>);
+
+impl<'a> From<&'a wgpu::Buffer> for Binding<'a> {
+    fn from(buffer: &'a wgpu::Buffer) -> Self {
+        Self(buffer.as_entire_binding())
+    }
+}
+
+impl<'a> From<&'a wgpu::TextureView> for Binding<'a> {
+    fn from(view: &'a wgpu::TextureView) -> Self {
+        Self(wgpu::BindingResource::TextureView(view))
+    }
+}
+
 impl Kernel {
     /// The shader of this name.
     pub fn new(context: &GpuContext, name: &'static str) -> Self {
@@ -43,10 +58,16 @@ impl Kernel {
     }
 
     pub fn bind(&self, context: &GpuContext, buffers: &[&wgpu::Buffer]) -> BoundKernel {
-        let entries: Vec<wgpu::BindGroupEntry<'_>> = buffers
+        let bindings: Vec<Binding<'_>> = buffers.iter().map(|&buffer| buffer.into()).collect();
+        self.bind_all(context, &bindings)
+    }
+
+    /// As [`Kernel::bind`], with textures among the buffers.
+    pub fn bind_all(&self, context: &GpuContext, bindings: &[Binding<'_>]) -> BoundKernel {
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = bindings
             .iter()
             .zip(0..)
-            .map(|(buffer, binding)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .map(|(Binding(resource), binding)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
             .collect();
         let bindings = context.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some(self.name),

@@ -32,7 +32,6 @@ pub(crate) struct PoseLayout {
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct SettingsLayout {
-    pub texture_width: u32,
     pub samples: u32,
     pub poses: u32,
     pub groups_along_x: u32,
@@ -41,9 +40,6 @@ pub(crate) struct SettingsLayout {
     min_width_px: f32,
     per_width_px: f32,
     relative_area: f32,
-    padding_0: u32,
-    padding_1: u32,
-    padding_2: u32,
 }
 
 /// `Picture` in `shaders/shared/picture.wgsl`.
@@ -188,9 +184,8 @@ impl From<CameraFromGround> for PoseLayout {
 }
 
 impl SettingsLayout {
-    pub fn new(texture_width: u32, samples: u32, scale: ContrastScale) -> Self {
+    pub fn new(samples: u32, scale: ContrastScale) -> Self {
         Self {
-            texture_width,
             samples,
             poses: 0,
             groups_along_x: 1,
@@ -199,9 +194,6 @@ impl SettingsLayout {
             min_width_px: scale.min_width_px,
             per_width_px: scale.per_width_px,
             relative_area: scale.relative_area,
-            padding_0: 0,
-            padding_1: 0,
-            padding_2: 0,
         }
     }
 }
@@ -238,8 +230,7 @@ mod tests {
             focal_px centre_px largest_px min_cos padding circle lens_parameters);
         assert_same_layout!(PoseLayout in "contrast_along_lines.wgsl" as "CameraFromGround": x y z);
         assert_same_layout!(SettingsLayout in "contrast_along_lines.wgsl" as "Settings":
-            texture_width samples poses groups_along_x per_contrast dark_level min_width_px per_width_px relative_area
-            padding_0 padding_1 padding_2);
+            samples poses groups_along_x per_contrast dark_level min_width_px per_width_px relative_area);
         assert_same_layout!(PictureLayout in "pack.wgsl" as "Picture":
             width height mask_columns blur_radius nearness_cap padding_0 padding_1 padding_2);
         assert_same_layout!(ParticleLayout in "diffuse.wgsl" as "Particle":

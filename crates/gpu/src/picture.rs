@@ -26,7 +26,7 @@ const CELL_PX: u32 = 2;
 pub(crate) struct PictureStage {
     sources: Sources,
     inside: wgpu::Buffer,
-    texels: wgpu::Buffer,
+    texels: wgpu::TextureView,
     /// What follows the source's own kernel.
     kernels: Vec<BoundKernel>,
     groups: [u32; 2],
@@ -74,7 +74,7 @@ impl PictureStage {
         let grey = storage(context, "the grey picture", bytes)?;
         let image = storage(context, "the picture scored", bytes)?;
         let across = storage(context, "the picture half done", 4 * words)?;
-        let texels = storage(context, "the packed picture", 4 * words)?;
+        let texels = packed_texture(context, camera).create_view(&wgpu::TextureViewDescriptor::default());
 
         let bind = |name, buffers: &[&wgpu::Buffer]| Kernel::new(context, name).bind(context, buffers);
         let is_blurred = layout.blur_radius > 0;
@@ -107,13 +107,14 @@ impl PictureStage {
         if model.is_masked() {
             kernels.push(bind("mask", &[&picture, &inside, &image]));
         }
-        kernels.push(bind("pack", &[&picture, &image, &texels]));
+        let pack = Kernel::new(context, "pack");
+        kernels.push(pack.bind_all(context, &[(&picture).into(), (&image).into(), (&texels).into()]));
         let groups = groups(context, (words as u32 / 4).div_ceil(PICTURE_THREADS));
         Ok(Self { sources, inside, texels, kernels, groups })
     }
 
     /// The packed picture that scoring kernels read.
-    pub fn texels(&self) -> &wgpu::Buffer {
+    pub fn texels(&self) -> &wgpu::TextureView {
         &self.texels
     }
 
@@ -162,6 +163,21 @@ impl ColorSlot {
     }
 }
 
+/// Four neighbouring pixels a texel.
+fn packed_texture(context: &GpuContext, camera: &Camera) -> wgpu::Texture {
+    use wgpu::TextureUsages as Usage;
+    context.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("the packed picture"),
+        size: wgpu::Extent3d { width: camera.width, height: camera.height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Uint,
+        usage: Usage::STORAGE_BINDING | Usage::TEXTURE_BINDING | Usage::COPY_SRC,
+        view_formats: &[],
+    })
+}
+
 /// Writes bytes, filled up to a multiple of so many.
 fn write_padded(context: &GpuContext, buffer: &wgpu::Buffer, bytes: &[u8], multiple: usize) {
     if bytes.len().is_multiple_of(multiple) {
@@ -200,14 +216,29 @@ mod tests {
         }))
     }
 
-    fn on_device(context: &GpuContext, stage: &PictureStage, pixels: usize) -> Vec<u32> {
-        let bytes = 4 * pixels;
+    fn on_device(context: &GpuContext, stage: &PictureStage) -> Vec<u32> {
+        let size = stage.texels.texture().size();
+        // Rows in a buffer begin at multiples of 256 bytes.
+        let stride = (4 * size.width).next_multiple_of(256);
+        let bytes = (stride * size.height) as usize;
         let target = readback(context, "the packed picture read back", bytes).unwrap();
         context.submit(|encoder| {
             run_steps(encoder, stage.steps());
-            encoder.copy_buffer_to_buffer(stage.texels(), 0, &target, 0, bytes as u64);
+            encoder.copy_texture_to_buffer(
+                stage.texels.texture().as_image_copy(),
+                wgpu::TexelCopyBufferInfo {
+                    buffer: &target,
+                    layout: wgpu::TexelCopyBufferLayout {
+                        offset: 0,
+                        bytes_per_row: Some(stride),
+                        rows_per_image: None,
+                    },
+                },
+                size,
+            );
         });
-        context.read(&target, bytes as u64).unwrap()
+        let words: Vec<u32> = context.read(&target, bytes as u64).unwrap();
+        words.chunks((stride / 4) as usize).flat_map(|row| row[..size.width as usize].to_vec()).collect()
     }
 
     /// All kernels that prepare a picture, for pictures whose rows are and are not whole words.
@@ -242,7 +273,7 @@ mod tests {
                     let image = model.image(&prepared);
                     assert!(!model.is_masked() || image.contains(&0), "something is masked");
                     let expected = Texture::pack(&image);
-                    let texels = on_device(&context, &stage, pixels);
+                    let texels = on_device(&context, &stage);
                     // The blur's last digit decides between two grey levels where a value lies between them.
                     let bytes =
                         |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();

@@ -51,7 +51,7 @@ impl GpuScorer {
     ) -> Result<Self, GpuError> {
         let model = LineModel::new(camera, field, config);
         let picture = PictureStage::new(&context, camera, &model)?;
-        let scoring = LineScoring::new(&context, model, camera.width)?;
+        let scoring = LineScoring::new(&context, model)?;
         let poses = Mutex::new(PoseBuffers::new(&context, &picture, &scoring, 1024)?);
         context.status()?;
         Ok(Self { context, picture, scoring, poses })

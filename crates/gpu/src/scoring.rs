@@ -8,7 +8,7 @@ use reality_sim_core::{
 use crate::{
     GpuContext, GpuError,
     buffers::{storage_of, uniform, uniform_of, write},
-    kernel::{BoundKernel, Kernel, groups},
+    kernel::{Binding, BoundKernel, Kernel, groups},
     layout::{CameraLayout, SettingsLayout},
 };
 
@@ -22,12 +22,11 @@ pub(crate) struct LineScoring {
     settings: wgpu::Buffer,
     samples: wgpu::Buffer,
     sample_count: u32,
-    texture_width: u32,
 }
 
 impl LineScoring {
-    /// Prepares a model for pictures so many pixels wide.
-    pub fn new(context: &GpuContext, model: LineModel, texture_width: u32) -> Result<Self, GpuError> {
+    /// Prepares a model.
+    pub fn new(context: &GpuContext, model: LineModel) -> Result<Self, GpuError> {
         let kernel = match model.config.kind {
             ObservationKind::Contrast => "contrast_along_lines",
             ObservationKind::Gauss | ObservationKind::Distance => "sum_along_lines",
@@ -41,7 +40,6 @@ impl LineScoring {
             settings: uniform::<SettingsLayout>(context, "the scoring's settings")?,
             samples: storage_of(context, "the line samples", &places)?,
             sample_count: places.len() as u32,
-            texture_width,
             model,
         })
     }
@@ -59,18 +57,19 @@ impl LineScoring {
     pub fn bind(
         &self,
         context: &GpuContext,
-        texels: &wgpu::Buffer,
+        texels: &wgpu::TextureView,
         poses: &wgpu::Buffer,
         sums: &wgpu::Buffer,
     ) -> BoundKernel {
-        self.kernel.bind(context, &[&self.camera, &self.settings, &self.samples, texels, poses, sums])
+        let [camera, settings, samples] = [&self.camera, &self.settings, &self.samples].map(Binding::from);
+        self.kernel.bind_all(context, &[camera, settings, samples, texels.into(), poses.into(), sums.into()])
     }
 
     /// Tells the kernel how many poses come; gives the workgroups it takes.
     pub fn configure(&self, context: &GpuContext, poses: usize) -> [u32; 2] {
         let groups = groups(context, poses as u32);
         let scale = self.model.contrast_scale(&self.levels);
-        let mut settings = SettingsLayout::new(self.texture_width, self.sample_count, scale);
+        let mut settings = SettingsLayout::new(self.sample_count, scale);
         (settings.poses, settings.groups_along_x) = (poses as u32, groups[0]);
         write(context, &self.settings, &[settings]);
         groups
