@@ -11,11 +11,19 @@ use crate::{
     recording::{Model, Recording, Runs},
 };
 
-const PARTICLES: [usize; 7] = [50, 100, 200, 400, 800, 1600, 3000];
+const PARTICLES: [usize; 10] = [50, 100, 200, 400, 800, 1600, 3000, 10_000, 30_000, 100_000];
 const MODELS: [(ObservationKind, &str); 3] = [
     (ObservationKind::Gauss, "gauss"),
     (ObservationKind::Distance, "distance"),
     (ObservationKind::Contrast, "contrast"),
+];
+
+/// The curves of Fig. 9: a model, its iterations, a name. With one iteration the particles stay where prediction put them.
+const CURVES: [(ObservationKind, u32, &str); 4] = [
+    (ObservationKind::Gauss, 5, "gauss"),
+    (ObservationKind::Distance, 5, "distance"),
+    (ObservationKind::Contrast, 5, "contrast"),
+    (ObservationKind::Gauss, 1, "gauss, 1 iteration"),
 ];
 
 /// A model as in the paper: neither search nor refinement.
@@ -75,13 +83,14 @@ fn figure_9(recording: &Recording, seeds: u64, text: &mut String) -> anyhow::Res
         text,
         "\n## Fig. 9: error and time against the number of particles\n\nMean error in cm (smallest to largest of the seeds), frames lost, milliseconds a frame; default settings.\n"
     )?;
-    writeln!(text, "| particles | gauss | distance | contrast |\n|---|---|---|---|")?;
-    let mut curves: Vec<Vec<(f64, Runs)>> = MODELS.iter().map(|_| Vec::new()).collect();
+    let names = CURVES.map(|(_, _, name)| name);
+    writeln!(text, "| particles | {} |\n|---|---|---|---|---|", names.join(" | "))?;
+    let mut curves: Vec<Vec<(f64, Runs)>> = CURVES.iter().map(|_| Vec::new()).collect();
     for particles in PARTICLES {
         write!(text, "| {particles} |")?;
-        for (curve, (kind, _)) in curves.iter_mut().zip(MODELS) {
+        for (curve, (kind, iterations, _)) in curves.iter_mut().zip(CURVES) {
             let mut config = TagConfig::new(kind);
-            config.filter.particles = particles;
+            (config.filter.particles, config.filter.iterations) = (particles, iterations);
             let runs = recording.runs(seeds, config, Model::Configured)?;
             let [low, high] = runs.range_cm();
             write!(
@@ -95,8 +104,22 @@ fn figure_9(recording: &Recording, seeds: u64, text: &mut String) -> anyhow::Res
         }
         writeln!(text)?;
     }
-    plot("error.svg", "mean error (cm)", &curves, Runs::mean_cm, [18.1, 18.5])?;
-    plot("time.svg", "time a frame (ms)", &curves, Runs::milliseconds, [850.0, 1760.0])
+    plot(
+        "error.svg",
+        "mean error (cm)",
+        &curves,
+        Runs::mean_cm,
+        [18.1, 18.5],
+        SeriesLabelPosition::MiddleRight,
+    )?;
+    plot(
+        "time.svg",
+        "time a frame (ms)",
+        &curves,
+        Runs::milliseconds,
+        [850.0, 1760.0],
+        SeriesLabelPosition::LowerRight,
+    )
 }
 
 /// A curve for each model over the number of particles, both axes logarithmic; beside them the paper's values for its
@@ -107,6 +130,7 @@ fn plot(
     curves: &[Vec<(f64, Runs)>],
     value: impl Fn(&Runs) -> f64,
     paper: [f64; 2],
+    legend: SeriesLabelPosition,
 ) -> anyhow::Result<()> {
     let path = format!("{OUT}/{file}");
     let points: Vec<Vec<(f64, f64)>> =
@@ -119,7 +143,7 @@ fn plot(
         .margin(12)
         .x_label_area_size(40)
         .y_label_area_size(56)
-        .build_cartesian_2d((45.0..3300.0).log_scale(), (0.8 * low..1.3 * high).log_scale())?;
+        .build_cartesian_2d((45.0..130_000.0).log_scale(), (0.8 * low..1.3 * high).log_scale())?;
     chart
         .configure_mesh()
         .x_desc("particles")
@@ -128,25 +152,21 @@ fn plot(
         .y_label_formatter(&tick)
         .light_line_style(WHITE)
         .draw()?;
-    let colors = [RGBColor(214, 96, 77), RGBColor(67, 147, 195), RGBColor(27, 120, 55)];
+    let colors =
+        [RGBColor(214, 96, 77), RGBColor(67, 147, 195), RGBColor(27, 120, 55), RGBColor(244, 165, 130)];
     for ((value, (_, name)), color) in paper.into_iter().zip(MODELS).zip(colors) {
         chart
             .draw_series([Cross::new((800.0, value), 5, color.stroke_width(2))])?
             .label(format!("the paper, {name}"))
             .legend(move |(x, y)| Cross::new((x + 9, y), 5, color.stroke_width(2)));
     }
-    for ((points, (_, name)), color) in points.iter().zip(MODELS).zip(colors) {
+    for ((points, (_, _, name)), color) in points.iter().zip(CURVES).zip(colors) {
         chart
             .draw_series(LineSeries::new(points.iter().copied(), color.stroke_width(2)).point_size(3))?
             .label(name)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2)));
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
-        .background_style(WHITE)
-        .border_style(BLACK)
-        .draw()?;
+    chart.configure_series_labels().position(legend).background_style(WHITE).border_style(BLACK).draw()?;
     root.present().with_context(|| format!("{path}: cannot be written"))
 }
 

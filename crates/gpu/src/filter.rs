@@ -454,13 +454,38 @@ mod tests {
         context.status().unwrap();
     }
 
-    #[test]
-    fn an_adaptive_number_is_refused() {
-        let config = FilterConfig { adaptive: Some(Default::default()), ..FilterConfig::default() };
+    fn filter_on(context: &Arc<GpuContext>, config: FilterConfig) -> Result<GpuFilter, GpuError> {
         let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
         let camera = &twins::cameras().unwrap()[0];
-        let error =
-            GpuFilter::new(test_context(), camera, &field, ObservationConfig::default(), config).unwrap_err();
+        GpuFilter::new(context.clone(), camera, &field, ObservationConfig::default(), config)
+    }
+
+    #[test]
+    fn what_the_device_cannot_do_is_refused_before_it_is_tried() {
+        let context = test_context();
+        let adaptive = FilterConfig { adaptive: Some(Default::default()), ..FilterConfig::default() };
+        let error = filter_on(&context, adaptive).unwrap_err();
         assert!(error.to_string().contains("use the CPU"), "{error}");
+        let too_many = FilterConfig { particles: 1_000_000_000, ..FilterConfig::default() };
+        let error = filter_on(&context, too_many).unwrap_err();
+        assert!(matches!(error, GpuError::TooLarge { .. }), "{error}");
+        context.status().unwrap();
+    }
+
+    #[test]
+    fn a_device_that_is_gone_is_an_error_and_no_panic() {
+        let context = test_context();
+        let mut filter = filter_on(&context, FilterConfig::default()).unwrap();
+        filter.place(&[(Pose2::default(), 1.0)], SIGMA);
+        context.device.destroy();
+        let attitude = Attitude { height_m: 0.5, pitch_rad: 0.3, roll_rad: 0.0 };
+        for _ in 0..3 {
+            filter.predict(None);
+            let estimate = filter.update(attitude, SIGMA);
+            assert!(estimate.pose.x_m.is_finite() && filter.particles().is_empty());
+        }
+        let error = context.status().unwrap_err().to_string();
+        assert!(error.contains("use the CPU") && error.len() < 2000, "{error}");
+        assert!(filter_on(&context, FilterConfig::default()).is_err());
     }
 }
