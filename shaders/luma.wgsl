@@ -1,5 +1,6 @@
 // Luma by ITU-R BT.601, rounded down. Twin: `luma` in crates/core/src/preprocess/grey.rs.
 
+#import shared/color.wgsl
 #import shared/picture.wgsl
 
 @group(0) @binding(0) var<uniform> picture: Picture;
@@ -7,8 +8,8 @@
 @group(0) @binding(1) var<storage, read> rgb: array<u32>;
 @group(0) @binding(2) var<storage, read_write> grey: array<u32>;
 
-fn luma_of(red: u32, green: u32, blue: u32) -> u32 {
-    return (red * 77u + green * 150u + blue * 29u) >> 8u;
+fn luma_of(color: vec3<u32>) -> u32 {
+    return (color.r * 77u + color.g * 150u + color.b * 29u) >> 8u;
 }
 
 @compute @workgroup_size(PICTURE_THREADS)
@@ -21,14 +22,7 @@ fn luma(
     if index >= words_of(picture) {
         return;
     }
-    // Twelve bytes are four pixels.
-    let a = rgb[3u * index];
-    let b = rgb[3u * index + 1u];
-    let c = rgb[3u * index + 2u];
-    grey[index] = word_of(vec4<u32>(
-        luma_of(a & 255u, (a >> 8u) & 255u, (a >> 16u) & 255u),
-        luma_of(a >> 24u, b & 255u, (b >> 8u) & 255u),
-        luma_of((b >> 16u) & 255u, b >> 24u, c & 255u),
-        luma_of((c >> 8u) & 255u, (c >> 16u) & 255u, c >> 24u),
-    ));
+    let colors = colors_of(rgb[3u * index], rgb[3u * index + 1u], rgb[3u * index + 2u]);
+    grey[index] =
+        word_of(vec4<u32>(luma_of(colors.a), luma_of(colors.b), luma_of(colors.c), luma_of(colors.d)));
 }

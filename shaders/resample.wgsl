@@ -10,28 +10,14 @@
 @group(0) @binding(3) var<storage, read> particles: array<Particle>;
 @group(0) @binding(4) var<storage, read_write> survivors: array<Particle>;
 
-/// The first particle with more copies for certain than this.
-fn ancestor_of_copy(copy: u32) -> u32 {
+/// The first particle whose share, with those before it, exceeds a value: of the copies for certain, or of what is drawn.
+fn ancestor_of(value: u32, is_drawn: bool) -> u32 {
     var low = 0u;
     var high = frame.particles - 1u;
     while low < high {
         let middle = (low + high) / 2u;
-        if shares[middle].x > copy {
-            high = middle;
-        } else {
-            low = middle + 1u;
-        }
-    }
-    return low;
-}
-
-/// The first particle whose shares, with those before, exceed this.
-fn ancestor_of_share(share: u32) -> u32 {
-    var low = 0u;
-    var high = frame.particles - 1u;
-    while low < high {
-        let middle = (low + high) / 2u;
-        if shares[middle].y > share {
+        let share = shares[middle];
+        if select(share.x, share.y, is_drawn) > value {
             high = middle;
         } else {
             low = middle + 1u;
@@ -75,10 +61,10 @@ fn resample(@builtin(global_invocation_id) id: vec3<u32>) {
     let all = shares[frame.particles - 1u];
     var ancestor: u32;
     if index < all.x {
-        ancestor = ancestor_of_copy(index);
+        ancestor = ancestor_of(index, false);
     } else {
         let place = place_of(index - all.x, frame.particles - all.x);
-        ancestor = ancestor_of_share(wide_product(place, all.y).x);
+        ancestor = ancestor_of(wide_product(place, all.y).x, true);
     }
     survivors[index] = particles[ancestor];
 }

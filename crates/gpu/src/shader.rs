@@ -28,6 +28,7 @@ pub(crate) const FILES: &[(&str, &str)] = files![
     "rivals.wgsl",
     "shared/angles.wgsl",
     "shared/camera.wgsl",
+    "shared/color.wgsl",
     "shared/filter.wgsl",
     "shared/largest.wgsl",
     "shared/picture.wgsl",
