@@ -4,21 +4,10 @@
 #import shared/picture.wgsl
 
 @group(0) @binding(0) var<uniform> picture: Picture;
-@group(0) @binding(1) var<storage, read> across: array<f32>;
-/// 2 · radius + 1 weights that sum to one.
+@group(0) @binding(1) var<storage, read> across: array<vec4<f32>>;
+/// Three zeros, 2 · radius + 1 weights that sum to one, three zeros.
 @group(0) @binding(2) var<storage, read> weights: array<f32>;
 @group(0) @binding(3) var<storage, read_write> image: array<u32>;
-
-fn blurred(pixel: u32) -> u32 {
-    let row = pixel / picture.width;
-    let column = pixel - row * picture.width;
-    var sum = 0.5;
-    for (var i = 0u; i <= 2u * picture.blur_radius; i++) {
-        let source = min(max(row + i, picture.blur_radius) - picture.blur_radius, picture.height - 1u);
-        sum += weights[i] * across[source * picture.width + column];
-    }
-    return min(u32(sum), 255u);
-}
 
 @compute @workgroup_size(PICTURE_THREADS)
 fn blur_columns(
@@ -30,7 +19,13 @@ fn blur_columns(
     if index >= words_of(picture) {
         return;
     }
-    let pixel = 4u * index;
-    image[index] =
-        word_of(vec4<u32>(blurred(pixel), blurred(pixel + 1u), blurred(pixel + 2u), blurred(pixel + 3u)));
+    let row = index / picture.row_words;
+    let column = index - row * picture.row_words;
+    let radius = picture.blur_radius;
+    var sum = vec4<f32>(0.5);
+    for (var i = 0u; i <= 2u * radius; i++) {
+        let source = min(max(row + i, radius) - radius, picture.height - 1u);
+        sum += weights[i + 3u] * across[source * picture.row_words + column];
+    }
+    image[index] = word_of(min(vec4<u32>(sum), vec4<u32>(255u)));
 }

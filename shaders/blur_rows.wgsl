@@ -5,20 +5,9 @@
 
 @group(0) @binding(0) var<uniform> picture: Picture;
 @group(0) @binding(1) var<storage, read> grey: array<u32>;
-/// 2 · radius + 1 weights that sum to one.
+/// Three zeros, 2 · radius + 1 weights that sum to one, three zeros.
 @group(0) @binding(2) var<storage, read> weights: array<f32>;
 @group(0) @binding(3) var<storage, read_write> across: array<vec4<f32>>;
-
-fn blurred(pixel: u32) -> f32 {
-    let row = pixel / picture.width * picture.width;
-    let column = pixel - row;
-    var sum = 0.0;
-    for (var i = 0u; i <= 2u * picture.blur_radius; i++) {
-        let source = row + min(max(column + i, picture.blur_radius) - picture.blur_radius, picture.width - 1u);
-        sum += weights[i] * f32(byte_of(grey[source / 4u], source));
-    }
-    return sum;
-}
 
 @compute @workgroup_size(PICTURE_THREADS)
 fn blur_rows(
@@ -30,6 +19,15 @@ fn blur_rows(
     if index >= words_of(picture) {
         return;
     }
-    let pixel = 4u * index;
-    across[index] = vec4<f32>(blurred(pixel), blurred(pixel + 1u), blurred(pixel + 2u), blurred(pixel + 3u));
+    let row = index / picture.row_words * picture.row_words;
+    let column = 4u * (index - row);
+    let radius = picture.blur_radius;
+    var sum = vec4<f32>(0.0);
+    // Every value read counts for each of the four pixels, with the weight of its distance from it.
+    for (var i = 0u; i < 2u * radius + 4u; i++) {
+        let source = min(max(column + i, radius) - radius, picture.width - 1u);
+        let value = f32(byte_of(grey[row + source / 4u], source));
+        sum += value * vec4<f32>(weights[i + 3u], weights[i + 2u], weights[i + 1u], weights[i]);
+    }
+    across[index] = sum;
 }

@@ -40,7 +40,7 @@ fn contrast_along_lines(
         let pose = poses[index];
         let count = settings.samples;
         for (var i = thread; i < count; i += THREADS) {
-            sum += weighted_contrast(lens, pose, samples[i]);
+            sum += weighted_contrast(lens, pose, line_sample(i));
         }
     }
     let total = sum_of_workgroup(thread, sum);

@@ -12,20 +12,6 @@ const RADIUS: u32 = 32u;
 /// `DISTANCE_UNITS_PER_PX`.
 const UNITS_PER_PX: f32 = 8.0;
 
-fn distance_of(pixel: u32) -> u32 {
-    let row = pixel / picture.width;
-    let column = pixel - row * picture.width;
-    var nearest = 2u * RADIUS * RADIUS;
-    let end = min(row + RADIUS + 1u, picture.height);
-    for (var other = max(row, RADIUS) - RADIUS; other < end; other++) {
-        let source = other * picture.width + column;
-        let distance = byte_of(across[source / 4u], source);
-        let along = max(row, other) - min(row, other);
-        nearest = min(nearest, distance * distance + along * along);
-    }
-    return min(u32(sqrt(f32(nearest)) * UNITS_PER_PX + 0.5), 255u);
-}
-
 @compute @workgroup_size(PICTURE_THREADS)
 fn distance_columns(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -36,11 +22,14 @@ fn distance_columns(
     if index >= words_of(picture) {
         return;
     }
-    let pixel = 4u * index;
-    image[index] = word_of(vec4<u32>(
-        distance_of(pixel),
-        distance_of(pixel + 1u),
-        distance_of(pixel + 2u),
-        distance_of(pixel + 3u),
-    ));
+    let row = index / picture.row_words;
+    let column = index - row * picture.row_words;
+    var nearest = vec4<u32>(2u * RADIUS * RADIUS);
+    let end = min(row + RADIUS + 1u, picture.height);
+    for (var other = max(row, RADIUS) - RADIUS; other < end; other++) {
+        let distances = bytes_of(across[other * picture.row_words + column]);
+        let along = max(row, other) - min(row, other);
+        nearest = min(nearest, distances * distances + vec4<u32>(along * along));
+    }
+    image[index] = word_of(min(vec4<u32>(sqrt(vec4<f32>(nearest)) * UNITS_PER_PX + 0.5), vec4<u32>(255u)));
 }

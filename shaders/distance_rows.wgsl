@@ -10,21 +10,6 @@
 /// `DISTANCE_RADIUS_PX`.
 const RADIUS: u32 = 32u;
 
-fn is_white(pixel: u32) -> bool {
-    return byte_of(evidence[pixel / 4u], pixel) > 0u;
-}
-
-fn distance_of(pixel: u32) -> u32 {
-    let column = pixel % picture.width;
-    let last = picture.width - 1u - column;
-    for (var distance = 0u; distance < RADIUS; distance++) {
-        if (distance <= column && is_white(pixel - distance)) || (distance <= last && is_white(pixel + distance)) {
-            return distance;
-        }
-    }
-    return RADIUS;
-}
-
 @compute @workgroup_size(PICTURE_THREADS)
 fn distance_rows(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -35,11 +20,17 @@ fn distance_rows(
     if index >= words_of(picture) {
         return;
     }
-    let pixel = 4u * index;
-    across[index] = word_of(vec4<u32>(
-        distance_of(pixel),
-        distance_of(pixel + 1u),
-        distance_of(pixel + 2u),
-        distance_of(pixel + 3u),
-    ));
+    let row = index / picture.row_words * picture.row_words;
+    let column = index - row;
+    let pixels = vec4<i32>(4 * i32(column)) + vec4<i32>(0, 1, 2, 3);
+    var nearest = vec4<u32>(RADIUS);
+    let end = min(column + RADIUS / 4u + 1u, picture.row_words);
+    for (var other = max(column, RADIUS / 4u) - RADIUS / 4u; other < end; other++) {
+        let white = bytes_of(evidence[row + other]) > vec4<u32>(0u);
+        for (var i = 0u; i < 4u; i++) {
+            let distance = vec4<u32>(abs(pixels - vec4<i32>(4 * i32(other) + i32(i))));
+            nearest = select(nearest, min(nearest, distance), vec4<bool>(white[i]));
+        }
+    }
+    across[index] = word_of(nearest);
 }

@@ -8,11 +8,9 @@
 @group(0) @binding(1) var<storage, read> inside: array<u32>;
 @group(0) @binding(2) var<storage, read_write> image: array<u32>;
 
-fn mask_of(pixel: u32) -> u32 {
-    let row = pixel / picture.width;
-    let column = pixel - row * picture.width;
-    let cell = row / 2u * picture.mask_columns + column / 2u;
-    return 255u * ((inside[cell / 32u] >> (cell % 32u)) & 1u);
+/// All bits of two neighbouring pixels, or none.
+fn pair_of(cell: u32) -> u32 {
+    return 0xffffu * ((inside[cell / 32u] >> (cell % 32u)) & 1u);
 }
 
 @compute @workgroup_size(PICTURE_THREADS)
@@ -25,7 +23,8 @@ fn mask(
     if index >= words_of(picture) {
         return;
     }
-    let pixel = 4u * index;
-    image[index] &=
-        word_of(vec4<u32>(mask_of(pixel), mask_of(pixel + 1u), mask_of(pixel + 2u), mask_of(pixel + 3u)));
+    let row = index / picture.row_words;
+    let column = index - row * picture.row_words;
+    let cell = row / 2u * picture.mask_columns + 2u * column;
+    image[index] &= pair_of(cell) | (pair_of(cell + 1u) << 16u);
 }

@@ -16,8 +16,6 @@ fn nearness(
     if index >= words_of(picture) {
         return;
     }
-    let word = image[index];
-    let cap = picture.nearness_cap;
-    let distances = vec4<u32>(byte_of(word, 0u), byte_of(word, 1u), byte_of(word, 2u), byte_of(word, 3u));
-    image[index] = word_of(max(vec4<u32>(cap), distances) - distances);
+    let distances = bytes_of(image[index]);
+    image[index] = word_of(max(vec4<u32>(picture.nearness_cap), distances) - distances);
 }

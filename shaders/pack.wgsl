@@ -1,4 +1,4 @@
-// A word for every pixel: its own value and those of its right, lower and lower right neighbours, so that a bilinear
+// A texel for every pixel: its own value and those of its right, lower and lower right neighbours, so that a bilinear
 // look-up costs one load. Twin: `Texture::pack` in crates/core/src/preprocess/texture.rs.
 
 #import shared/picture.wgsl
@@ -7,14 +7,15 @@
 @group(0) @binding(1) var<storage, read> image: array<u32>;
 @group(0) @binding(2) var texels: texture_storage_2d<r32uint, write>;
 
-fn value(pixel: u32) -> u32 {
-    return byte_of(image[pixel / 4u], pixel);
-}
-
-fn texel(pixel: u32, column: u32, row: u32) -> u32 {
-    let right = select(0u, 1u, column + 1u < picture.width);
-    let below = select(0u, picture.width, row + 1u < picture.height);
-    return word_of(vec4<u32>(value(pixel), value(pixel + right), value(pixel + below), value(pixel + below + right)));
+/// Five pixels of a row from a word's first one on; beyond the last column its value is repeated.
+fn five_of(row: u32, column: u32) -> array<u32, 5> {
+    let first = row * picture.row_words;
+    var values: array<u32, 5>;
+    for (var i = 0u; i < 5u; i++) {
+        let source = min(4u * column + i, picture.width - 1u);
+        values[i] = byte_of(image[first + source / 4u], source);
+    }
+    return values;
 }
 
 @compute @workgroup_size(PICTURE_THREADS)
@@ -27,10 +28,13 @@ fn pack(
     if index >= words_of(picture) {
         return;
     }
-    let end = min(4u * index + 4u, picture.width * picture.height);
-    for (var pixel = 4u * index; pixel < end; pixel++) {
-        let row = pixel / picture.width;
-        let column = pixel - row * picture.width;
-        textureStore(texels, vec2<u32>(column, row), vec4<u32>(texel(pixel, column, row), 0u, 0u, 0u));
+    let row = index / picture.row_words;
+    let column = index - row * picture.row_words;
+    let here = five_of(row, column);
+    let below = five_of(min(row + 1u, picture.height - 1u), column);
+    for (var i = 0u; i < 4u; i++) {
+        // What lies beyond the texture is not written.
+        let texel = word_of(vec4<u32>(here[i], here[i + 1u], below[i], below[i + 1u]));
+        textureStore(texels, vec2<u32>(4u * column + i, row), vec4<u32>(texel, 0u, 0u, 0u));
     }
 }

@@ -18,7 +18,7 @@ fn sum_along_lines(
         let pose = poses[index];
         let count = settings.samples;
         for (var i = thread; i < count; i += THREADS) {
-            let pixel = project(lens, pose, samples[i].xy);
+            let pixel = project(lens, pose, line_sample(i).xy);
             if pixel.seen {
                 sum += vec2<f32>(sample(pixel.place), 1.0);
             }

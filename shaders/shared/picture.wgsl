@@ -1,9 +1,11 @@
-// Grey pictures in storage buffers: four pixels a word, row after row, the first in the lowest byte.
+// Grey pictures in storage buffers: four pixels a word, the first in the lowest byte; every row begins with a new word.
 
 /// Of every picture of a camera.
 struct Picture {
     width: u32,
     height: u32,
+    /// Words in a row.
+    row_words: u32,
     /// Cells of the border's mask in a row.
     mask_columns: u32,
     /// Radius of the blur, pixels.
@@ -12,10 +14,9 @@ struct Picture {
     nearness_cap: u32,
     padding_0: u32,
     padding_1: u32,
-    padding_2: u32,
 }
 
-/// Pixels of a workgroup's threads: a word each.
+/// Threads of a workgroup: each handles a word.
 const PICTURE_THREADS: u32 = 64u;
 
 /// A thread's number, of as many as there are words; the groups of large pictures lie in two dimensions.
@@ -24,11 +25,15 @@ fn thread_number(group: vec3<u32>, groups: vec3<u32>, thread: u32) -> u32 {
 }
 
 fn words_of(picture: Picture) -> u32 {
-    return (picture.width * picture.height + 3u) / 4u;
+    return picture.row_words * picture.height;
 }
 
 fn byte_of(word: u32, index: u32) -> u32 {
     return (word >> (8u * (index % 4u))) & 255u;
+}
+
+fn bytes_of(word: u32) -> vec4<u32> {
+    return vec4<u32>(word & 255u, (word >> 8u) & 255u, (word >> 16u) & 255u, word >> 24u);
 }
 
 fn word_of(bytes: vec4<u32>) -> u32 {

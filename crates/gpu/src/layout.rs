@@ -48,12 +48,12 @@ pub(crate) struct SettingsLayout {
 pub(crate) struct PictureLayout {
     pub width: u32,
     pub height: u32,
+    pub row_words: u32,
     pub mask_columns: u32,
     pub blur_radius: u32,
     pub nearness_cap: u32,
     pub padding_0: u32,
     pub padding_1: u32,
-    pub padding_2: u32,
 }
 
 /// `Particle` in `shaders/shared/filter.wgsl`.
@@ -232,7 +232,7 @@ mod tests {
         assert_same_layout!(SettingsLayout in "contrast_along_lines.wgsl" as "Settings":
             samples poses groups_along_x per_contrast dark_level min_width_px per_width_px relative_area);
         assert_same_layout!(PictureLayout in "pack.wgsl" as "Picture":
-            width height mask_columns blur_radius nearness_cap padding_0 padding_1 padding_2);
+            width height row_words mask_columns blur_radius nearness_cap padding_0 padding_1);
         assert_same_layout!(ParticleLayout in "diffuse.wgsl" as "Particle":
             x_m y_m yaw_rad height_m pitch_rad roll_rad padding_0 padding_1);
         assert_same_layout!(FrameLayout in "diffuse.wgsl" as "Frame":

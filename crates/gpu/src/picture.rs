@@ -16,7 +16,9 @@ use crate::{
     layout::PictureLayout,
 };
 
-/// Threads of a workgroup, each with a word of four pixels.
+/// Every row begins with a new word.
+const PIXELS_OF_WORD: u32 = 4;
+/// Threads of a workgroup, each with a word.
 const PICTURE_THREADS: u32 = 64;
 /// Pixels of a cell of the border's mask, along a side.
 const CELL_PX: u32 = 2;
@@ -52,20 +54,22 @@ struct ColorSlot {
 impl PictureStage {
     /// For pictures of a camera, as a model wants them.
     pub fn new(context: &GpuContext, camera: &Camera, model: &LineModel) -> Result<Self, GpuError> {
-        let pixels = (camera.width * camera.height) as usize;
-        // Whole words of four pixels, and four bytes of work for each pixel at the most.
-        let (bytes, words) = (pixels.next_multiple_of(4), pixels.next_multiple_of(4));
+        let row_words = camera.width.div_ceil(PIXELS_OF_WORD);
+        let words = row_words * camera.height;
+        let bytes = 4 * words as usize;
         let weights = gaussian_kernel(model.config.blur_sigma_px);
+        let blur_radius = (weights.len() / 2) as u32;
+        let weights = [&[0.0; 3], &weights[..], &[0.0; 3]].concat();
         let mask_columns = camera.width.div_ceil(CELL_PX);
         let layout = PictureLayout {
             width: camera.width,
             height: camera.height,
+            row_words,
             mask_columns,
-            blur_radius: (weights.len() / 2) as u32,
+            blur_radius,
             nearness_cap: u32::from(model.nearness_cap()),
             padding_0: 0,
             padding_1: 0,
-            padding_2: 0,
         };
         let picture = uniform_of(context, "the picture's size", layout)?;
         let weights = storage_of(context, "the blur's weights", &weights)?;
@@ -73,11 +77,11 @@ impl PictureStage {
         let inside = storage(context, "the border's mask", 4 * mask_bits.div_ceil(32) as usize)?;
         let grey = storage(context, "the grey picture", bytes)?;
         let image = storage(context, "the picture scored", bytes)?;
-        let across = storage(context, "the picture half done", 4 * words)?;
+        let across = storage(context, "the picture half done", size_of::<[f32; 4]>() * words as usize)?;
         let texels = packed_texture(context, camera).create_view(&wgpu::TextureViewDescriptor::default());
 
         let bind = |name, buffers: &[&wgpu::Buffer]| Kernel::new(context, name).bind(context, buffers);
-        let is_blurred = layout.blur_radius > 0;
+        let is_blurred = blur_radius > 0;
         let mut kernels = Vec::new();
         let sources = match model.config.kind {
             ObservationKind::Distance => {
@@ -109,7 +113,7 @@ impl PictureStage {
         }
         let pack = Kernel::new(context, "pack");
         kernels.push(pack.bind_all(context, &[(&picture).into(), (&image).into(), (&texels).into()]));
-        let groups = groups(context, (words as u32 / 4).div_ceil(PICTURE_THREADS));
+        let groups = groups(context, words.div_ceil(PICTURE_THREADS));
         Ok(Self { sources, inside, texels, kernels, groups })
     }
 
@@ -129,7 +133,10 @@ impl PictureStage {
                     slots[*current].upload(context, &picture.picture);
                 }
             }
-            Sources::Evidence(buffer) => write_padded(context, buffer, picture.evidence().as_raw(), 4),
+            Sources::Evidence(buffer) => {
+                let evidence = picture.evidence();
+                write_rows(context, buffer, evidence.as_raw(), evidence.width(), 1);
+            }
         }
     }
 
@@ -158,7 +165,7 @@ impl ColorSlot {
     }
 
     fn upload(&mut self, context: &GpuContext, picture: &Arc<RgbImage>) {
-        write_padded(context, &self.buffer, picture.as_raw(), 12);
+        write_rows(context, &self.buffer, picture.as_raw(), picture.width(), 3);
         self.picture = Some(picture.clone());
     }
 }
@@ -178,15 +185,18 @@ fn packed_texture(context: &GpuContext, camera: &Camera) -> wgpu::Texture {
     })
 }
 
-/// Writes bytes, filled up to a multiple of so many.
-fn write_padded(context: &GpuContext, buffer: &wgpu::Buffer, bytes: &[u8], multiple: usize) {
-    if bytes.len().is_multiple_of(multiple) {
-        write(context, buffer, bytes);
-    } else {
-        let mut padded = bytes.to_vec();
-        padded.resize(bytes.len().next_multiple_of(multiple), 0);
-        write(context, buffer, &padded);
+/// Writes pixels of so many bytes each, every row filled up to whole words of four pixels.
+fn write_rows(context: &GpuContext, buffer: &wgpu::Buffer, bytes: &[u8], width: u32, pixel_bytes: u32) {
+    let row = (width * pixel_bytes) as usize;
+    let filled = (width.next_multiple_of(PIXELS_OF_WORD) * pixel_bytes) as usize;
+    if row == filled {
+        return write(context, buffer, bytes);
     }
+    let mut rows = vec![0; bytes.len() / row * filled];
+    for (target, source) in rows.chunks_exact_mut(filled).zip(bytes.chunks_exact(row)) {
+        target[..row].copy_from_slice(source);
+    }
+    write(context, buffer, &rows);
 }
 
 #[cfg(test)]

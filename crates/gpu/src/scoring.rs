@@ -7,7 +7,7 @@ use reality_sim_core::{
 
 use crate::{
     GpuContext, GpuError,
-    buffers::{storage_of, uniform, uniform_of, write},
+    buffers::{uniform, uniform_of, write},
     kernel::{Binding, BoundKernel, Kernel, groups},
     layout::{CameraLayout, SettingsLayout},
 };
@@ -20,7 +20,7 @@ pub(crate) struct LineScoring {
     kernel: Kernel,
     camera: wgpu::Buffer,
     settings: wgpu::Buffer,
-    samples: wgpu::Buffer,
+    samples: wgpu::TextureView,
     sample_count: u32,
 }
 
@@ -38,7 +38,7 @@ impl LineScoring {
             kernel: Kernel::with_constants(context, kernel, &[("is_radial", f64::from(u8::from(is_radial)))]),
             camera: uniform_of(context, "the camera", CameraLayout::from(&model.camera))?,
             settings: uniform::<SettingsLayout>(context, "the scoring's settings")?,
-            samples: storage_of(context, "the line samples", &places)?,
+            samples: sample_texture(context, &places),
             sample_count: places.len() as u32,
             model,
         })
@@ -61,8 +61,11 @@ impl LineScoring {
         poses: &wgpu::Buffer,
         sums: &wgpu::Buffer,
     ) -> BoundKernel {
-        let [camera, settings, samples] = [&self.camera, &self.settings, &self.samples].map(Binding::from);
-        self.kernel.bind_all(context, &[camera, settings, samples, texels.into(), poses.into(), sums.into()])
+        let [camera, settings] = [&self.camera, &self.settings].map(Binding::from);
+        self.kernel.bind_all(
+            context,
+            &[camera, settings, (&self.samples).into(), texels.into(), poses.into(), sums.into()],
+        )
     }
 
     /// Tells the kernel how many poses come; gives the workgroups it takes.
@@ -74,4 +77,33 @@ impl LineScoring {
         write(context, &self.settings, &[settings]);
         groups
     }
+}
+
+/// Line samples as a texture: what runs on a processor reads many places of one faster than of a buffer.
+fn sample_texture(context: &GpuContext, places: &[[[f32; 2]; 2]]) -> wgpu::TextureView {
+    const IN_ROW: usize = 1024;
+    let mut values: Vec<[[f32; 2]; 2]> = places.to_vec();
+    values.resize(places.len().next_multiple_of(IN_ROW).max(IN_ROW), Default::default());
+    let size = wgpu::Extent3d {
+        width: IN_ROW as u32,
+        height: (values.len() / IN_ROW) as u32,
+        depth_or_array_layers: 1,
+    };
+    let texture = context.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("the line samples"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Uint,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some((IN_ROW * size_of::<[[f32; 2]; 2]>()) as u32),
+        rows_per_image: None,
+    };
+    context.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&values), layout, size);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
