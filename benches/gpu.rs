@@ -1,6 +1,11 @@
 //! The graphics device beside the CPU: whole frames of the filter, many particles, the search of the whole field. The
 //! groups carry the adapter's name; without an adapter there are none, and a line says so.
 
+#![expect(
+    clippy::print_stdout,
+    reason = "criterion prints there too: which device it was, and where its time went"
+)]
+
 use std::sync::Arc;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, SamplingMode, Throughput};

@@ -6,7 +6,10 @@ use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
 
-use reality_sim::gpu::{AdapterSummary, GpuContext, GpuError, SCORE_TOLERANCE, adapters, compare_scores};
+use reality_sim::gpu::{
+    AdapterSummary, GpuContext, GpuError, SCORE_TOLERANCE, ScoreComparison, adapters, compare_filters,
+    compare_scores,
+};
 
 use super::output::{print, print_json};
 
@@ -41,6 +44,9 @@ struct AdapterReport {
     /// Largest relative difference of a pose's score from the CPU's.
     #[serde(skip_serializing_if = "Option::is_none")]
     worst_difference: Option<f64>,
+    /// Of the filter's updates, those with the same best particle as on the CPU.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    same_best_particle: Option<[usize; 2]>,
     agrees: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
@@ -87,17 +93,26 @@ fn examine(summary: &AdapterSummary) -> AdapterReport {
     let start_seconds = begin.elapsed().as_secs_f64();
     let comparisons = context.and_then(|context| {
         let context = Arc::new(context);
-        let comparisons = compare_scores(&context, SCENES)?;
+        let comparisons = (compare_scores(&context, SCENES)?, compare_filters(&context, SCENES)?);
         context.status().map(|()| comparisons)
     });
-    let (worst_difference, agrees, error) = match comparisons {
-        Ok(all) => {
-            let worst = all.iter().map(|comparison| comparison.worst).fold(0.0, f64::max);
-            (Some(worst), all.iter().all(reality_sim::gpu::ScoreComparison::agrees), None)
-        }
-        Err(error) => (None, false, Some(error.to_string())),
+    let report = AdapterReport {
+        summary: summary.clone(),
+        start_seconds,
+        worst_difference: None,
+        same_best_particle: None,
+        agrees: false,
+        error: None,
     };
-    AdapterReport { summary: summary.clone(), start_seconds, worst_difference, agrees, error }
+    match comparisons {
+        Ok((scores, filters)) => AdapterReport {
+            worst_difference: Some(scores.iter().map(|comparison| comparison.worst).fold(0.0, f64::max)),
+            same_best_particle: Some([filters.same_best, filters.updates]),
+            agrees: scores.iter().all(ScoreComparison::agrees) && filters.agrees(),
+            ..report
+        },
+        Err(error) => AdapterReport { error: Some(error.to_string()), ..report },
+    }
 }
 
 fn text(report: &Report) -> String {
@@ -105,13 +120,13 @@ fn text(report: &Report) -> String {
     for adapter in &report.adapters {
         let AdapterSummary { name, backend, kind, driver, .. } = &adapter.summary;
         let mebibytes = |bytes: u64| bytes >> 20;
-        let verdict = match (&adapter.error, adapter.worst_difference) {
-            (Some(error), _) => format!("failed: {error}"),
-            (None, Some(worst)) => format!(
-                "{} the CPU: scores differ by {worst:.0e} at most, {SCORE_TOLERANCE:.0e} allowed",
-                if adapter.agrees { "computes as" } else { "DOES NOT compute as" }
+        let verdict = match (&adapter.error, adapter.worst_difference, adapter.same_best_particle) {
+            (None, Some(worst), Some([same, updates])) => format!(
+                "{} the CPU: scores differ by {worst:.0e} at most, {SCORE_TOLERANCE:.0e} allowed; the best particle is the \
+                 same in {same} of {updates} updates",
+                if adapter.agrees { "compute as" } else { "DO NOT compute as" }
             ),
-            (None, None) => "not compared".to_owned(),
+            (error, ..) => format!("failed: {}", error.as_deref().unwrap_or("not compared")),
         };
         // Writing into a string cannot fail.
         let _ = write!(

@@ -22,7 +22,9 @@ pub use self::{
     error::GpuError,
     filter::GpuFilter,
     scorer::GpuScorer,
-    twins::{EDGE_TOLERANCE, SCORE_TOLERANCE, ScoreComparison, compare_scores},
+    twins::{
+        EDGE_TOLERANCE, FilterComparison, SCORE_TOLERANCE, ScoreComparison, compare_filters, compare_scores,
+    },
 };
 
 /// A device for tests: the best adapter there is. Without one a test fails and says what to install.

@@ -92,6 +92,26 @@ mod tests {
         assert_eq!(listed, files_in(&folder, ""));
     }
 
+    /// Every header names a function of the file it names.
+    #[test]
+    fn every_shader_has_a_twin_on_the_cpu() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        for (path, text) in FILES.iter().filter(|(path, _)| !path.starts_with("shared/")) {
+            let header: Vec<&str> = text.lines().map_while(|line| line.strip_prefix("//")).collect();
+            let words: Vec<&str> = header.iter().flat_map(|line| line.split_whitespace()).collect();
+            let file = words.iter().rfind(|word| word.starts_with("crates/")).expect(path);
+            let twin = words.iter().rfind(|word| word.starts_with('`')).expect(path);
+            let name = twin.trim_matches('`').rsplit("::").next().unwrap();
+            let code = std::fs::read_to_string(root.join(file.trim_end_matches('.'))).expect(path);
+            assert!(code.contains(&format!("fn {name}(")), "{path}: there is no {twin} in {file}");
+            let stem = path.trim_end_matches(".wgsl");
+            assert!(
+                name == stem || code.to_lowercase().contains(&stem.replace('_', "")),
+                "{path}: its twin is {twin}"
+            );
+        }
+    }
+
     /// All failures at once, each with its path.
     #[test]
     fn every_shader_is_valid_and_has_one_entry_point_of_its_own_name() {

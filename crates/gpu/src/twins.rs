@@ -6,13 +6,14 @@ use image::{Rgb, RgbImage};
 use reality_sim_core::{
     camera::{Camera, Distortion, ImageCircle, InvalidCamera, Opencv, OpencvFisheye},
     field::FieldDimensions,
-    filter::{Purpose, Stream},
+    filter::{Filter, FilterConfig, PlanarSigma, Purpose, Resampling, ScoredFilter, Stream},
     observation::{CpuScorer, ObservationConfig, ObservationKind, Scorer},
-    pose::{CameraPose, Pose2},
+    pose::{CameraPose, Pose2, wrap_angle},
     preprocess::{Attitude, Preprocessor},
+    refine::AttitudeTolerance,
 };
 
-use crate::{GpuContext, GpuError, GpuScorer};
+use crate::{GpuContext, GpuError, GpuFilter, GpuScorer};
 
 /// Sums along the lines may differ by this, relative to what they sum up: the order of the additions differs.
 pub const SCORE_TOLERANCE: f64 = 1e-4;
@@ -60,6 +61,69 @@ pub fn compare_scores(context: &Arc<GpuContext>, scenes: u64) -> Result<Vec<Scor
         }
     }
     Ok(comparisons)
+}
+
+/// How far the filter's kernels are from their twins.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct FilterComparison {
+    /// Updates of one iteration, each from particles of its own.
+    pub updates: usize,
+    /// Updates whose best particle is the same to a tenth of a millimetre and of a milliradian.
+    pub same_best: usize,
+    /// Survivors in all updates.
+    pub survivors: usize,
+    /// Survivors that are the same in the same place.
+    pub same_survivors: usize,
+}
+
+impl FilterComparison {
+    /// Whether both compute the same: a particle whose expected copies lie at a whole number may get one more or less.
+    pub fn agrees(&self) -> bool {
+        self.same_best == self.updates && 50 * (self.survivors - self.same_survivors) <= self.survivors
+    }
+}
+
+/// Compares an iteration of the filter, systematic resampling, on so many scenes.
+pub fn compare_filters(context: &Arc<GpuContext>, scenes: u64) -> Result<FilterComparison, GpuError> {
+    let field = FieldDimensions::preset("humanoid-kidsize-2010").expect("a preset of the core");
+    let camera = &cameras().expect("lenses that are valid")[0];
+    let observation = ObservationConfig {
+        mask_border: false,
+        alpha: 3000.0,
+        ..ObservationConfig::new(ObservationKind::Gauss)
+    };
+    let sigma = PlanarSigma { position_m: 0.1, yaw_rad: 0.08 };
+    let mut comparison = FilterComparison::default();
+    for seed in 0..scenes {
+        let config = FilterConfig {
+            seed,
+            iterations: 1,
+            resampling: Resampling::Systematic,
+            attitude_tolerance: Some(AttitudeTolerance::default()),
+            ..FilterConfig::default()
+        };
+        let (picture, poses) = scene(camera, seed);
+        let attitude = Attitude::of(poses[0]);
+        let prepared = Preprocessor::new(camera, field.line_width_m).prepare(picture, attitude);
+        let mut gpu = GpuFilter::new(context.clone(), camera, &field, observation, config)?;
+        let mut cpu = ScoredFilter::new(Box::new(CpuScorer::new(camera, &field, observation)), config);
+        let [found, expected] = [&mut gpu as &mut dyn Filter, &mut cpu].map(|filter| {
+            filter.load(&prepared);
+            filter.place(&[(poses[0].planar(), 1.0)], sigma);
+            (filter.update(attitude, sigma).pose, filter.particles())
+        });
+        context.status()?;
+        let is_same = |a: CameraPose, b: CameraPose| {
+            let turn_rad = wrap_angle(a.yaw_rad - b.yaw_rad).abs();
+            (a.x_m - b.x_m).abs().max((a.y_m - b.y_m).abs()).max(turn_rad) < 1e-4
+        };
+        comparison.updates += 1;
+        comparison.same_best += usize::from(is_same(found.0, expected.0));
+        comparison.survivors += expected.1.len();
+        comparison.same_survivors +=
+            found.1.iter().zip(&expected.1).filter(|(a, b)| is_same(**a, **b)).count();
+    }
+    Ok(comparison)
 }
 
 fn compare(

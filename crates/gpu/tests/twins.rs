@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use reality_sim_gpu::{GpuContext, compare_scores};
+use reality_sim_gpu::{GpuContext, compare_filters, compare_scores};
 
 fn context() -> Arc<GpuContext> {
     let context = GpuContext::new(None).unwrap();
@@ -21,6 +21,13 @@ fn the_shaders_score_as_their_twins_do() {
     assert_eq!(comparisons.len(), 12, "three models, four cameras");
     assert!(comparisons.iter().all(reality_sim_gpu::ScoreComparison::agrees));
     context.status().unwrap();
+}
+
+#[test]
+fn an_iteration_of_the_filter_is_that_of_the_cpu() {
+    let comparison = compare_filters(&context(), 24).unwrap();
+    println!("{comparison:?}");
+    assert!(comparison.updates == 24 && comparison.agrees(), "{comparison:?}");
 }
 
 #[test]
