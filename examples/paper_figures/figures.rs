@@ -26,7 +26,7 @@ const CURVES: [(ObservationKind, &str); 4] = [
     (ObservationKind::Contrast, "contrast"),
     (ObservationKind::Gauss, PARTICLES_ALONE),
 ];
-const PARTICLES_ALONE: &str = "gauss, 1 iteration, no odometry";
+const PARTICLES_ALONE: &str = "gauss, particles alone";
 
 /// A model as in the paper: neither search nor refinement.
 fn as_in_the_paper(kind: ObservationKind) -> TagConfig {
@@ -83,7 +83,7 @@ fn table_2_row(
 fn figure_9(recording: &Recording, seeds: u64, text: &mut String) -> anyhow::Result<()> {
     writeln!(
         text,
-        "\n## Fig. 9: error and time against the number of particles\n\nMean error in cm (smallest to largest of the seeds), frames lost, milliseconds a frame; default settings.\n"
+        "\n## Fig. 9: error and time against the number of particles\n\nMean error in cm (smallest to largest of the seeds), frames lost, milliseconds a frame; default settings. Particles alone: one iteration, no odometry, no search.\n"
     )?;
     let names = CURVES.map(|(_, name)| name);
     writeln!(text, "| particles | {} |\n|---|---|---|---|---|", names.join(" | "))?;
