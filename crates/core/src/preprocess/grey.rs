@@ -1,6 +1,7 @@
 //! Grey values of a colour picture.
 
 use image::{GrayImage, RgbImage};
+use rayon::prelude::*;
 
 /// Luma by ITU-R BT.601, rounded down.
 pub fn luma(picture: &RgbImage) -> GrayImage {
@@ -13,8 +14,17 @@ pub fn whiteness(picture: &RgbImage) -> GrayImage {
     map_pixels(picture, |[r, g, b]| r.min(g).min(b))
 }
 
-fn map_pixels(picture: &RgbImage, value: impl Fn([u8; 3]) -> u8) -> GrayImage {
-    let values = picture.as_raw().chunks_exact(3).map(|rgb| value([rgb[0], rgb[1], rgb[2]])).collect();
+fn map_pixels(picture: &RgbImage, value: impl Fn([u8; 3]) -> u8 + Sync) -> GrayImage {
+    let (width, height) = picture.dimensions();
+    let mut values = vec![0; (width * height) as usize];
+    let row_length = width.max(1) as usize;
+    values.par_chunks_mut(row_length).zip(picture.as_raw().par_chunks(3 * row_length)).for_each(
+        |(values, row)| {
+            for (target, rgb) in values.iter_mut().zip(row.chunks_exact(3)) {
+                *target = value([rgb[0], rgb[1], rgb[2]]);
+            }
+        },
+    );
     // One value a pixel is just what the buffer of this size holds.
-    GrayImage::from_raw(picture.width(), picture.height(), values).unwrap_or_default()
+    GrayImage::from_raw(width, height, values).unwrap_or_default()
 }
