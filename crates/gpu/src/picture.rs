@@ -6,7 +6,7 @@ use image::RgbImage;
 use reality_sim_core::{
     camera::Camera,
     observation::{LineModel, ObservationKind},
-    preprocess::{Prepared, gaussian_kernel},
+    preprocess::{CELL_PX, Prepared, gaussian_kernel},
 };
 
 use crate::{
@@ -20,8 +20,6 @@ use crate::{
 const PIXELS_OF_WORD: u32 = 4;
 /// Threads of a workgroup, each with a word.
 const PICTURE_THREADS: u32 = 64;
-/// Pixels of a cell of the border's mask, along a side.
-const CELL_PX: u32 = 2;
 
 /// Takes pictures over and prepares them.
 #[derive(Debug)]

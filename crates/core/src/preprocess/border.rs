@@ -16,8 +16,8 @@ use super::{
 };
 use crate::camera::Camera;
 
-/// The picture is looked at in cells of this many pixels.
-const CELL_PX: u32 = 2;
+/// The picture is looked at in cells of this many pixels, along each side.
+pub const CELL_PX: u32 = 2;
 /// Directions around the camera, by pseudo-angle.
 const BEARINGS: usize = 360;
 /// Steps of the ray's sine of depression, from the horizon (0) to straight down (1).

@@ -12,7 +12,7 @@ mod white_line;
 
 pub use self::{
     blur::{gaussian_blur, gaussian_kernel},
-    border::{BorderDetector, FieldBorder},
+    border::{BorderDetector, CELL_PX, FieldBorder},
     carpet::CarpetColor,
     distance::{DISTANCE_RADIUS_PX, DISTANCE_UNITS_PER_PX, distance_field},
     grey::{luma, whiteness},

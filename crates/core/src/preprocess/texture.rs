@@ -19,11 +19,6 @@ impl Default for Texture {
 }
 
 impl Texture {
-    /// Columns and rows.
-    pub fn dimensions(&self) -> [u32; 2] {
-        [self.width, self.height]
-    }
-
     /// A word a texel, row by row: its own value in the lowest byte, then those of its right, lower and lower right
     /// neighbours. Filled up to a power of two.
     pub fn texels(&self) -> &[u32] {
