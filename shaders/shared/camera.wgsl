@@ -1,5 +1,5 @@
-// Ground points through a pose and the lens to pixels: the same steps, in the same order, as `project_block` in
-// crates/core/src/observation/kernel.rs.
+// Ground points through a pose and the lens to pixels: the same steps, in the same order, as `project_block` and `project_lanes` in
+// crates/core/src/{observation,camera}/kernel.rs.
 
 #import shared/pose.wgsl
 

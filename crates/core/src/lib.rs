@@ -15,6 +15,7 @@ pub mod refine;
 pub mod search;
 pub mod sequence;
 pub mod tag;
+pub mod warp;
 
 #[cfg(test)]
 mod test_scene;

@@ -2,7 +2,8 @@
 
 use bytemuck::{Pod, Zeroable};
 use reality_sim_core::{
-    observation::{CameraFromGround, ContrastScale, KernelCamera, Lens, RADIAL_TERMS},
+    camera::{KernelCamera, Lens, RADIAL_TERMS},
+    observation::{CameraFromGround, ContrastScale},
     pose::CameraPose,
 };
 

@@ -1,7 +1,8 @@
 //! The scoring kernels: the sums along the lines of every pose in a buffer.
 
 use reality_sim_core::{
-    observation::{Lens, LineModel, ObservationKind},
+    camera::Lens,
+    observation::{LineModel, ObservationKind},
     preprocess::WhiteLevels,
 };
 

@@ -3,13 +3,18 @@
 //! A pixel's centre has integer coordinates; the first pixel's centre is (0, 0). Every model first distorts the
 //! direction into the plane of unit focal length (one file a model), then scales: `u = fx a + cx`, `v = fy b + cy`.
 
+mod kernel;
 mod opencv;
 mod opencv_fisheye;
 mod rim;
 
 use glam::{DVec2, DVec3};
 
-pub use self::{opencv::Opencv, opencv_fisheye::OpencvFisheye};
+pub use self::{
+    kernel::{KernelCamera, LANES, Lanes, Lens, Pixels, RADIAL_TERMS, project_lanes},
+    opencv::Opencv,
+    opencv_fisheye::OpencvFisheye,
+};
 use crate::pose::CameraPose;
 
 /// The largest angle from the optical axis that a pinhole can take, radians: tan 89° is 57 focal lengths.

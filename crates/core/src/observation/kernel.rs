@@ -5,14 +5,11 @@
 
 #![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
 
-use super::lens::{KernelCamera, Lens};
-use crate::{pose::CameraPose, preprocess::Texture};
-
-/// Points handled together.
-pub(crate) const LANES: usize = 16;
-
-/// One value for each of sixteen points.
-pub(crate) type Lanes = [f32; LANES];
+use crate::{
+    camera::{KernelCamera, LANES, Lanes, Pixels, project_lanes},
+    pose::CameraPose,
+    preprocess::Texture,
+};
 
 /// Sixteen ground points: neighbours on a line, hence close together.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,16 +93,6 @@ impl CameraFromGround {
     }
 }
 
-/// Pixels of sixteen ground points; `seen` is 1 where the point has a pixel, else 0.
-#[derive(Clone, Copy)]
-pub(crate) struct Pixels {
-    pub u: Lanes,
-    pub v: Lanes,
-    pub seen: Lanes,
-    /// One over the distance from the camera, per metre.
-    pub nearness: Lanes,
-}
-
 /// Projects a block; `None` where the camera sees none of it.
 #[inline(always)]
 pub(crate) fn project_block(camera: &KernelCamera, pose: &CameraFromGround, block: &Block) -> Option<Pixels> {
@@ -121,65 +108,7 @@ pub(crate) fn project_block(camera: &KernelCamera, pose: &CameraFromGround, bloc
             place[i] = a * ground[0][i] + b * ground[1][i] + offset;
         }
     }
-    let [x, y, z] = place;
-    let mut inverse = [0.0_f32; LANES];
-    let mut cos = [0.0_f32; LANES];
-    let mut any = 0u32;
-    for i in 0..LANES {
-        inverse[i] = 1.0 / (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt();
-        cos[i] = z[i] * inverse[i];
-        any |= u32::from(cos[i] >= camera.min_cos);
-    }
-    if any == 0 {
-        return None;
-    }
-    let mut pixels = Pixels { u: [0.0; LANES], v: [0.0; LANES], seen: [0.0; LANES], nearness: inverse };
-    match &camera.lens {
-        Lens::Radial { coefficients, scale, offset } => {
-            for i in 0..LANES {
-                let t = cos[i] * scale + offset;
-                let mut h = coefficients[coefficients.len() - 1];
-                for &c in coefficients[..coefficients.len() - 1].iter().rev() {
-                    h = h * t + c;
-                }
-                let s = h * inverse[i];
-                pixels.u[i] = camera.fx * (x[i] * s) + camera.cx;
-                pixels.v[i] = camera.fy * (y[i] * s) + camera.cy;
-            }
-        }
-        Lens::Perspective { distortion: [k1, k2, p1, p2, k3] } => {
-            for i in 0..LANES {
-                let depth = 1.0 / z[i];
-                let (a, b) = (x[i] * depth, y[i] * depth);
-                let r2 = a * a + b * b;
-                let radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
-                let ab2 = 2.0 * a * b;
-                let da = a * radial + p1 * ab2 + p2 * (r2 + 2.0 * a * a);
-                let db = b * radial + p1 * (r2 + 2.0 * b * b) + p2 * ab2;
-                pixels.u[i] = camera.fx * da + camera.cx;
-                pixels.v[i] = camera.fy * db + camera.cy;
-            }
-        }
-    }
-    let mut any = 0u32;
-    for i in 0..LANES {
-        let (u, v) = (pixels.u[i], pixels.v[i]);
-        let seen =
-            (cos[i] >= camera.min_cos) & (u >= 0.0) & (u <= camera.max_u) & (v >= 0.0) & (v <= camera.max_v);
-        pixels.seen[i] = f32::from(u8::from(seen));
-        any |= u32::from(seen);
-    }
-    if any == 0 {
-        return None;
-    }
-    if let Some([circle_u, circle_v, radius_squared]) = camera.circle {
-        for i in 0..LANES {
-            let (du, dv) = (pixels.u[i] - circle_u, pixels.v[i] - circle_v);
-            let inside = du * du + dv * dv <= radius_squared;
-            pixels.seen[i] *= f32::from(u8::from(inside));
-        }
-    }
-    Some(pixels)
+    project_lanes(camera, &place)
 }
 
 /// Bilinear values (0–255) at sixteen pixels; 0 where a point is not seen.

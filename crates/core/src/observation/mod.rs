@@ -7,7 +7,6 @@
 //! | [`ObservationKind::Contrast`] | gain · Σ weight · (contrast of line against flanks − neutral) |
 
 mod kernel;
-mod lens;
 mod model;
 mod normal_search;
 
@@ -16,7 +15,6 @@ use serde::{Deserialize, Serialize};
 
 pub use self::{
     kernel::{CameraFromGround, ContrastScale},
-    lens::{KernelCamera, Lens, RADIAL_TERMS},
     model::LineModel,
     normal_search::NormalSearch,
 };

@@ -5,10 +5,9 @@ use image::GrayImage;
 use super::{
     ObservationConfig, ObservationKind,
     kernel::{ContrastScale, GroundPoints, LinePoints},
-    lens::KernelCamera,
 };
 use crate::{
-    camera::Camera,
+    camera::{Camera, KernelCamera},
     field::{FieldDimensions, LineSample, sample_lines},
     preprocess::{DISTANCE_UNITS_PER_PX, Prepared, WhiteLevels, distance_field, gaussian_blur},
 };

@@ -9,7 +9,7 @@ use super::{
     *,
 };
 use crate::{
-    camera::{Distortion, Opencv, OpencvFisheye},
+    camera::{Distortion, KernelCamera, LANES, Opencv, OpencvFisheye},
     field::sample_lines,
     pose::Pose2,
     preprocess::{Attitude, Preprocessor},
@@ -47,8 +47,8 @@ proptest! {
             let kernel = KernelCamera::new(&camera);
             for (block, ground) in points.blocks.iter().enumerate() {
                 let pixels = project_block(&kernel, &CameraFromGround::new(pose), ground);
-                for lane in 0..kernel::LANES {
-                    let Some(sample) = samples.get(block * kernel::LANES + lane) else { continue };
+                for lane in 0..LANES {
+                    let Some(sample) = samples.get(block * LANES + lane) else { continue };
                     let exact = camera.project(pose.camera_from_world(sample.point_in_world.extend(0.0)));
                     let (seen, u, v) = pixels.map_or((false, 0.0, 0.0), |p| (p.seen[lane] > 0.0, p.u[lane], p.v[lane]));
                     match exact {

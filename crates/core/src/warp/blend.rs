@@ -1,0 +1,326 @@
+//! One picture from several: every pixel from those neighbours that see its place best.
+//!
+//! The weights follow unstructured lumigraph rendering (Buehler et al., 2001): a penalty for the angle between the
+//! two lines of sight, for coarser resolution, and for lying near the neighbour's border. Neighbours that disagree with
+//! the others at a pixel (an obstacle that stood there once) lose their weight there.
+
+#![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::{
+    Hull, Picture,
+    fill::fill,
+    kernel::{HullPoints, Placement, hull_points, sample, see, unhidden},
+    rays::{RayBlock, RayTable},
+};
+use crate::camera::{KernelCamera, LANES, Lanes, Pixels};
+
+/// More neighbours than this are never mixed.
+pub const MAX_SOURCES: usize = 8;
+
+/// How neighbours are weighed against each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BlendWeights {
+    /// Penalty of a right angle between the lines of sight on the ground.
+    pub angle_on_ground: f32,
+    /// Penalty of a right angle between the lines of sight above the ground, where the hull is a guess.
+    pub angle_above: f32,
+    /// Penalty where a source's pixels are four times as large as the target's.
+    pub resolution: f32,
+    /// Within this distance of a neighbour's border its weight falls to 0, pixels.
+    pub border_px: f32,
+    /// Added to all penalties: the smaller, the more the best neighbour takes alone.
+    pub softness: f32,
+    /// Colours that differ by this from the others' have half the weight, grey levels.
+    pub disagreement: f32,
+}
+
+impl Default for BlendWeights {
+    fn default() -> Self {
+        Self {
+            angle_on_ground: 2.0,
+            angle_above: 4.0,
+            resolution: 1.0,
+            border_px: 20.0,
+            softness: 0.05,
+            disagreement: 20.0,
+        }
+    }
+}
+
+/// A picture that was recorded, and from where.
+#[derive(Debug, Clone, Copy)]
+pub struct Source<'a> {
+    /// The camera.
+    pub camera: &'a KernelCamera,
+    /// Its pose.
+    pub placement: Placement,
+    /// What it saw.
+    pub picture: &'a Arc<Picture>,
+    /// Red, green and blue are multiplied by this.
+    pub gain: [f32; 3],
+}
+
+/// Where a pixel of a reconstruction came from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Origin {
+    /// The source that it came from most, or [`Origin::NOWHERE`].
+    pub source: u8,
+    /// How far it can be trusted, 0 to 255: high where a neighbour saw the ground from the same direction at the same
+    /// resolution and no other contradicts.
+    pub trust: u8,
+}
+
+impl Origin {
+    /// No source saw this: the colour is that of the surroundings.
+    pub const NOWHERE: u8 = u8::MAX;
+}
+
+/// The camera and the pose at which a picture is wanted, and what stands for the world.
+#[derive(Debug, Clone, Copy)]
+pub struct Target<'a> {
+    /// The camera's pixels.
+    pub rays: &'a RayTable,
+    /// Its pose.
+    pub placement: Placement,
+    /// The shape of the world.
+    pub hull: &'a Hull,
+}
+
+/// A picture drawn from others.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Warped {
+    /// Red, green and blue, row by row from the top.
+    pub colors: Vec<[u8; 3]>,
+    /// Where each pixel came from.
+    pub origins: Vec<Origin>,
+}
+
+/// Draws the picture at the target from the sources, at most [`MAX_SOURCES`] of them.
+pub fn blend(target: &Target, sources: &[Source], weights: &BlendWeights) -> Warped {
+    let (width, height) = (target.rays.width as usize, target.rays.height as usize);
+    let sources = &sources[..sources.len().min(MAX_SOURCES)];
+    let mut colors = vec![[0; 3]; width * height];
+    let mut origins = vec![Origin { source: Origin::NOWHERE, trust: 0 }; width * height];
+    let rows = colors.par_chunks_mut(width).zip(origins.par_chunks_mut(width)).enumerate();
+    rows.with_min_len(8).for_each(|(row, (colors, origins))| {
+        blend_row(target, sources, weights, target.rays.row(row), colors, origins);
+    });
+    fill(&mut colors, width, |index| origins[index].source != Origin::NOWHERE);
+    Warped { colors, origins }
+}
+
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn blend_row(
+    target: &Target,
+    sources: &[Source],
+    weights: &BlendWeights,
+    rays: &[RayBlock],
+    colors: &mut [[u8; 3]],
+    origins: &mut [Origin],
+) {
+    for ((rays, colors), origins) in rays.iter().zip(colors.chunks_mut(LANES)).zip(origins.chunks_mut(LANES))
+    {
+        let points = hull_points(target.hull, &target.placement, rays);
+        let mixed = mix(target, sources, weights, &points);
+        for (lane, (color, origin)) in colors.iter_mut().zip(origins).enumerate() {
+            *color = mixed.color.map(|channel| (channel[lane] + 0.5) as u8);
+            *origin = Origin { source: mixed.source[lane], trust: (255.0 * mixed.trust[lane] + 0.5) as u8 };
+        }
+    }
+}
+
+/// Sixteen pixels of a reconstruction.
+struct Mixed {
+    color: [Lanes; 3],
+    source: [u8; LANES],
+    trust: Lanes,
+}
+
+/// What a source says of sixteen pixels.
+#[derive(Clone, Copy)]
+struct Opinion {
+    color: [Lanes; 3],
+    weight: Lanes,
+}
+
+#[inline(always)]
+fn mix(target: &Target, sources: &[Source], weights: &BlendWeights, points: &HullPoints) -> Mixed {
+    let mut opinions = [Opinion { color: [[0.0; LANES]; 3], weight: [0.0; LANES] }; MAX_SOURCES];
+    for (opinion, source) in opinions.iter_mut().zip(sources) {
+        if let Some(pixels) = see(source.camera, &source.placement, points) {
+            opinion.color = gained(sample(source.picture, &pixels), source.gain);
+            opinion.weight = source_weight(target, source, weights, points, &pixels);
+        }
+    }
+    let opinions = &mut opinions[..sources.len()];
+    let best: Lanes = std::array::from_fn(|i| opinions.iter().map(|o| o.weight[i]).fold(0.0, f32::max));
+    let before: Lanes = std::array::from_fn(|i| opinions.iter().map(|o| o.weight[i]).sum());
+    let mean = agreed(opinions, weights.disagreement);
+    let (mut source, mut largest) = ([Origin::NOWHERE; LANES], [0.0_f32; LANES]);
+    let mut total = [0.0_f32; LANES];
+    for (number, opinion) in opinions.iter().enumerate() {
+        for i in 0..LANES {
+            if opinion.weight[i] > largest[i] {
+                (largest[i], source[i]) = (opinion.weight[i], number as u8);
+            }
+            total[i] += opinion.weight[i];
+        }
+    }
+    let trust = std::array::from_fn(|i| {
+        let penalty = 1.0 / best[i].max(1e-12).sqrt() - weights.softness;
+        let agreement = total[i] / before[i].max(1e-12);
+        if source[i] == Origin::NOWHERE { 0.0 } else { (agreement / (1.0 + penalty.max(0.0))).min(1.0) }
+    });
+    Mixed { color: mean, source, trust }
+}
+
+#[inline(always)]
+fn gained(mut color: [Lanes; 3], gain: [f32; 3]) -> [Lanes; 3] {
+    for channel in 0..3 {
+        for i in 0..LANES {
+            color[channel][i] = (color[channel][i] * gain[channel]).min(255.0);
+        }
+    }
+    color
+}
+
+/// The weight of a source before it is compared with the others.
+#[inline(always)]
+fn source_weight(
+    target: &Target,
+    source: &Source,
+    weights: &BlendWeights,
+    points: &HullPoints,
+    pixels: &Pixels,
+) -> Lanes {
+    let [x, y, z] = source.placement.position_in_world;
+    let (height, target_height) = (z, target.placement.position_in_world[2]);
+    let unhidden = unhidden(target.hull, &source.placement, points);
+    let mut weight = [0.0_f32; LANES];
+    for i in 0..LANES {
+        let nearness = pixels.nearness[i];
+        let along = points.direction[0][i] * (points.place[0][i] - x)
+            + points.direction[1][i] * (points.place[1][i] - y)
+            + points.direction[2][i] * (points.place[2][i] - z);
+        let cosine = along * nearness;
+        let ground = points.on_ground[i];
+        // Pixels for a length on the surface, the target's over the source's: squared, falls with the distance
+        // squared, and on the ground once more for the flat view.
+        let nearer = 1.0 / (points.distance[i] * nearness);
+        let flatter = nearer * target_height / height;
+        let density = nearer * nearer * (1.0 + ground * (flatter - 1.0));
+        let per_angle = weights.angle_above + ground * (weights.angle_on_ground - weights.angle_above);
+        let penalty = weights.softness
+            + per_angle * (1.0 - cosine)
+            + weights.resolution * (density - 1.0).max(0.0) / 3.0;
+        let (u, v) = (pixels.u[i], pixels.v[i]);
+        let inside_px = u.min(v).min(source.camera.max_u - u).min(source.camera.max_v - v);
+        let fade = (inside_px + 1.0) / weights.border_px;
+        let fade = if fade < 1.0 { fade } else { 1.0 };
+        weight[i] = if pixels.seen[i] * unhidden[i] > 0.0 { fade / (penalty * penalty) } else { 0.0 };
+    }
+    weight
+}
+
+/// The weighted mean colour, with less weight for those far from it; the weights are left as they were used.
+#[inline(always)]
+fn agreed(opinions: &mut [Opinion], disagreement: f32) -> [Lanes; 3] {
+    let per_square = 1.0 / (disagreement * disagreement);
+    let prior: [Lanes; MAX_SOURCES] =
+        std::array::from_fn(|number| opinions.get(number).map_or([0.0; LANES], |opinion| opinion.weight));
+    let mut mean = weighted_mean(opinions);
+    if opinions.len() < 3 {
+        return mean;
+    }
+    for _ in 0..3 {
+        for (opinion, prior) in opinions.iter_mut().zip(&prior) {
+            for i in 0..LANES {
+                let mut square = 0.0;
+                for channel in 0..3 {
+                    let difference = opinion.color[channel][i] - mean[channel][i];
+                    square += difference * difference;
+                }
+                opinion.weight[i] = prior[i] / (1.0 + per_square * square);
+            }
+        }
+        mean = weighted_mean(opinions);
+    }
+    mean
+}
+
+#[inline(always)]
+fn weighted_mean(opinions: &[Opinion]) -> [Lanes; 3] {
+    let (mut sum, mut total) = ([[0.0_f32; LANES]; 3], [1e-12_f32; LANES]);
+    for opinion in opinions {
+        for i in 0..LANES {
+            total[i] += opinion.weight[i];
+            for channel in 0..3 {
+                sum[channel][i] += opinion.weight[i] * opinion.color[channel][i];
+            }
+        }
+    }
+    for channel in 0..3 {
+        for i in 0..LANES {
+            sum[channel][i] /= total[i];
+        }
+    }
+    sum
+}
+
+/// Rows of pixels that [`costs`] and [`glimpses`] look at; sixteen in each.
+const LOOK_ROWS: usize = 12;
+
+/// What a pixel costs that a source does not see.
+const UNSEEN: f32 = 4.0;
+
+/// How badly a source shows each of a few hundred pixels of the target, evenly spread: 0 for a perfect view.
+pub fn costs(target: &Target, source: &Source, weights: &BlendWeights) -> Vec<f32> {
+    let mut costs = Vec::with_capacity(LOOK_ROWS * LANES);
+    for points in spread_points(target) {
+        let pixels = see(source.camera, &source.placement, &points);
+        let weight =
+            pixels.map_or([0.0; LANES], |pixels| source_weight(target, source, weights, &points, &pixels));
+        costs.extend((0..LANES).map(|i| {
+            let has_ray = !points.distance[i].is_nan();
+            if has_ray { (1.0 / weight[i].max(1e-6).sqrt()).min(UNSEEN) } else { 0.0 }
+        }));
+    }
+    costs
+}
+
+/// The colours that a source shows at the pixels of [`costs`]; `None` where it does not see them.
+pub fn glimpses(target: &Target, source: &Source) -> Vec<Option<[f32; 3]>> {
+    let mut glimpses = Vec::with_capacity(LOOK_ROWS * LANES);
+    for points in spread_points(target) {
+        let unhidden = unhidden(target.hull, &source.placement, &points);
+        let pixels = see(source.camera, &source.placement, &points);
+        let colors = pixels.map(|pixels| (pixels.seen, sample(source.picture, &pixels)));
+        glimpses.extend((0..LANES).map(|i| {
+            colors
+                .filter(|(seen, _)| seen[i] * unhidden[i] > 0.0)
+                .map(|(_, colors)| colors.map(|channel| channel[i]))
+        }));
+    }
+    glimpses
+}
+
+fn spread_points(target: &Target) -> impl Iterator<Item = HullPoints> {
+    (0..LOOK_ROWS).map(|row| {
+        let blocks = target.rays.row((2 * row + 1) * target.rays.height as usize / (2 * LOOK_ROWS));
+        hull_points(target.hull, &target.placement, &spread(blocks, target.rays.width as usize))
+    })
+}
+
+/// Sixteen rays spread over a row.
+fn spread(blocks: &[RayBlock], width: usize) -> RayBlock {
+    std::array::from_fn(|axis| {
+        std::array::from_fn(|lane| {
+            let pixel = (2 * lane + 1) * width / (2 * LANES);
+            blocks[pixel / LANES][axis][pixel % LANES]
+        })
+    })
+}

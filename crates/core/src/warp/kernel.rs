@@ -1,0 +1,203 @@
+//! The loops over pixels: a pixel's ray to the hull, from there into another picture, and the colour found there.
+//!
+//! Sixteen pixels at a time, in plain arrays that the compiler turns into vector instructions. The compute shader of the
+//! same name does the same, one pixel a thread.
+
+#![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
+
+use super::{Hull, Picture, Screen, rays::RayBlock};
+use crate::{
+    camera::{KernelCamera, LANES, Lanes, Pixels, project_lanes},
+    pose::CameraPose,
+};
+
+/// A pose in single precision: `camera = rows · (world − position)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placement {
+    /// The camera's right, down and forward in the world.
+    pub axes_in_world: [[f32; 3]; 3],
+    /// The projection centre, metres.
+    pub position_in_world: [f32; 3],
+}
+
+impl Placement {
+    /// The same pose in single precision.
+    pub fn new(pose: CameraPose) -> Self {
+        let rotation = pose.rotation_world_from_camera();
+        let axes = [rotation.x_axis, rotation.y_axis, rotation.z_axis];
+        Self {
+            axes_in_world: axes.map(|axis| axis.as_vec3().to_array()),
+            position_in_world: pose.position_in_world().as_vec3().to_array(),
+        }
+    }
+}
+
+/// The edges of a screen, metres.
+struct Edges {
+    half_width: f32,
+    top: f32,
+    opening_half_width: f32,
+    opening_top: f32,
+}
+
+impl Edges {
+    #[inline(always)]
+    fn new(screen: &Screen) -> Self {
+        Self {
+            half_width: screen.half_width_m as f32,
+            top: screen.height_m as f32,
+            opening_half_width: screen.opening_half_width_m as f32,
+            opening_top: screen.opening_height_m as f32,
+        }
+    }
+
+    /// The same screen, wider on all sides by this, metres.
+    #[inline(always)]
+    fn widened(mut self, by: f32) -> Self {
+        self.half_width += by;
+        self.top += by;
+        self.opening_half_width -= by;
+        self.opening_top -= by;
+        self
+    }
+
+    /// Whether a place in the screen's plane, above the ground, lies on it.
+    #[inline(always)]
+    fn hold(&self, across: f32, up: f32) -> bool {
+        let across = across.abs();
+        let is_opening = (across < self.opening_half_width) & (up < self.opening_top);
+        (across <= self.half_width) & (up <= self.top) & !is_opening
+    }
+}
+
+/// What sixteen pixels look at.
+#[derive(Clone, Copy)]
+pub(crate) struct HullPoints {
+    /// World axes, metres.
+    pub place: [Lanes; 3],
+    /// Unit directions from the camera, world axes.
+    pub direction: [Lanes; 3],
+    /// From the camera, metres.
+    pub distance: Lanes,
+    /// 1 on the ground, else 0.
+    pub on_ground: Lanes,
+}
+
+/// Follows rays from a camera inside the hull.
+#[inline(always)]
+pub(crate) fn hull_points(hull: &Hull, from: &Placement, rays: &RayBlock) -> HullPoints {
+    let axes = &from.axes_in_world;
+    let mut direction = [[0.0_f32; LANES]; 3];
+    let mut distance = [f32::INFINITY; LANES];
+    let mut on_ground = [0.0_f32; LANES];
+    for axis in 0..3 {
+        let low = hull.min_in_world[axis] as f32 - from.position_in_world[axis];
+        let high = hull.max_in_world[axis] as f32 - from.position_in_world[axis];
+        for i in 0..LANES {
+            let d = axes[0][axis] * rays[0][i] + axes[1][axis] * rays[1][i] + axes[2][axis] * rays[2][i];
+            direction[axis][i] = d;
+            let end = if d < 0.0 { low } else { high };
+            let to_wall = end / d;
+            let is_nearer = to_wall < distance[i];
+            distance[i] = if is_nearer { to_wall } else { distance[i] };
+            if axis == 2 {
+                on_ground[i] = if is_nearer & (d < 0.0) { 1.0 } else { 0.0 };
+            }
+        }
+    }
+    for screen in &hull.screens {
+        let x = screen.x_m as f32 - from.position_in_world[0];
+        let screen = Edges::new(screen);
+        for i in 0..LANES {
+            let to_screen = x / direction[0][i];
+            let y = from.position_in_world[1] + to_screen * direction[1][i];
+            let z = from.position_in_world[2] + to_screen * direction[2][i];
+            let is_hit = (to_screen > 0.0) & (to_screen < distance[i]) & (z >= 0.0) & screen.hold(y, z);
+            distance[i] = if is_hit { to_screen } else { distance[i] };
+            on_ground[i] = if is_hit { 0.0 } else { on_ground[i] };
+        }
+    }
+    let mut place = [[0.0_f32; LANES]; 3];
+    for axis in 0..3 {
+        for i in 0..LANES {
+            place[axis][i] = from.position_in_world[axis] + distance[i] * direction[axis][i];
+        }
+    }
+    HullPoints { place, direction, distance, on_ground }
+}
+
+/// Where another camera sees the points; `None` where it sees none of them.
+#[inline(always)]
+pub(crate) fn see(camera: &KernelCamera, placement: &Placement, points: &HullPoints) -> Option<Pixels> {
+    let mut in_camera = [[0.0_f32; LANES]; 3];
+    let [x, y, z] = placement.position_in_world;
+    for axis in 0..3 {
+        let [a, b, c] = placement.axes_in_world[axis];
+        for i in 0..LANES {
+            in_camera[axis][i] =
+                a * (points.place[0][i] - x) + b * (points.place[1][i] - y) + c * (points.place[2][i] - z);
+        }
+    }
+    project_lanes(camera, &in_camera)
+}
+
+/// 0 where a goal stands between a camera and the points, else 1.
+#[inline(always)]
+pub(crate) fn unhidden(hull: &Hull, from: &Placement, points: &HullPoints) -> Lanes {
+    /// A point on the screen itself is not hidden by it, as a share of the way to it.
+    const ON_SCREEN: f32 = 1.0 - 1e-3;
+    /// A round post hides more than the flat one that stands for it, seen from the side.
+    const POST_RADIUS_M: f32 = 0.05;
+    let [x, y, z] = from.position_in_world;
+    let mut unhidden = [1.0_f32; LANES];
+    for screen in &hull.screens {
+        let to_screen = screen.x_m as f32 - x;
+        let screen = Edges::new(screen).widened(POST_RADIUS_M);
+        for i in 0..LANES {
+            let share = to_screen / (points.place[0][i] - x);
+            let across = y + share * (points.place[1][i] - y);
+            let up = z + share * (points.place[2][i] - z);
+            let is_between = (share > 0.0) & (share < ON_SCREEN);
+            let is_hidden = is_between & screen.hold(across, up);
+            unhidden[i] = if is_hidden { 0.0 } else { unhidden[i] };
+        }
+    }
+    unhidden
+}
+
+/// Bilinear colours (0–255); without sense where a point is not seen.
+#[inline(always)]
+pub(crate) fn sample(picture: &Picture, pixels: &Pixels) -> [Lanes; 3] {
+    let mut index = [0usize; LANES];
+    let (mut fu, mut fv) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+    let (last_u, last_v) = ((picture.width.max(2) - 2) as f32, (picture.height.max(2) - 2) as f32);
+    for i in 0..LANES {
+        // `clamp` keeps NaN, `max` does not.
+        let (u, v) = (pixels.u[i].max(0.0).min(last_u + 1.0), pixels.v[i].max(0.0).min(last_v + 1.0));
+        let (column, row) = (u.min(last_u) as i32 as f32, v.min(last_v) as i32 as f32);
+        fu[i] = u - column;
+        fv[i] = v - row;
+        index[i] = (row as i32 * picture.width as i32 + column as i32) as usize;
+    }
+    let mut texels = [[0u32; LANES]; 4];
+    let width = picture.width as usize;
+    for i in 0..LANES {
+        // A picture of one column or row has no second one.
+        if let (Some([a, b, ..]), Some([c, d, ..])) =
+            (picture.pixels.get(index[i]..), picture.pixels.get(index[i] + width..))
+        {
+            (texels[0][i], texels[1][i], texels[2][i], texels[3][i]) = (*a, *b, *c, *d);
+        }
+    }
+    let mut colors = [[0.0_f32; LANES]; 3];
+    for channel in 0..3 {
+        let shift = 8 * channel as u32;
+        for i in 0..LANES {
+            let at = |tap: usize| (texels[tap][i] >> shift & 255) as f32;
+            let top = at(0) + fu[i] * (at(1) - at(0));
+            let bottom = at(2) + fu[i] * (at(3) - at(2));
+            colors[channel][i] = top + fv[i] * (bottom - top);
+        }
+    }
+    colors
+}

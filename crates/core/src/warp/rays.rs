@@ -1,0 +1,51 @@
+//! The directions in which a camera's pixels look, computed once.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::camera::{Camera, LANES, Lanes};
+
+/// Unit directions of sixteen neighbouring pixels of a row in the camera's axes; NaN where a pixel sees nothing.
+pub(crate) type RayBlock = [Lanes; 3];
+
+/// The directions of all pixels of a camera.
+#[derive(Debug, Clone)]
+pub struct RayTable {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    blocks_in_row: usize,
+    blocks: Vec<RayBlock>,
+}
+
+impl RayTable {
+    /// Follows every pixel's ray.
+    pub fn new(camera: &Camera) -> Self {
+        let blocks_in_row = (camera.width as usize).div_ceil(LANES);
+        let rows = (0..camera.height).into_par_iter();
+        let blocks =
+            rows.flat_map_iter(|row| (0..blocks_in_row).map(move |block| ray_block(camera, block, row)));
+        Self { width: camera.width, height: camera.height, blocks_in_row, blocks: blocks.collect() }
+    }
+
+    /// The directions of a row, sixteen pixels a block; the last block is filled up with NaN.
+    pub(crate) fn row(&self, row: usize) -> &[RayBlock] {
+        &self.blocks[row * self.blocks_in_row..(row + 1) * self.blocks_in_row]
+    }
+}
+
+fn ray_block(camera: &Camera, block: usize, row: u32) -> RayBlock {
+    let mut rays = [[f32::NAN; LANES]; 3];
+    for lane in 0..LANES {
+        let pixel = DVec2::new((block * LANES + lane) as f64, f64::from(row));
+        if camera.check_inside(pixel).is_ok()
+            && let Ok(ray) = camera.unproject(pixel)
+        {
+            for (axis, value) in ray.to_array().into_iter().enumerate() {
+                rays[axis][lane] = value as f32;
+            }
+        }
+    }
+    rays
+}
