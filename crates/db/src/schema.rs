@@ -1,0 +1,137 @@
+//! The tables, what marks a file as ours, and how a file of an older version becomes one of this.
+
+use std::{fs, path::Path};
+
+use rusqlite::{Connection, Transaction, TransactionBehavior};
+
+use crate::error::DbFault;
+
+/// In the file's header: "ReSi".
+const APPLICATION_ID: i64 = 0x5265_5369;
+
+/// The version of the tables that this program reads and writes.
+pub const SCHEMA_VERSION: i64 = STEPS.len() as i64;
+
+/// The statements at `STEPS[n]` make a database of version n + 1 of one of version n. A step that was released is never
+/// changed: another one is added.
+const STEPS: [&str; 1] = [VERSION_1];
+
+/// The bytes have a table of their own: reading all poses does not touch them.
+const VERSION_1: &str = "
+    CREATE TABLE sequences (
+        id INTEGER PRIMARY KEY,
+        name TEXT NOT NULL,
+        first_frame TEXT NOT NULL,
+        UNIQUE (name, first_frame)
+    ) STRICT;
+    CREATE TABLE cameras (id INTEGER PRIMARY KEY, toml TEXT NOT NULL UNIQUE) STRICT;
+    CREATE TABLE fields (id INTEGER PRIMARY KEY, toml TEXT NOT NULL UNIQUE) STRICT;
+    CREATE TABLE pose_sources (
+        id INTEGER PRIMARY KEY,
+        kind TEXT NOT NULL CHECK (kind IN ('groundtruth', 'filter', 'file')),
+        description TEXT NOT NULL,
+        UNIQUE (kind, description)
+    ) STRICT;
+    CREATE TABLE images (
+        id INTEGER PRIMARY KEY,
+        sequence_id INTEGER NOT NULL REFERENCES sequences,
+        frame_index INTEGER NOT NULL,
+        camera_id INTEGER NOT NULL REFERENCES cameras,
+        field_id INTEGER NOT NULL REFERENCES fields,
+        pose_source_id INTEGER NOT NULL REFERENCES pose_sources,
+        timestamp_s REAL NOT NULL,
+        file_name TEXT NOT NULL,
+        byte_length INTEGER NOT NULL,
+        x_m REAL NOT NULL,
+        y_m REAL NOT NULL,
+        yaw_rad REAL NOT NULL,
+        height_m REAL NOT NULL,
+        pitch_rad REAL NOT NULL,
+        roll_rad REAL NOT NULL,
+        covariance BLOB,
+        UNIQUE (sequence_id, frame_index)
+    ) STRICT;
+    CREATE TABLE image_bytes (
+        image_id INTEGER PRIMARY KEY REFERENCES images,
+        bytes BLOB NOT NULL
+    ) STRICT;
+";
+
+/// Refuses a file that is not a whole database of this version. Changes nothing.
+pub(crate) fn check(connection: &Connection, path: &Path) -> Result<(), DbFault> {
+    let transaction = connection.unchecked_transaction()?;
+    if application_id(&transaction)? != APPLICATION_ID {
+        return Err(DbFault::NotADatabase);
+    }
+    check_length(&transaction, path)?;
+    let found = version(&transaction)?;
+    if found < SCHEMA_VERSION {
+        return Err(DbFault::Older { found, known: SCHEMA_VERSION });
+    }
+    check_known(found, SCHEMA_VERSION)
+}
+
+/// Makes an empty file a database, and one of an older version one of this.
+pub(crate) fn prepare(connection: &mut Connection, path: &Path) -> Result<(), DbFault> {
+    migrate(connection, path, &STEPS)
+}
+
+/// Runs the steps that a database has not seen, all or none of them.
+fn migrate(connection: &mut Connection, path: &Path, steps: &[&str]) -> Result<(), DbFault> {
+    let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+    if is_empty(&transaction)? {
+        transaction.pragma_update(None, "application_id", APPLICATION_ID)?;
+    } else if application_id(&transaction)? != APPLICATION_ID {
+        return Err(DbFault::NotADatabase);
+    } else {
+        check_length(&transaction, path)?;
+    }
+    let (found, known) = (version(&transaction)?, steps.len() as i64);
+    check_known(found, known)?;
+    let done = usize::try_from(found).unwrap_or_default();
+    for step in &steps[done..] {
+        transaction.execute_batch(step)?;
+    }
+    if found < known {
+        transaction.pragma_update(None, "user_version", known)?;
+    }
+    Ok(transaction.commit()?)
+}
+
+fn check_known(found: i64, known: i64) -> Result<(), DbFault> {
+    match found {
+        ..0 => Err(DbFault::NotADatabase),
+        found if found > known => Err(DbFault::Newer { found, known }),
+        _ => Ok(()),
+    }
+}
+
+/// Whether nothing was ever stored: a file without bytes, or one whose writer was killed before the first commit.
+fn is_empty(transaction: &Transaction<'_>) -> rusqlite::Result<bool> {
+    let tables: i64 = transaction.query_row("SELECT count(*) FROM sqlite_schema", [], |row| row.get(0))?;
+    Ok(tables == 0 && application_id(transaction)? == 0 && version(transaction)? == 0)
+}
+
+/// SQLite finds a cut-off file by itself only when it needs what is missing. In a transaction nobody else changes the
+/// length.
+fn check_length(transaction: &Transaction<'_>, path: &Path) -> Result<(), DbFault> {
+    let pages = u64::from(pragma::<u32>(transaction, "page_count")?);
+    let page_bytes = u64::from(pragma::<u32>(transaction, "page_size")?);
+    let (found_bytes, expected_bytes) = (fs::metadata(path)?.len(), pages * page_bytes);
+    if found_bytes < expected_bytes {
+        return Err(DbFault::Truncated { found_bytes, expected_bytes });
+    }
+    Ok(())
+}
+
+fn application_id(transaction: &Transaction<'_>) -> rusqlite::Result<i64> {
+    pragma(transaction, "application_id")
+}
+
+fn version(transaction: &Transaction<'_>) -> rusqlite::Result<i64> {
+    pragma(transaction, "user_version")
+}
+
+fn pragma<T: rusqlite::types::FromSql>(transaction: &Transaction<'_>, name: &str) -> rusqlite::Result<T> {
+    transaction.pragma_query_value(None, name, |row| row.get(0))
+}
