@@ -17,3 +17,6 @@ pub use self::{
     record::{ImageRecord, PoseEstimate, PoseSource},
     schema::SCHEMA_VERSION,
 };
+
+#[cfg(test)]
+mod tests;

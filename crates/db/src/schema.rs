@@ -135,3 +135,69 @@ fn version(transaction: &Transaction<'_>) -> rusqlite::Result<i64> {
 fn pragma<T: rusqlite::types::FromSql>(transaction: &Transaction<'_>, name: &str) -> rusqlite::Result<T> {
     transaction.pragma_query_value(None, name, |row| row.get(0))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+
+    /// Three versions of a database that is not ours.
+    const FIRST: &str =
+        "CREATE TABLE things (id INTEGER PRIMARY KEY, name TEXT); INSERT INTO things (name) VALUES ('a')";
+    const SECOND: &str = "ALTER TABLE things ADD COLUMN length_m REAL NOT NULL DEFAULT 2.5";
+    const THIRD: &str = "CREATE INDEX by_name ON things (name); UPDATE things SET name = name || name";
+
+    fn database() -> (tempfile::TempDir, PathBuf, Connection) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.db");
+        let connection = Connection::open(&path).unwrap();
+        (folder, path, connection)
+    }
+
+    fn found(connection: &Connection) -> i64 {
+        connection.pragma_query_value(None, "user_version", |row| row.get(0)).unwrap()
+    }
+
+    #[test]
+    fn every_older_version_becomes_the_newest_and_keeps_its_rows() {
+        let steps = [FIRST, SECOND, THIRD];
+        for start in 0..=steps.len() {
+            let (_folder, path, mut connection) = database();
+            migrate(&mut connection, &path, &steps[..start]).unwrap();
+            assert_eq!(found(&connection), start as i64);
+            migrate(&mut connection, &path, &steps).unwrap();
+            migrate(&mut connection, &path, &steps).unwrap();
+            assert_eq!(found(&connection), 3);
+            let row = connection.query_row("SELECT name, length_m FROM things", [], |row| {
+                Ok((row.get::<_, String>(0)?, row.get::<_, f64>(1)?))
+            });
+            assert_eq!(row.unwrap(), ("aa".to_owned(), 2.5), "from version {start}");
+        }
+    }
+
+    #[test]
+    fn a_step_that_fails_leaves_the_old_version() {
+        let (_folder, path, mut connection) = database();
+        migrate(&mut connection, &path, &[FIRST]).unwrap();
+        let fault = migrate(&mut connection, &path, &[FIRST, SECOND, "DROP TABLE nothing"]).unwrap_err();
+        assert!(matches!(fault, DbFault::Damaged { .. }), "{fault}");
+        assert_eq!(found(&connection), 1);
+        assert!(connection.query_row("SELECT length_m FROM things", [], |_| Ok(())).is_err());
+    }
+
+    #[test]
+    fn fewer_steps_than_the_version_is_a_newer_database() {
+        let (_folder, path, mut connection) = database();
+        migrate(&mut connection, &path, &[FIRST, SECOND]).unwrap();
+        let fault = migrate(&mut connection, &path, &[FIRST]).unwrap_err();
+        assert!(matches!(fault, DbFault::Newer { found: 2, known: 1 }), "{fault}");
+    }
+
+    #[test]
+    fn a_reader_says_that_an_older_version_has_to_be_opened_for_writing() {
+        let (_folder, path, mut connection) = database();
+        migrate(&mut connection, &path, &[]).unwrap();
+        assert!(matches!(check(&connection, &path), Err(DbFault::Older { found: 0, known: SCHEMA_VERSION })));
+    }
+}
