@@ -94,8 +94,8 @@ pub enum DbFault {
         /// What is wrong with it.
         problem: &'static str,
     },
-    /// Another program or thread writes, and goes on doing so.
-    #[error("another program is writing to it: wait until that is done, then try again")]
+    /// Another program or thread holds a lock, and goes on doing so.
+    #[error("is locked by another program that writes or reads it: wait until that is done, then try again")]
     Locked,
     /// Neither the file nor its folder can be changed.
     #[error("cannot be written: check the permissions of the file and of its folder")]

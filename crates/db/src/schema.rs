@@ -65,10 +65,11 @@ pub(crate) fn check(connection: &Connection, path: &Path) -> Result<(), DbFault>
     }
     check_length(&transaction, path)?;
     let found = version(&transaction)?;
+    check_known(found, SCHEMA_VERSION)?;
     if found < SCHEMA_VERSION {
         return Err(DbFault::Older { found, known: SCHEMA_VERSION });
     }
-    check_known(found, SCHEMA_VERSION)
+    Ok(())
 }
 
 /// Makes an empty file a database, and one of an older version one of this.

@@ -2,6 +2,9 @@
 
 use std::{thread, time::Duration};
 
+use image::{Rgb, RgbImage};
+use reality_sim_core::sequence::save_image;
+
 use super::*;
 
 #[test]
@@ -139,6 +142,29 @@ fn a_broken_picture_is_named_and_what_was_committed_stays() {
 }
 
 #[test]
+fn large_pictures_are_committed_before_they_fill_the_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut state = 1_u32;
+    // Noise, which no encoder makes smaller.
+    let noise = RgbImage::from_fn(2000, 2000, |_, _| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        Rgb([(state >> 8) as u8, (state >> 16) as u8, (state >> 24) as u8])
+    });
+    save_image(&folder.path().join("noise.png"), &noise).unwrap();
+    let mut sequence = short_walk(5);
+    (sequence.setup.camera.width, sequence.setup.camera.height) = noise.dimensions();
+    sequence.folder = folder.path().to_path_buf();
+    sequence.frames.iter_mut().for_each(|frame| frame.image = "noise.png".into());
+    let mut database = Database::create_or_open(&folder.path().join("a.db")).unwrap();
+    let mut seen = Vec::new();
+    database
+        .ingest(&sequence, &estimates(&sequence), &PoseSource::GroundTruth, |done| seen.push(done))
+        .unwrap();
+    assert_eq!(seen, [2, 4, 5]);
+    assert_eq!(database.picture(5).unwrap(), noise);
+}
+
+#[test]
 fn a_picture_of_another_size_is_refused() {
     let mut sequence = short_walk(2);
     sequence.setup.camera.width += 1;
@@ -208,7 +234,7 @@ fn a_second_writer_gets_a_clear_error_when_the_first_does_not_finish() {
     second.connection.lock().unwrap().busy_timeout(Duration::from_millis(10)).unwrap();
     let connection = first.connection.lock().unwrap();
     connection.execute_batch("BEGIN IMMEDIATE").unwrap();
-    assert_message(&add(&mut second, &walk()).unwrap_err(), &path, &["another program is writing"]);
+    assert_message(&add(&mut second, &walk()).unwrap_err(), &path, &["is locked by another program"]);
     connection.execute_batch("ROLLBACK").unwrap();
     assert_eq!(add(&mut second, &walk()).unwrap().added, 58);
 }

@@ -104,7 +104,10 @@ fn nonsense_in_a_row_is_an_error_that_names_the_row() {
         assert_message(&error, &fresh, &["is damaged", part, "build it again"]);
     }
     fs::copy(&path, &fresh).unwrap();
-    tamper(&fresh, "UPDATE images SET covariance = zeroblob(280) || x'000000000000f07f' WHERE id = 2");
+    tamper(
+        &fresh,
+        "UPDATE images SET covariance = CAST(zeroblob(280) || x'000000000000f07f' AS BLOB) WHERE id = 2",
+    );
     assert_message(&Database::open(&fresh).unwrap().images().unwrap_err(), &fresh, &["image 2: its pose"]);
 }
 

@@ -50,6 +50,21 @@ fn jpeg_and_png_are_told_apart_by_their_content() {
 }
 
 #[test]
+fn the_bytes_of_a_picture_are_those_of_its_file_and_checked() {
+    for format in [ImageFormat::Png, ImageFormat::Jpeg] {
+        let bytes = encode(&sample(16, 12).into(), format);
+        let (_folder, sequence) = with_picture(&bytes);
+        assert_eq!(sequence.image_bytes(0).unwrap(), bytes);
+    }
+    let bytes = encode(&sample(12, 16).into(), ImageFormat::Png);
+    let (folder, sequence) = with_picture(&bytes);
+    let path = folder.path().join("images/0.png");
+    assert_message(&sequence.image_bytes(0).unwrap_err(), &path, &["12 x 16 pixels and the camera 16 x 12"]);
+    fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
+    assert_message(&sequence.image_bytes(0).unwrap_err(), &path, &["cut off"]);
+}
+
+#[test]
 fn grey_and_transparent_pictures_become_rgb() {
     let grey = GrayImage::from_pixel(16, 12, Luma([77]));
     for format in [ImageFormat::Png, ImageFormat::Jpeg] {
