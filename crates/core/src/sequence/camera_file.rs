@@ -86,49 +86,52 @@ struct CircleTable {
 
 /// Reads and validates a camera file.
 pub fn read_camera(path: &Path) -> Result<CameraSetup, SequenceError> {
-    read_and_parse(path, parse_camera)
+    read_and_parse(path, CameraSetup::from_toml)
 }
 
-/// A camera from the text of its file.
-pub(super) fn parse_camera(path: &Path, text: &str) -> Result<CameraSetup, SequenceError> {
-    let table: CameraTable = parse(path, text)?;
-    let camera = build_camera(path, text, &table)?;
-    let image_circle = table.image_circle.map(|circle| checked_circle(path, text, &circle)).transpose()?;
-    let mount = NumberCheck { path, text, table: "mount" };
-    let in_range = |height_m| height_m > 0.0 && height_m <= MAX_HEIGHT_M;
-    mount.check("height_m", table.mount.height_m, in_range, "above 0 and at most 100 metres")?;
-    if let Some(photometry) = &table.photometry {
-        check_photometry(path, text, photometry)?;
+impl CameraSetup {
+    /// A camera from the text of a `camera.toml`. Errors name `origin`: the file, or what else the text comes from.
+    pub fn from_toml(origin: &Path, text: &str) -> Result<Self, SequenceError> {
+        let table: CameraTable = parse(origin, text)?;
+        let camera = build_camera(origin, text, &table)?;
+        let image_circle =
+            table.image_circle.map(|circle| checked_circle(origin, text, &circle)).transpose()?;
+        let mount = NumberCheck { path: origin, text, table: "mount" };
+        let in_range = |height_m| height_m > 0.0 && height_m <= MAX_HEIGHT_M;
+        mount.check("height_m", table.mount.height_m, in_range, "above 0 and at most 100 metres")?;
+        if let Some(photometry) = &table.photometry {
+            check_photometry(origin, text, photometry)?;
+        }
+        Ok(Self {
+            camera: camera.with_image_circle(image_circle),
+            mount_height_m: table.mount.height_m,
+            photometry: table.photometry,
+        })
     }
-    Ok(CameraSetup {
-        camera: camera.with_image_circle(image_circle),
-        mount_height_m: table.mount.height_m,
-        photometry: table.photometry,
-    })
-}
 
-/// The text of a camera's file.
-pub(super) fn print_camera(path: &Path, setup: &CameraSetup) -> Result<String, SequenceError> {
-    let camera = &setup.camera;
-    let table = CameraTable {
-        model: camera.distortion.colmap_name().to_owned(),
-        width: camera.width,
-        height: camera.height,
-        fx: camera.fx,
-        fy: camera.fy,
-        cx: camera.cx,
-        cy: camera.cy,
-        distortion: camera.distortion.parameters(),
-        max_angle_rad: limited_angle_rad(camera),
-        mount: MountTable { height_m: setup.mount_height_m },
-        image_circle: camera.image_circle.map(|circle| CircleTable {
-            cx: circle.cx,
-            cy: circle.cy,
-            radius: circle.radius,
-        }),
-        photometry: setup.photometry,
-    };
-    print(path, &table)
+    /// The text of a `camera.toml` with this camera. Errors name `origin`: the file, or what else the text is for.
+    pub fn to_toml(&self, origin: &Path) -> Result<String, SequenceError> {
+        let camera = &self.camera;
+        let table = CameraTable {
+            model: camera.distortion.colmap_name().to_owned(),
+            width: camera.width,
+            height: camera.height,
+            fx: camera.fx,
+            fy: camera.fy,
+            cx: camera.cx,
+            cy: camera.cy,
+            distortion: camera.distortion.parameters(),
+            max_angle_rad: limited_angle_rad(camera),
+            mount: MountTable { height_m: self.mount_height_m },
+            image_circle: camera.image_circle.map(|circle| CircleTable {
+                cx: circle.cx,
+                cy: circle.cy,
+                radius: circle.radius,
+            }),
+            photometry: self.photometry,
+        };
+        print(origin, &table)
+    }
 }
 
 /// The largest angle, where it is not the one that follows from the distortion.

@@ -255,8 +255,8 @@ fn is_unprintable(letter: char) -> bool {
     letter.is_control() || matches!(letter, '\u{2028}' | '\u{2029}')
 }
 
-/// A path without line breaks.
-struct Printable<'a>(&'a Path);
+/// A path for a message: without line breaks.
+pub struct Printable<'a>(pub &'a Path);
 
 impl fmt::Display for Printable<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -26,16 +26,16 @@ use image::RgbImage;
 pub use self::{
     atomic::write_atomically,
     camera_file::{CameraSetup, Photometry, read_camera},
-    error::{Fault, SequenceError},
+    error::{Fault, Printable, SequenceError},
     field_file::read_field,
     frames::FrameRecord,
-    picture::save_image,
+    picture::{decode_image, save_image},
     tum::{StampedPose, read_tum, write_tum},
 };
 use self::{
     frames::parse_frames,
     groundtruth::match_poses,
-    picture::{copy_picture, load_picture},
+    picture::{copy_picture, load_picture, read_picture},
     sequence_file::{SEQUENCE_FILE, parse_sequence},
     text::read_and_parse,
 };
@@ -100,6 +100,13 @@ impl Sequence {
     pub fn load_image(&self, index: usize) -> Result<RgbImage, SequenceError> {
         let camera = &self.setup.camera;
         load_picture(&self.image_path(index)?, [camera.width, camera.height])
+    }
+
+    /// The bytes of a frame's picture file (frames count from 0) as they are: a whole JPEG or PNG in the camera's size, by
+    /// its header and its end. The pixels are not decoded.
+    pub fn image_bytes(&self, index: usize) -> Result<Vec<u8>, SequenceError> {
+        let camera = &self.setup.camera;
+        read_picture(&self.image_path(index)?, [camera.width, camera.height])
     }
 
     /// Copies the picture of a frame (from 0) as it is into another sequence's folder, under the same name.

@@ -21,8 +21,14 @@ const JPEG_QUALITY: u8 = 95;
 
 /// Reads a JPEG or PNG picture of this size, pixels; grey pictures become RGB, transparency is left out.
 pub(super) fn load_picture(path: &Path, size: [u32; 2]) -> Result<RgbImage, SequenceError> {
+    decode_image(path, &read_bytes(path, MAX_PICTURE_BYTES)?, size)
+}
+
+/// The bytes of a picture's file, once they are known to be a whole picture of this size, pixels.
+pub(super) fn read_picture(path: &Path, size: [u32; 2]) -> Result<Vec<u8>, SequenceError> {
     let bytes = read_bytes(path, MAX_PICTURE_BYTES)?;
-    decode_picture(&bytes, size).map_err(|fault| SequenceError::of_file(path, fault))
+    check_picture(&bytes, size).map_err(|fault| SequenceError::of_file(path, fault))?;
+    Ok(bytes)
 }
 
 /// Writes a picture as PNG or JPEG, by the ending of the file's name, and creates its folder. The file has its name
@@ -62,14 +68,32 @@ fn create_parent(path: &Path) -> Result<(), SequenceError> {
     })
 }
 
+/// The picture of this size, pixels, in the bytes of a JPEG or PNG file; grey pictures become RGB, transparency is left
+/// out. Errors name `origin`: the file, or what else the bytes come from.
+pub fn decode_image(origin: &Path, bytes: &[u8], size: [u32; 2]) -> Result<RgbImage, SequenceError> {
+    decode_picture(bytes, size).map_err(|fault| SequenceError::of_file(origin, fault))
+}
+
+pub(super) fn decode_picture(bytes: &[u8], size: [u32; 2]) -> Result<RgbImage, Fault> {
+    let decoder = checked_decoder(bytes, size)?;
+    DynamicImage::from_decoder(decoder).map(DynamicImage::into_rgb8).map_err(|error| decode_fault(&error))
+}
+
+/// Whether the bytes are a whole picture of this size, by all but its pixels.
+pub(super) fn check_picture(bytes: &[u8], size: [u32; 2]) -> Result<(), Fault> {
+    checked_decoder(bytes, size).map(drop)
+}
+
 /// The size is compared before anything as large as the header claims is allocated.
-pub(super) fn decode_picture(bytes: &[u8], [width, height]: [u32; 2]) -> Result<RgbImage, Fault> {
+fn checked_decoder(bytes: &[u8], [width, height]: [u32; 2]) -> Result<impl ImageDecoder + '_, Fault> {
     let format = image::guess_format(bytes).map_err(|_| Fault::ImageFormat)?;
-    match format {
-        ImageFormat::Png => {}
-        ImageFormat::Jpeg if is_whole_jpeg(bytes) => {}
-        ImageFormat::Jpeg => return Err(Fault::ImageTruncated),
+    let is_whole = match format {
+        ImageFormat::Png => is_whole_png(bytes),
+        ImageFormat::Jpeg => is_whole_jpeg(bytes),
         _ => return Err(Fault::ImageFormat),
+    };
+    if !is_whole {
+        return Err(Fault::ImageTruncated);
     }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::default();
@@ -83,7 +107,7 @@ pub(super) fn decode_picture(bytes: &[u8], [width, height]: [u32; 2]) -> Result<
     if decoder.total_bytes() > MAX_PICTURE_BYTES {
         return Err(Fault::ImageTooLarge { limit_bytes: MAX_PICTURE_BYTES });
     }
-    DynamicImage::from_decoder(decoder).map(DynamicImage::into_rgb8).map_err(|error| decode_fault(&error))
+    Ok(decoder)
 }
 
 fn decode_fault(error: &ImageError) -> Fault {
@@ -96,6 +120,21 @@ fn decode_fault(error: &ImageError) -> Fault {
             Fault::ImageFormat
         }
         error => Fault::ImageDamaged { message: one_line(&error.to_string()) },
+    }
+}
+
+/// Whether a PNG's chunks reach up to its last, which is empty.
+fn is_whole_png(bytes: &[u8]) -> bool {
+    let mut rest = bytes.get(8..).unwrap_or_default();
+    loop {
+        let [a, b, c, d, kind @ ..] = rest else { return false };
+        let length = u32::from_be_bytes([*a, *b, *c, *d]) as usize;
+        // Length, kind and checksum take four bytes each.
+        let Some(next) = rest.get(length.saturating_add(12)..) else { return false };
+        if kind.starts_with(b"IEND") {
+            return true;
+        }
+        rest = next;
     }
 }
 

@@ -3,16 +3,15 @@
 use std::{fs, path::Path};
 
 use super::{
-    Sequence,
+    CameraSetup, Sequence,
     atomic::write_atomically,
-    camera_file::{parse_camera, print_camera},
     error::{Fault, SequenceError},
-    field_file::parse_field,
     frames::{parse_frames, print_frames},
     sequence_file::{SEQUENCE_FILE, SequenceTable, StartTable, parse_sequence},
     toml_text::print,
     tum::{StampedPose, parse_tum, print_tum},
 };
+use crate::field::FieldDimensions;
 
 const CAMERA_FILE: &str = "camera.toml";
 const FIELD_FILE: &str = "field.toml";
@@ -33,11 +32,11 @@ impl Sequence {
     /// Names and texts of the files, in the order in which they are written.
     fn texts(&self, folder: &Path) -> Result<Vec<(&'static str, String)>, SequenceError> {
         let path = folder.join(CAMERA_FILE);
-        let camera = print_camera(&path, &self.setup)?;
-        parse_camera(&path, &camera)?;
+        let camera = self.setup.to_toml(&path)?;
+        CameraSetup::from_toml(&path, &camera)?;
         let path = folder.join(FIELD_FILE);
-        let field = print(&path, &self.field)?;
-        parse_field(&path, &field)?;
+        let field = self.field.to_toml(&path)?;
+        FieldDimensions::from_toml(&path, &field)?;
         let path = folder.join(FRAMES_FILE);
         let frames = print_frames(&path, &self.frames)?;
         if parse_frames(&path, &frames)? != self.frames {

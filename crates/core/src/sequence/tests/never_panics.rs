@@ -96,13 +96,13 @@ fn read_all(bytes: &[u8]) {
         let text = toml_text::print(path, &table).unwrap();
         assert_eq!(parse_sequence(path, &text).unwrap(), table);
     }
-    if let Some(setup) = parse(bytes, camera_file::parse_camera) {
-        let text = camera_file::print_camera(path, &setup).unwrap();
-        assert_eq!(camera_file::parse_camera(path, &text).unwrap(), setup);
+    if let Some(setup) = parse(bytes, CameraSetup::from_toml) {
+        let text = setup.to_toml(path).unwrap();
+        assert_eq!(CameraSetup::from_toml(path, &text).unwrap(), setup);
     }
-    if let Some(field) = parse(bytes, field_file::parse_field) {
+    if let Some(field) = parse(bytes, FieldDimensions::from_toml) {
         let text = toml_text::print(path, &field).unwrap();
-        assert_eq!(field_file::parse_field(path, &text).unwrap(), field);
+        assert_eq!(FieldDimensions::from_toml(path, &text).unwrap(), field);
     }
     let frames = parse(bytes, parse_frames);
     if let Some(frames) = &frames {

@@ -50,6 +50,21 @@ fn jpeg_and_png_are_told_apart_by_their_content() {
 }
 
 #[test]
+fn the_bytes_of_a_picture_are_those_of_its_file_and_checked() {
+    for format in [ImageFormat::Png, ImageFormat::Jpeg] {
+        let bytes = encode(&sample(16, 12).into(), format);
+        let (_folder, sequence) = with_picture(&bytes);
+        assert_eq!(sequence.image_bytes(0).unwrap(), bytes);
+    }
+    let bytes = encode(&sample(12, 16).into(), ImageFormat::Png);
+    let (folder, sequence) = with_picture(&bytes);
+    let path = folder.path().join("images/0.png");
+    assert_message(&sequence.image_bytes(0).unwrap_err(), &path, &["12 x 16 pixels and the camera 16 x 12"]);
+    fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
+    assert_message(&sequence.image_bytes(0).unwrap_err(), &path, &["cut off"]);
+}
+
+#[test]
 fn grey_and_transparent_pictures_become_rgb() {
     let grey = GrayImage::from_pixel(16, 12, Luma([77]));
     for format in [ImageFormat::Png, ImageFormat::Jpeg] {
@@ -85,11 +100,13 @@ fn unknown_format() {
 
 #[test]
 fn every_truncation_is_noticed() {
-    for (format, tail) in [(ImageFormat::Png, 12), (ImageFormat::Jpeg, 0)] {
+    for format in [ImageFormat::Png, ImageFormat::Jpeg] {
         let bytes = encode(&sample(16, 12).into(), format);
-        for length in 0..bytes.len() - tail {
+        for length in 0..bytes.len() {
             let decoded = picture::decode_picture(&bytes[..length], [16, 12]);
             assert!(decoded.is_err(), "{format:?}: {length} of {} bytes were accepted", bytes.len());
+            let checked = picture::check_picture(&bytes[..length], [16, 12]);
+            assert!(checked.is_err(), "{format:?}: {length} of {} bytes passed the check", bytes.len());
         }
     }
     let jpeg = encode(&sample(16, 12).into(), ImageFormat::Jpeg);

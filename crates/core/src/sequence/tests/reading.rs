@@ -4,7 +4,7 @@ use super::*;
 use crate::camera::{Distortion, Opencv};
 
 fn camera(text: &str) -> CameraSetup {
-    camera_file::parse_camera(Path::new("camera.toml"), text).unwrap()
+    CameraSetup::from_toml(Path::new("camera.toml"), text).unwrap()
 }
 
 #[test]

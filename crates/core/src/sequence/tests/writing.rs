@@ -43,7 +43,7 @@ fn round_trip_without_anything_optional() {
         frame.odometry = None;
     }
     let text = "model = \"PINHOLE\"\nwidth = 4\nheight = 3\nfx = 2\nfy = 2\ncx = 1.5\ncy = 1\n[mount]\nheight_m = 1\n";
-    sequence.setup = camera_file::parse_camera(Path::new("camera.toml"), text).unwrap();
+    sequence.setup = CameraSetup::from_toml(Path::new("camera.toml"), text).unwrap();
     assert_round_trip(&sequence);
 }
 

@@ -1,0 +1,225 @@
+//! Opening and reading.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{self, Path, PathBuf},
+    sync::{Mutex, PoisonError},
+    time::Duration,
+};
+
+use image::RgbImage;
+use reality_sim_core::{
+    field::FieldDimensions,
+    sequence::{CameraSetup, decode_image},
+};
+use rusqlite::{Connection, OpenFlags, OptionalExtension, Row, Transaction};
+
+use crate::{
+    error::{DbError, DbFault},
+    record::{IMAGE_COLUMNS, ImageRecord, PoseSource},
+    schema,
+};
+
+/// How long to wait for another program to finish its transaction.
+const BUSY_TIMEOUT: Duration = Duration::from_secs(10);
+
+/// A writer's changed pages up to this size stay in memory until they are committed, KiB: readers need not wait.
+const WRITER_CACHE_KIB: i64 = 32 << 10;
+
+/// A pose-indexed image database.
+///
+/// Threads share one through an `Arc`, and then read one after the other, decoding at once; a thread that needs a
+/// connection of its own takes [`Database::reopen`]. Any number of programs may read while one writes. Every method
+/// sees whole transactions only. While nobody writes the database is one file, which can be read wherever it lies.
+#[derive(Debug)]
+pub struct Database {
+    path: PathBuf,
+    pub(crate) connection: Mutex<Connection>,
+    pub(crate) is_writer: bool,
+}
+
+impl Database {
+    /// Opens a database for reading. Fails where there is no file, or one that is not a whole image database.
+    pub fn open(path: &Path) -> Result<Self, DbError> {
+        Self::try_open(path).map_err(|fault| DbError::new(path, fault))
+    }
+
+    /// Opens a database for writing, creates it where there is none, and brings one of an older version to this one's.
+    pub fn create_or_open(path: &Path) -> Result<Self, DbError> {
+        Self::try_create_or_open(path).map_err(|fault| DbError::new(path, fault))
+    }
+
+    /// Another reader of the same file, with a connection of its own.
+    pub fn reopen(&self) -> Result<Self, DbError> {
+        Self::open(&self.path)
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What is known of the images, in the order of their ids.
+    pub fn images(&self) -> Result<Vec<ImageRecord>, DbError> {
+        self.read(|transaction| {
+            let query = format!("SELECT {IMAGE_COLUMNS} FROM images ORDER BY id");
+            let images: Vec<ImageRecord> = all(transaction, &query, ImageRecord::from_row)?;
+            for image in &images {
+                if let Some(problem) = image.problem() {
+                    return Err(DbFault::BadRow { table: "image", id: image.id, problem });
+                }
+            }
+            check_references(transaction)?;
+            Ok(images)
+        })
+    }
+
+    /// The names of the sequences by their ids. Two recordings may have one name.
+    pub fn sequences(&self) -> Result<BTreeMap<i64, String>, DbError> {
+        self.read(|transaction| texts(transaction, "SELECT id, name FROM sequences"))
+    }
+
+    /// The cameras by their ids.
+    pub fn cameras(&self) -> Result<BTreeMap<i64, CameraSetup>, DbError> {
+        let texts = self.read(|transaction| texts(transaction, "SELECT id, toml FROM cameras"))?;
+        let setup =
+            |(id, text): (i64, String)| Ok((id, CameraSetup::from_toml(&self.origin("camera", id), &text)?));
+        texts.into_iter().map(setup).collect()
+    }
+
+    /// The fields by their ids.
+    pub fn fields(&self) -> Result<BTreeMap<i64, FieldDimensions>, DbError> {
+        let texts = self.read(|transaction| texts(transaction, "SELECT id, toml FROM fields"))?;
+        let field = |(id, text): (i64, String)| {
+            Ok((id, FieldDimensions::from_toml(&self.origin("field", id), &text)?))
+        };
+        texts.into_iter().map(field).collect()
+    }
+
+    /// Where poses come from, by the ids of the sources.
+    pub fn pose_sources(&self) -> Result<BTreeMap<i64, PoseSource>, DbError> {
+        self.read(|transaction| {
+            let query = "SELECT id, kind, description FROM pose_sources";
+            let rows: Vec<(i64, String, String)> =
+                all(transaction, query, |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?)))?;
+            let source = |(id, kind, description): (i64, String, String)| {
+                let unknown = DbFault::BadRow { table: "pose source", id, problem: "its kind is not known" };
+                Ok((id, PoseSource::from_columns(&kind, description).ok_or(unknown)?))
+            };
+            rows.into_iter().map(source).collect()
+        })
+    }
+
+    /// The JPEG or PNG file of an image, as it was recorded.
+    pub fn image_bytes(&self, id: i64) -> Result<Vec<u8>, DbError> {
+        Ok(self.stored_image(id)?.bytes)
+    }
+
+    /// The picture of an image, in its camera's size.
+    pub fn picture(&self, id: i64) -> Result<RgbImage, DbError> {
+        let stored = self.stored_image(id)?;
+        let camera = CameraSetup::from_toml(&self.origin("camera", stored.camera_id), &stored.camera)?.camera;
+        Ok(decode_image(&self.origin("image", id), &stored.bytes, [camera.width, camera.height])?)
+    }
+
+    fn stored_image(&self, id: i64) -> Result<StoredImage, DbError> {
+        self.read(|transaction| {
+            let query = "SELECT bytes, camera_id, toml FROM images \
+                 LEFT JOIN image_bytes ON image_bytes.image_id = images.id \
+                 LEFT JOIN cameras ON cameras.id = images.camera_id WHERE images.id = ?1";
+            let row = |row: &Row<'_>| Ok((row.get(0)?, row.get(1)?, row.get(2)?));
+            let (bytes, camera_id, camera): (Option<_>, i64, Option<_>) =
+                transaction.query_row(query, [id], row).optional()?.ok_or(DbFault::NoSuchImage { id })?;
+            let bad = |problem| DbFault::BadRow { table: "image", id, problem };
+            Ok(StoredImage {
+                bytes: bytes.ok_or(bad("its bytes are missing"))?,
+                camera_id,
+                camera: camera.ok_or(bad("its camera is missing"))?,
+            })
+        })
+    }
+
+    /// Runs queries that see one state of the database.
+    fn read<T>(&self, work: impl FnOnce(&Transaction<'_>) -> Result<T, DbFault>) -> Result<T, DbError> {
+        let connection = self.connection.lock().unwrap_or_else(PoisonError::into_inner);
+        let transaction =
+            connection.unchecked_transaction().map_err(|error| DbError::new(&self.path, error))?;
+        work(&transaction).map_err(|fault| DbError::new(&self.path, fault))
+    }
+
+    /// How errors call a part of the database.
+    fn origin(&self, what: &str, id: i64) -> PathBuf {
+        let mut origin = self.path.clone().into_os_string();
+        origin.push(format!(", {what} {id}"));
+        origin.into()
+    }
+
+    fn try_open(path: &Path) -> Result<Self, DbFault> {
+        if !fs::metadata(path)?.is_file() {
+            return Err(DbFault::NotAFile);
+        }
+        // A reader may write, where it can, to undo what a killed writer left; where it cannot, SQLite falls back.
+        let connection = connect(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
+        connection.pragma_update(None, "query_only", true)?;
+        schema::check(&connection, path)?;
+        Ok(Self { path: path.to_path_buf(), connection: Mutex::new(connection), is_writer: false })
+    }
+
+    fn try_create_or_open(path: &Path) -> Result<Self, DbFault> {
+        if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
+            return Err(DbFault::NotAFile);
+        }
+        let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE;
+        let mut connection = connect(path, flags)?;
+        if connection.is_readonly("main")? {
+            return Err(DbFault::ReadOnly);
+        }
+        connection.pragma_update(None, "cache_size", -WRITER_CACHE_KIB)?;
+        schema::prepare(&mut connection, path)?;
+        Ok(Self { path: path.to_path_buf(), connection: Mutex::new(connection), is_writer: true })
+    }
+}
+
+/// The row of an image with what it takes to decode it.
+struct StoredImage {
+    bytes: Vec<u8>,
+    camera_id: i64,
+    camera: String,
+}
+
+fn connect(path: &Path, flags: OpenFlags) -> Result<Connection, DbFault> {
+    // An absolute path is never one of the names that SQLite takes for something else than a file.
+    let connection =
+        Connection::open_with_flags(path::absolute(path)?, flags | OpenFlags::SQLITE_OPEN_NO_MUTEX)?;
+    connection.busy_timeout(BUSY_TIMEOUT)?;
+    Ok(connection)
+}
+
+/// Refuses images whose sequence, camera, field or pose source is not there.
+fn check_references(transaction: &Transaction<'_>) -> Result<(), DbFault> {
+    let query = "SELECT rowid, parent FROM pragma_foreign_key_check('images')";
+    let row = |row: &Row<'_>| Ok((row.get(0)?, row.get(1)?));
+    let broken: Option<(i64, String)> = transaction.query_row(query, [], row).optional()?;
+    let Some((id, parent)) = broken else { return Ok(()) };
+    let problem = match parent.as_str() {
+        "sequences" => "its sequence is missing",
+        "cameras" => "its camera is missing",
+        "fields" => "its field is missing",
+        _ => "its pose source is missing",
+    };
+    Err(DbFault::BadRow { table: "image", id, problem })
+}
+
+/// Pairs of an id and a text.
+fn texts(transaction: &Transaction<'_>, query: &str) -> Result<BTreeMap<i64, String>, DbFault> {
+    all(transaction, query, |row| Ok((row.get(0)?, row.get(1)?)))
+}
+
+fn all<T, C: FromIterator<T>>(
+    transaction: &Transaction<'_>,
+    query: &str,
+    row: impl FnMut(&Row<'_>) -> rusqlite::Result<T>,
+) -> Result<C, DbFault> {
+    Ok(transaction.prepare(query)?.query_map([], row)?.collect::<rusqlite::Result<C>>()?)
+}

@@ -1,0 +1,156 @@
+//! What is known of an image, and its way in and out of a row.
+
+use nalgebra::Matrix6;
+use reality_sim_core::pose::CameraPose;
+use rusqlite::{Row, types::Type};
+
+/// Bytes of a stored covariance.
+const COVARIANCE_BYTES: usize = 36 * 8;
+
+/// Where a camera was, and how well that is known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseEstimate {
+    /// The pose.
+    pub pose: CameraPose,
+    /// Covariance of x, y, yaw, height, pitch and roll, in metres and radians, where it is known.
+    pub covariance: Option<Matrix6<f64>>,
+}
+
+impl PoseEstimate {
+    /// Whether no number is NaN or infinite.
+    pub(crate) fn is_finite(&self) -> bool {
+        let covariance = self.covariance.iter().flat_map(Matrix6::iter);
+        self.pose.is_finite() && covariance.copied().all(f64::is_finite)
+    }
+}
+
+/// Where poses come from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum PoseSource {
+    /// The recording's own ground truth.
+    GroundTruth,
+    /// The particle filter.
+    Filter {
+        /// Its settings and seed, as JSON.
+        settings: String,
+    },
+    /// A file of poses.
+    File {
+        /// Its name.
+        name: String,
+    },
+}
+
+impl PoseSource {
+    /// As it is stored: kind and description.
+    pub(crate) fn columns(&self) -> [&str; 2] {
+        match self {
+            Self::GroundTruth => ["groundtruth", ""],
+            Self::Filter { settings } => ["filter", settings],
+            Self::File { name } => ["file", name],
+        }
+    }
+
+    /// The reverse of [`PoseSource::columns`].
+    pub(crate) fn from_columns(kind: &str, description: String) -> Option<Self> {
+        match kind {
+            "groundtruth" => Some(Self::GroundTruth),
+            "filter" => Some(Self::Filter { settings: description }),
+            "file" => Some(Self::File { name: description }),
+            _ => None,
+        }
+    }
+}
+
+/// All of an image but its bytes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImageRecord {
+    /// Number of the image in the database; later ones are larger.
+    pub id: i64,
+    /// Which of [`crate::Database::sequences`] it belongs to.
+    pub sequence_id: i64,
+    /// Number of the frame in its sequence, from 0.
+    pub frame_index: usize,
+    /// Which of [`crate::Database::cameras`] took it.
+    pub camera_id: i64,
+    /// Which of [`crate::Database::fields`] it shows.
+    pub field_id: i64,
+    /// Which of [`crate::Database::pose_sources`] the pose is from.
+    pub pose_source_id: i64,
+    /// When it was taken, by its sequence's clock, seconds.
+    pub timestamp_s: f64,
+    /// The file it was, relative to its sequence's folder.
+    pub file_name: String,
+    /// Length of its JPEG or PNG file, bytes.
+    pub byte_length: u64,
+    /// Where it was taken.
+    pub pose: CameraPose,
+    /// Covariance of x, y, yaw, height, pitch and roll, in metres and radians, where it is known.
+    pub covariance: Option<Matrix6<f64>>,
+}
+
+/// The columns of a record, in the order in which [`ImageRecord::from_row`] takes them.
+pub(crate) const IMAGE_COLUMNS: &str = "id, sequence_id, frame_index, camera_id, field_id, pose_source_id, \
+     timestamp_s, file_name, byte_length, x_m, y_m, yaw_rad, height_m, pitch_rad, roll_rad, covariance";
+
+impl ImageRecord {
+    /// A record from [`IMAGE_COLUMNS`]. Its numbers may be infinite.
+    pub(crate) fn from_row(row: &Row<'_>) -> rusqlite::Result<Self> {
+        Ok(Self {
+            id: row.get(0)?,
+            sequence_id: row.get(1)?,
+            frame_index: unsigned(row, 2)?,
+            camera_id: row.get(3)?,
+            field_id: row.get(4)?,
+            pose_source_id: row.get(5)?,
+            timestamp_s: row.get(6)?,
+            file_name: row.get(7)?,
+            byte_length: unsigned(row, 8)?,
+            pose: pose_from_row(row, 9)?,
+            covariance: covariance(row, 15)?,
+        })
+    }
+
+    /// What is wrong with its numbers, if anything.
+    pub(crate) fn problem(&self) -> Option<&'static str> {
+        let estimate = PoseEstimate { pose: self.pose, covariance: self.covariance };
+        if !estimate.is_finite() {
+            Some("its pose is not made of finite numbers")
+        } else if !self.timestamp_s.is_finite() {
+            Some("its time is not a finite number")
+        } else {
+            None
+        }
+    }
+}
+
+/// A pose from six columns, in the order of [`IMAGE_COLUMNS`], of which this is the first.
+pub(crate) fn pose_from_row(row: &Row<'_>, first: usize) -> rusqlite::Result<CameraPose> {
+    Ok(CameraPose {
+        x_m: row.get(first)?,
+        y_m: row.get(first + 1)?,
+        yaw_rad: row.get(first + 2)?,
+        height_m: row.get(first + 3)?,
+        pitch_rad: row.get(first + 4)?,
+        roll_rad: row.get(first + 5)?,
+    })
+}
+
+/// A covariance as it is stored: row by row, little-endian.
+pub(crate) fn covariance_bytes(covariance: &Matrix6<f64>) -> Vec<u8> {
+    covariance.transpose().iter().flat_map(|value| value.to_le_bytes()).collect()
+}
+
+fn covariance(row: &Row<'_>, column: usize) -> rusqlite::Result<Option<Matrix6<f64>>> {
+    let Some(bytes) = row.get_ref(column)?.as_blob_or_null()? else { return Ok(None) };
+    if bytes.len() != COVARIANCE_BYTES {
+        return Err(rusqlite::Error::InvalidColumnType(column, "covariance".to_owned(), Type::Blob));
+    }
+    let (numbers, _) = bytes.as_chunks::<8>();
+    Ok(Some(Matrix6::from_row_iterator(numbers.iter().map(|number| f64::from_le_bytes(*number)))))
+}
+
+fn unsigned<T: TryFrom<i64>>(row: &Row<'_>, column: usize) -> rusqlite::Result<T> {
+    let value: i64 = row.get(column)?;
+    T::try_from(value).map_err(|_| rusqlite::Error::IntegralValueOutOfRange(column, value))
+}

@@ -1,0 +1,204 @@
+//! The tables, what marks a file as ours, and how a file of an older version becomes one of this.
+
+use std::{fs, path::Path};
+
+use rusqlite::{Connection, Transaction, TransactionBehavior};
+
+use crate::error::DbFault;
+
+/// In the file's header: "ReSi".
+const APPLICATION_ID: i64 = 0x5265_5369;
+
+/// The version of the tables that this program reads and writes.
+pub const SCHEMA_VERSION: i64 = STEPS.len() as i64;
+
+/// The statements at `STEPS[n]` make a database of version n + 1 of one of version n. A step that was released is never
+/// changed: another one is added.
+const STEPS: [&str; 1] = [VERSION_1];
+
+/// The bytes have a table of their own: reading all poses does not touch them.
+const VERSION_1: &str = "
+    CREATE TABLE sequences (
+        id INTEGER PRIMARY KEY,
+        name TEXT NOT NULL,
+        first_frame TEXT NOT NULL,
+        UNIQUE (name, first_frame)
+    ) STRICT;
+    CREATE TABLE cameras (id INTEGER PRIMARY KEY, toml TEXT NOT NULL UNIQUE) STRICT;
+    CREATE TABLE fields (id INTEGER PRIMARY KEY, toml TEXT NOT NULL UNIQUE) STRICT;
+    CREATE TABLE pose_sources (
+        id INTEGER PRIMARY KEY,
+        kind TEXT NOT NULL CHECK (kind IN ('groundtruth', 'filter', 'file')),
+        description TEXT NOT NULL,
+        UNIQUE (kind, description)
+    ) STRICT;
+    CREATE TABLE images (
+        id INTEGER PRIMARY KEY,
+        sequence_id INTEGER NOT NULL REFERENCES sequences,
+        frame_index INTEGER NOT NULL,
+        camera_id INTEGER NOT NULL REFERENCES cameras,
+        field_id INTEGER NOT NULL REFERENCES fields,
+        pose_source_id INTEGER NOT NULL REFERENCES pose_sources,
+        timestamp_s REAL NOT NULL,
+        file_name TEXT NOT NULL,
+        byte_length INTEGER NOT NULL,
+        x_m REAL NOT NULL,
+        y_m REAL NOT NULL,
+        yaw_rad REAL NOT NULL,
+        height_m REAL NOT NULL,
+        pitch_rad REAL NOT NULL,
+        roll_rad REAL NOT NULL,
+        covariance BLOB,
+        UNIQUE (sequence_id, frame_index)
+    ) STRICT;
+    CREATE TABLE image_bytes (
+        image_id INTEGER PRIMARY KEY REFERENCES images,
+        bytes BLOB NOT NULL
+    ) STRICT;
+";
+
+/// Refuses a file that is not a whole database of this version. Changes nothing.
+pub(crate) fn check(connection: &Connection, path: &Path) -> Result<(), DbFault> {
+    let transaction = connection.unchecked_transaction()?;
+    if application_id(&transaction)? != APPLICATION_ID {
+        return Err(DbFault::NotADatabase);
+    }
+    check_length(&transaction, path)?;
+    let found = version(&transaction)?;
+    check_known(found, SCHEMA_VERSION)?;
+    if found < SCHEMA_VERSION {
+        return Err(DbFault::Older { found, known: SCHEMA_VERSION });
+    }
+    Ok(())
+}
+
+/// Makes an empty file a database, and one of an older version one of this.
+pub(crate) fn prepare(connection: &mut Connection, path: &Path) -> Result<(), DbFault> {
+    migrate(connection, path, &STEPS)
+}
+
+/// Runs the steps that a database has not seen, all or none of them.
+fn migrate(connection: &mut Connection, path: &Path, steps: &[&str]) -> Result<(), DbFault> {
+    let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+    if is_empty(&transaction)? {
+        transaction.pragma_update(None, "application_id", APPLICATION_ID)?;
+    } else if application_id(&transaction)? != APPLICATION_ID {
+        return Err(DbFault::NotADatabase);
+    } else {
+        check_length(&transaction, path)?;
+    }
+    let (found, known) = (version(&transaction)?, steps.len() as i64);
+    check_known(found, known)?;
+    let done = usize::try_from(found).unwrap_or_default();
+    for step in &steps[done..] {
+        transaction.execute_batch(step)?;
+    }
+    if found < known {
+        transaction.pragma_update(None, "user_version", known)?;
+    }
+    Ok(transaction.commit()?)
+}
+
+fn check_known(found: i64, known: i64) -> Result<(), DbFault> {
+    match found {
+        ..0 => Err(DbFault::NotADatabase),
+        found if found > known => Err(DbFault::Newer { found, known }),
+        _ => Ok(()),
+    }
+}
+
+/// Whether nothing was ever stored: a file without bytes, or one whose writer was killed before the first commit.
+fn is_empty(transaction: &Transaction<'_>) -> rusqlite::Result<bool> {
+    let tables: i64 = transaction.query_row("SELECT count(*) FROM sqlite_schema", [], |row| row.get(0))?;
+    Ok(tables == 0 && application_id(transaction)? == 0 && version(transaction)? == 0)
+}
+
+/// SQLite finds a cut-off file by itself only when it needs what is missing. In a transaction nobody else changes the
+/// length.
+fn check_length(transaction: &Transaction<'_>, path: &Path) -> Result<(), DbFault> {
+    let pages = u64::from(pragma::<u32>(transaction, "page_count")?);
+    let page_bytes = u64::from(pragma::<u32>(transaction, "page_size")?);
+    let (found_bytes, expected_bytes) = (fs::metadata(path)?.len(), pages * page_bytes);
+    if found_bytes < expected_bytes {
+        return Err(DbFault::Truncated { found_bytes, expected_bytes });
+    }
+    Ok(())
+}
+
+fn application_id(transaction: &Transaction<'_>) -> rusqlite::Result<i64> {
+    pragma(transaction, "application_id")
+}
+
+fn version(transaction: &Transaction<'_>) -> rusqlite::Result<i64> {
+    pragma(transaction, "user_version")
+}
+
+fn pragma<T: rusqlite::types::FromSql>(transaction: &Transaction<'_>, name: &str) -> rusqlite::Result<T> {
+    transaction.pragma_query_value(None, name, |row| row.get(0))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+
+    /// Three versions of a database that is not ours.
+    const FIRST: &str =
+        "CREATE TABLE things (id INTEGER PRIMARY KEY, name TEXT); INSERT INTO things (name) VALUES ('a')";
+    const SECOND: &str = "ALTER TABLE things ADD COLUMN length_m REAL NOT NULL DEFAULT 2.5";
+    const THIRD: &str = "CREATE INDEX by_name ON things (name); UPDATE things SET name = name || name";
+
+    fn database() -> (tempfile::TempDir, PathBuf, Connection) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.db");
+        let connection = Connection::open(&path).unwrap();
+        (folder, path, connection)
+    }
+
+    fn found(connection: &Connection) -> i64 {
+        connection.pragma_query_value(None, "user_version", |row| row.get(0)).unwrap()
+    }
+
+    #[test]
+    fn every_older_version_becomes_the_newest_and_keeps_its_rows() {
+        let steps = [FIRST, SECOND, THIRD];
+        for start in 0..=steps.len() {
+            let (_folder, path, mut connection) = database();
+            migrate(&mut connection, &path, &steps[..start]).unwrap();
+            assert_eq!(found(&connection), start as i64);
+            migrate(&mut connection, &path, &steps).unwrap();
+            migrate(&mut connection, &path, &steps).unwrap();
+            assert_eq!(found(&connection), 3);
+            let row = connection.query_row("SELECT name, length_m FROM things", [], |row| {
+                Ok((row.get::<_, String>(0)?, row.get::<_, f64>(1)?))
+            });
+            assert_eq!(row.unwrap(), ("aa".to_owned(), 2.5), "from version {start}");
+        }
+    }
+
+    #[test]
+    fn a_step_that_fails_leaves_the_old_version() {
+        let (_folder, path, mut connection) = database();
+        migrate(&mut connection, &path, &[FIRST]).unwrap();
+        let fault = migrate(&mut connection, &path, &[FIRST, SECOND, "DROP TABLE nothing"]).unwrap_err();
+        assert!(matches!(fault, DbFault::Damaged { .. }), "{fault}");
+        assert_eq!(found(&connection), 1);
+        assert!(connection.query_row("SELECT length_m FROM things", [], |_| Ok(())).is_err());
+    }
+
+    #[test]
+    fn fewer_steps_than_the_version_is_a_newer_database() {
+        let (_folder, path, mut connection) = database();
+        migrate(&mut connection, &path, &[FIRST, SECOND]).unwrap();
+        let fault = migrate(&mut connection, &path, &[FIRST]).unwrap_err();
+        assert!(matches!(fault, DbFault::Newer { found: 2, known: 1 }), "{fault}");
+    }
+
+    #[test]
+    fn a_reader_says_that_an_older_version_has_to_be_opened_for_writing() {
+        let (_folder, path, mut connection) = database();
+        migrate(&mut connection, &path, &[]).unwrap();
+        assert!(matches!(check(&connection, &path), Err(DbFault::Older { found: 0, known: SCHEMA_VERSION })));
+    }
+}
