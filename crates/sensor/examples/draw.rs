@@ -8,7 +8,9 @@ use reality_sim_sensor::{Renderer, SceneColors};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [folder, frame, out] = arguments.as_slice() else { return Err("usage: draw SEQUENCE FRAME OUT.png".into()) };
+    let [folder, frame, out] = arguments.as_slice() else {
+        return Err("usage: draw SEQUENCE FRAME OUT.png".into());
+    };
     let sequence = Sequence::open(Path::new(folder))?;
     let frame: usize = frame.parse()?;
     let measured = sequence.load_image(frame)?;

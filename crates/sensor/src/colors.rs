@@ -43,7 +43,8 @@ impl SceneColors {
     /// Lines and carpet as the camera's photometry has them, goals as the field has them; the default for the rest.
     pub fn new(setup: &CameraSetup, field: &FieldDimensions) -> Self {
         let default = Self::default();
-        let recorded = |color: Option<[f64; 3]>| color.map(|rgb| Vec3::from_array(rgb.map(|value| value as f32)));
+        let recorded =
+            |color: Option<[f64; 3]>| color.map(|rgb| Vec3::from_array(rgb.map(|value| value as f32)));
         let goal = |srgb: Option<[u8; 3]>| srgb.map(|rgb| Vec3::from_array(rgb.map(linear_from_srgb)));
         let photometry = setup.photometry;
         Self {

@@ -64,7 +64,8 @@ fn ray_patch(camera: &Camera, pixel: DVec2) -> Option<RayPatch> {
     camera.check_inside(pixel).ok()?;
     let center = camera.unproject(pixel).ok()?;
     let change = |step: DVec2| {
-        let [before, after] = [pixel - 0.5 * step, pixel + 0.5 * step].map(|side| camera.unproject(side).ok());
+        let [before, after] =
+            [pixel - 0.5 * step, pixel + 0.5 * step].map(|side| camera.unproject(side).ok());
         difference(before, center, after).as_vec3()
     };
     Some(RayPatch { center: center.as_vec3(), across: change(DVec2::X), down: change(DVec2::Y) })

@@ -64,7 +64,10 @@ impl Renderer {
         let [width, height] = self.size;
         let mut picture = RgbImage::new(width, height);
         let row_length = 3 * width as usize;
-        picture.par_chunks_exact_mut(row_length).enumerate().for_each(|(v, row)| self.draw_row(&view, v, row));
+        picture
+            .par_chunks_exact_mut(row_length)
+            .enumerate()
+            .for_each(|(v, row)| self.draw_row(&view, v, row));
         Ok(picture)
     }
 

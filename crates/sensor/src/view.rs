@@ -1,16 +1,20 @@
-//! The world as cones of rays from a camera, and how much of a pixel each cone covers.
+//! The world as rays from a camera, and how much of a pixel each shape covers.
 //!
-//! A flat shape with straight edges is seen in the rays between planes through the projection centre, and so is the
-//! side of a cylinder. Where a ray lies to such a plane is linear in the ray; the part of a pixel that an edge covers
-//! is therefore found in closed form, whatever the distance and however thin the line.
+//! A shape with straight edges is seen in the rays between planes through the projection centre. Where a ray lies to
+//! such a plane is linear in the ray: the part of a pixel that it covers is found in closed form, however far the
+//! shape and however thin.
 
-mod cone;
+mod polygon;
+mod ring;
 
-use glam::{DMat3, Vec3};
+use glam::{DMat3, DVec3, Vec3};
 use reality_sim_core::pose::CameraPose;
 
-use self::cone::{Cone, Side};
-use crate::{lens::RayPatch, world::World};
+use self::{polygon::Polygon, ring::Ring};
+use crate::{
+    lens::RayPatch,
+    world::{Overlap, Shape, World},
+};
 
 /// What a camera sees at a pose.
 #[derive(Debug)]
@@ -20,22 +24,42 @@ pub(crate) struct View {
     layers: Vec<Layer>,
 }
 
-/// Cones of one colour.
+/// What is seen of one colour.
 #[derive(Debug)]
 struct Layer {
     color: Vec3,
     cones: Vec<Cone>,
+    overlap: Overlap,
+}
+
+/// The rays in which a shape is seen.
+#[derive(Debug)]
+enum Cone {
+    Polygon(Polygon),
+    Ring(Ring),
+}
+
+/// Where a patch of rays lies to what is seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Side {
+    /// None of its rays is inside.
+    Outside,
+    /// All of them are.
+    Inside,
+    /// Perhaps some.
+    Edge,
 }
 
 impl View {
     /// The pose is one above the ground.
     pub(crate) fn new(world: &World, pose: CameraPose) -> Self {
         let position = pose.position_in_world();
-        let camera_from_world: DMat3 = pose.rotation_world_from_camera().transpose();
+        let camera_from_world = pose.rotation_world_from_camera().transpose();
         let cone = |shape| Cone::new(&shape, position, camera_from_world);
         let seen = world.layers_seen_from(position).into_iter().map(|layer| Layer {
             color: layer.color,
             cones: layer.shapes.into_iter().filter_map(cone).collect(),
+            overlap: layer.overlap,
         });
         Self { background: world.background(), layers: seen.collect() }
     }
@@ -63,7 +87,9 @@ impl View {
 
     /// Each layer hides the part of the patch that it covers.
     fn blended_color(&self, patch: &RayPatch) -> Vec3 {
-        self.layers.iter().fold(self.background, |color, layer| color.lerp(layer.color, layer.coverage(patch)))
+        self.layers
+            .iter()
+            .fold(self.background, |color, layer| color.lerp(layer.color, layer.coverage(patch)))
     }
 }
 
@@ -80,8 +106,37 @@ impl Layer {
         side
     }
 
-    /// Lines overlap where they meet, edge on edge: what the widest of them covers is all that is covered.
     fn coverage(&self, patch: &RayPatch) -> f32 {
-        self.cones.iter().fold(0.0, |most, cone| cone.coverage(patch).max(most))
+        let each = self.cones.iter().map(|cone| cone.coverage(patch));
+        match self.overlap {
+            Overlap::None => each.sum::<f32>().min(1.0),
+            Overlap::Joined => each.fold(0.0, f32::max),
+        }
+    }
+}
+
+impl Cone {
+    /// `None` for a shape without area.
+    fn new(shape: &Shape, position: DVec3, camera_from_world: DMat3) -> Option<Self> {
+        match shape {
+            Shape::Polygon(corners) => Polygon::new(corners, position, camera_from_world).map(Self::Polygon),
+            Shape::Ring { center, inner_m, outer_m } => {
+                Ring::new(*center, [*inner_m, *outer_m], position, camera_from_world).map(Self::Ring)
+            }
+        }
+    }
+
+    fn side(&self, patch: &RayPatch) -> Side {
+        match self {
+            Self::Polygon(polygon) => polygon.side(patch),
+            Self::Ring(ring) => ring.side(patch),
+        }
+    }
+
+    fn coverage(&self, patch: &RayPatch) -> f32 {
+        match self {
+            Self::Polygon(polygon) => polygon.coverage(patch),
+            Self::Ring(ring) => ring.coverage(patch),
+        }
     }
 }
