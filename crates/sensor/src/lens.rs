@@ -58,8 +58,7 @@ impl Lens {
     }
 }
 
-/// A pixel is small enough for its rays to change evenly within it: in a fisheye with a focal length of 215 pixels they
-/// are 0.001 pixels off at most.
+/// A pixel is small enough for its rays to change evenly within it: they are a thousandth of a pixel off.
 fn ray_patch(camera: &Camera, pixel: DVec2) -> Option<RayPatch> {
     camera.check_inside(pixel).ok()?;
     let center = camera.unproject(pixel).ok()?;
@@ -78,5 +77,44 @@ fn difference(before: Option<DVec3>, center: DVec3, after: Option<DVec3>) -> DVe
         (Some(before), None) => 2.0 * (center - before),
         (None, Some(after)) => 2.0 * (after - center),
         (None, None) => DVec3::ZERO,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use reality_sim_core::camera::{Distortion, OpencvFisheye};
+
+    use super::*;
+
+    #[test]
+    fn every_part_of_a_pixel_has_the_rays_that_are_projected_there() {
+        let lens = OpencvFisheye { k: [-0.058, 0.0082, -0.0009, 0.00005] };
+        let intrinsics = [215.0, 214.0, 319.5, 240.3];
+        let camera = Camera::new([640, 480], intrinsics, Distortion::OpencvFisheye(lens)).unwrap();
+        let lens = Lens::new(&camera);
+        for v in (0..480).step_by(53) {
+            for (u, patch) in lens.row(v).iter().enumerate().step_by(13) {
+                for (i, part) in patch.unwrap().parts(3).enumerate() {
+                    let offset = (DVec2::new((i % 3) as f64, (i / 3) as f64) - 1.0) / 3.0;
+                    let pixel = camera.project_unbounded(part.center.as_dvec3()).unwrap();
+                    assert!(pixel.distance(DVec2::new(u as f64, v as f64) + offset) < 1e-3);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_pixel_on_the_rim_whose_outer_side_has_no_ray_changes_as_its_inner_side_does() {
+        let middle = DVec3::new(0.1, 0.2, 1.0);
+        let step = DVec3::new(0.01, 0.0, 0.0);
+        let sides = [
+            (Some(middle - 0.5 * step), Some(middle + 0.5 * step)),
+            (None, Some(middle + 0.5 * step)),
+            (Some(middle - 0.5 * step), None),
+        ];
+        for (before, after) in sides {
+            assert!(difference(before, middle, after).distance(step) < 1e-12);
+        }
+        assert_eq!(difference(None, middle, None), DVec3::ZERO);
     }
 }

@@ -34,8 +34,8 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A renderer for a camera, a field and colours; pixel values follow the gamma of the camera's photometry, 2.2
-    /// where it has none.
+    /// A renderer for a camera, a field and colours. The hall's walls are 3 m outside the carpet, its ceiling is 4 m
+    /// above it. Pixel values follow the gamma of the camera's photometry, 2.2 where it has none.
     pub fn new(setup: &CameraSetup, field: &FieldDimensions, colors: SceneColors) -> Self {
         Self {
             world: World::new(field, colors),
@@ -46,8 +46,9 @@ impl Renderer {
         }
     }
 
-    /// The same renderer with pixels that an edge crosses cut into `per_side` × `per_side` parts, 3 × 3 unless told;
-    /// 0 is taken as 1. How much of a part a straight edge leaves free is computed, not sampled.
+    /// The same renderer with pixels that an edge crosses cut into `per_side` × `per_side` parts (0 is taken as 1);
+    /// 3 × 3 unless told. What a shape covers of a part is computed, not sampled: more parts help where edges of
+    /// several colours meet.
     pub fn with_parts_per_side(self, per_side: u16) -> Self {
         Self { parts_per_side: per_side.max(1), ..self }
     }

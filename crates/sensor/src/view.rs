@@ -72,17 +72,16 @@ impl View {
         })
     }
 
-    /// The colour of a patch that no edge crosses.
+    /// The colour of a patch that no visible edge crosses: that of the foremost layer.
     fn even_color(&self, patch: &RayPatch) -> Option<Vec3> {
-        let mut color = self.background;
-        for layer in &self.layers {
+        for layer in self.layers.iter().rev() {
             match layer.side(patch) {
                 Side::Outside => {}
-                Side::Inside => color = layer.color,
+                Side::Inside => return Some(layer.color),
                 Side::Edge => return None,
             }
         }
-        Some(color)
+        Some(self.background)
     }
 
     /// Each layer hides the part of the patch that it covers.
