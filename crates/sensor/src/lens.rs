@@ -1,0 +1,120 @@
+//! Which rays each pixel collects. They are found once for a camera: no lens is inverted while a picture is drawn.
+
+use glam::{DVec2, DVec3, Vec3};
+use rayon::prelude::*;
+use reality_sim_core::camera::Camera;
+
+/// The rays that a pixel, or a part of one, collects: `center + x across + y down` with x and y between −½ and ½, in
+/// the camera's axes. Their lengths mean nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct RayPatch {
+    /// The ray in the middle.
+    pub(crate) center: Vec3,
+    /// From the left side to the right one.
+    pub(crate) across: Vec3,
+    /// From the upper side to the lower one.
+    pub(crate) down: Vec3,
+}
+
+impl RayPatch {
+    /// The parts of a patch cut into `per_side` × `per_side`.
+    pub(crate) fn parts(self, per_side: u16) -> impl Iterator<Item = Self> {
+        let scale = f32::from(per_side).recip();
+        let (across, down) = (self.across * scale, self.down * scale);
+        let offset = move |index: u16| f32::from(index) - 0.5 * f32::from(per_side - 1);
+        (0..per_side).flat_map(move |row| {
+            (0..per_side).map(move |column| Self {
+                center: self.center + offset(column) * across + offset(row) * down,
+                across,
+                down,
+            })
+        })
+    }
+}
+
+/// The rays of all pixels.
+#[derive(Debug, Clone)]
+pub(crate) struct Lens {
+    width: usize,
+    /// Row by row; `None` where the picture is black.
+    patches: Vec<Option<RayPatch>>,
+}
+
+impl Lens {
+    pub(crate) fn new(camera: &Camera) -> Self {
+        let width = camera.width as usize;
+        let mut patches = vec![None; width * camera.height as usize];
+        patches.par_chunks_exact_mut(width).enumerate().for_each(|(v, row)| {
+            for (u, patch) in row.iter_mut().enumerate() {
+                *patch = ray_patch(camera, DVec2::new(u as f64, v as f64));
+            }
+        });
+        Self { width, patches }
+    }
+
+    /// The rays of a row's pixels, from left to right; `None` beyond the valid angle and outside the image circle.
+    pub(crate) fn row(&self, v: usize) -> &[Option<RayPatch>] {
+        &self.patches[v * self.width..(v + 1) * self.width]
+    }
+}
+
+/// A pixel is small enough for its rays to change evenly within it: they are a thousandth of a pixel off.
+fn ray_patch(camera: &Camera, pixel: DVec2) -> Option<RayPatch> {
+    camera.check_inside(pixel).ok()?;
+    let center = camera.unproject(pixel).ok()?;
+    let change = |step: DVec2| {
+        let [before, after] =
+            [pixel - 0.5 * step, pixel + 0.5 * step].map(|side| camera.unproject(side).ok());
+        difference(before, center, after).as_vec3()
+    };
+    Some(RayPatch { center: center.as_vec3(), across: change(DVec2::X), down: change(DVec2::Y) })
+}
+
+/// The change across a pixel; on the lens's rim one of its sides may have no ray.
+fn difference(before: Option<DVec3>, center: DVec3, after: Option<DVec3>) -> DVec3 {
+    match (before, after) {
+        (Some(before), Some(after)) => after - before,
+        (Some(before), None) => 2.0 * (center - before),
+        (None, Some(after)) => 2.0 * (after - center),
+        (None, None) => DVec3::ZERO,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use reality_sim_core::camera::{Distortion, OpencvFisheye};
+
+    use super::*;
+
+    #[test]
+    fn every_part_of_a_pixel_has_the_rays_that_are_projected_there() {
+        let lens = OpencvFisheye { k: [-0.058, 0.0082, -0.0009, 0.00005] };
+        let intrinsics = [215.0, 214.0, 319.5, 240.3];
+        let camera = Camera::new([640, 480], intrinsics, Distortion::OpencvFisheye(lens)).unwrap();
+        let lens = Lens::new(&camera);
+        for v in (0..480).step_by(53) {
+            for (u, patch) in lens.row(v).iter().enumerate().step_by(13) {
+                for (i, part) in patch.unwrap().parts(3).enumerate() {
+                    let offset = (DVec2::new((i % 3) as f64, (i / 3) as f64) - 1.0) / 3.0;
+                    let pixel = camera.project_unbounded(part.center.as_dvec3()).unwrap();
+                    assert!(pixel.distance(DVec2::new(u as f64, v as f64) + offset) < 1e-3);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_pixel_on_the_rim_whose_outer_side_has_no_ray_changes_as_its_inner_side_does() {
+        let middle = DVec3::new(0.1, 0.2, 1.0);
+        let step = DVec3::new(0.01, 0.0, 0.0);
+        let sides = [
+            (Some(middle - 0.5 * step), Some(middle + 0.5 * step)),
+            (None, Some(middle + 0.5 * step)),
+            (Some(middle - 0.5 * step), None),
+        ];
+        for (before, after) in sides {
+            assert!(difference(before, middle, after).distance(step) < 1e-12);
+        }
+        assert_eq!(difference(None, middle, None), DVec3::ZERO);
+    }
+}

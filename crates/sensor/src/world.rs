@@ -1,0 +1,106 @@
+//! What there is to see: layers of shapes, from the ground up.
+
+mod goal;
+mod lines;
+
+use glam::{DVec2, DVec3, Vec3};
+use reality_sim_core::field::FieldDimensions;
+
+use self::{
+    goal::GoalBars,
+    lines::{Rectangle, circles, straight_lines},
+};
+use crate::SceneColors;
+
+/// From the carpet's edge to the hall's walls, metres.
+const FLOOR_AROUND_CARPET_M: f64 = 3.0;
+/// From the ground to the hall's ceiling, metres.
+const HALL_HEIGHT_M: f64 = 4.0;
+
+/// A shape in the world, metres.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Shape {
+    /// What looks convex from where it is seen, by its corners in order; they need not lie in a plane.
+    Polygon(Vec<DVec3>),
+    /// What is between two horizontal circles.
+    Ring {
+        /// Their centre.
+        center: DVec3,
+        /// Radius of the smaller; 0 or less for none.
+        inner_m: f64,
+        /// Radius of the larger.
+        outer_m: f64,
+    },
+}
+
+/// How the shapes of a layer lie to each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Overlap {
+    /// They touch at most.
+    None,
+    /// They reach into each other where they meet.
+    Joined,
+}
+
+/// Shapes of one colour.
+#[derive(Debug, Clone)]
+pub(crate) struct Layer {
+    /// Linear RGB.
+    pub(crate) color: Vec3,
+    pub(crate) shapes: Vec<Shape>,
+    pub(crate) overlap: Overlap,
+}
+
+/// The scene.
+#[derive(Debug, Clone)]
+pub(crate) struct World {
+    wall: Vec3,
+    /// Floor, carpet, straight lines and circles, each on the one before.
+    ground: [Layer; 4],
+    ceiling: Layer,
+    /// The goals at −x and at +x.
+    goals: [(Vec3, GoalBars); 2],
+}
+
+impl World {
+    pub(crate) fn new(field: &FieldDimensions, colors: SceneColors) -> Self {
+        let carpet = Rectangle::around(DVec2::ZERO, field.carpet_half_extent_m());
+        let floor = carpet.grown(FLOOR_AROUND_CARPET_M);
+        let layer = |color, shapes| Layer { color, shapes, overlap: Overlap::None };
+        let [negative_x, positive_x] = field.goals().map(|goal| GoalBars::new(&goal));
+        Self {
+            wall: colors.wall_linear_rgb,
+            ground: [
+                layer(colors.floor_linear_rgb, vec![floor.at_height(0.0)]),
+                layer(colors.carpet_linear_rgb, vec![carpet.at_height(0.0)]),
+                layer(colors.line_linear_rgb, straight_lines(field)),
+                layer(colors.line_linear_rgb, circles(field)),
+            ],
+            ceiling: layer(colors.ceiling_linear_rgb, vec![floor.at_height(HALL_HEIGHT_M)]),
+            goals: [
+                (colors.goal_negative_x_linear_rgb, negative_x),
+                (colors.goal_positive_x_linear_rgb, positive_x),
+            ],
+        }
+    }
+
+    /// What is seen where there is no layer: the walls.
+    pub(crate) fn background(&self) -> Vec3 {
+        self.wall
+    }
+
+    /// What is seen from a place above the ground, each layer in front of those before it. The hall has no outside:
+    /// from beyond its walls or above its ceiling they do not hide the field.
+    pub(crate) fn layers_seen_from(&self, position: DVec3) -> Vec<Layer> {
+        let ceiling = (position.z < HALL_HEIGHT_M).then_some(&self.ceiling);
+        // The nearer goal hides the farther one: the plane x = 0 is between them.
+        let [negative_x, positive_x] = &self.goals;
+        let far_to_near = if position.x < 0.0 { [positive_x, negative_x] } else { [negative_x, positive_x] };
+        let goals = far_to_near.map(|(color, bars)| Layer {
+            color: *color,
+            shapes: bars.outlines_from(position),
+            overlap: Overlap::Joined,
+        });
+        self.ground.iter().chain(ceiling).cloned().chain(goals).collect()
+    }
+}

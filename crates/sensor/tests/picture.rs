@@ -1,0 +1,268 @@
+//! What is where in the picture.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+
+#[allow(dead_code, reason = "shared with other tests")]
+mod scene;
+
+use std::path::Path;
+
+use glam::{DVec2, DVec3};
+use image::RgbImage;
+use proptest::prelude::*;
+use reality_sim_core::{
+    camera::{Camera, ImageCircle},
+    field::{FieldDimensions, VisibleSample, sample_lines, visible_samples},
+    pose::CameraPose,
+    sequence::Sequence,
+};
+use reality_sim_sensor::{PoseError, Renderer, SceneColors};
+
+fn draw(camera: &Camera, field: &FieldDimensions, pose: CameraPose) -> RgbImage {
+    let setup = scene::linear_setup(camera.clone());
+    Renderer::new(&setup, field, scene::colors()).draw(pose).unwrap()
+}
+
+fn green(picture: &RgbImage, pixel: DVec2) -> u8 {
+    picture.get_pixel(pixel.x.round() as u32, pixel.y.round() as u32).0[1]
+}
+
+/// As a robot sees the field.
+fn pose() -> CameraPose {
+    scene::pose([-1.7, 0.3, 0.4], [0.5, 0.42, 0.02])
+}
+
+fn lines_in_view(camera: &Camera, field: &FieldDimensions, pose: CameraPose) -> Vec<VisibleSample> {
+    visible_samples(field, &sample_lines(field, 0.02), camera, pose, 1.0)
+}
+
+#[test]
+fn lines_are_bright_where_they_are_projected_and_the_carpet_beside_is_not() {
+    let walk = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/walk"));
+    let sequence = Sequence::open(walk).unwrap();
+    let field = scene::field_without_goals();
+    let camera = &sequence.setup.camera;
+    let [line, carpet] = [scene::colors().line_linear_rgb, scene::colors().carpet_linear_rgb]
+        .map(|color| scene::pixel_of(color)[1]);
+    let renderer = Renderer::new(&scene::linear_setup(camera.clone()), &field, scene::colors());
+    let (mut on_line, mut beside) = (0, 0);
+    for pose in sequence.groundtruth.iter().step_by(10).map(|pose| pose.unwrap()) {
+        let picture = renderer.draw(pose).unwrap();
+        // From 3 pixels on, the whole pixel at the centre is on the line.
+        for visible in lines_in_view(camera, &field, pose).iter().filter(|v| v.half_width_px > 1.5) {
+            assert_eq!(green(&picture, visible.pixel), line);
+            on_line += 1;
+            for side in [-3.0, 3.0] {
+                let sample = &visible.sample;
+                let point = sample.point_in_world + side * field.line_width_m * sample.normal_in_world();
+                let seen = camera.project(pose.camera_from_world(point.extend(0.0)));
+                let far_from_lines =
+                    field.curves().iter().all(|curve| curve.distance_m(point) > 2.5 * field.line_width_m)
+                        && field.marks().iter().all(|mark| mark.distance(point) > 2.5 * field.line_width_m);
+                if let (Ok(pixel), true) = (seen, far_from_lines) {
+                    assert_eq!(green(&picture, pixel), carpet);
+                    beside += 1;
+                }
+            }
+        }
+    }
+    assert!(on_line > 500 && beside > 500, "{on_line} {beside}");
+}
+
+/// Value of the green channel between pixels.
+fn interpolated(picture: &RgbImage, place: DVec2) -> f64 {
+    let (corner, rest) = (place.floor(), place - place.floor());
+    let at = |x, y| f64::from(green(picture, corner + DVec2::new(x, y)));
+    let row = |y| at(0.0, y) * (1.0 - rest.x) + at(1.0, y) * rest.x;
+    row(0.0) * (1.0 - rest.y) + row(1.0) * rest.y
+}
+
+/// How far from the projected edge, along the normal, the profile passes halfway between line and carpet.
+fn edge_offset_px(picture: &RgbImage, edge: DVec2, outwards: DVec2) -> f64 {
+    let [line, carpet] = [scene::colors().line_linear_rgb, scene::colors().carpet_linear_rgb]
+        .map(|color| 255.0 * f64::from(color.y));
+    // The area under the profile is where the edge is, whatever its shape.
+    let (reach, step) = (2.5, 0.05);
+    let places = (0..(2.0 * reach / step) as u32).map(|i| -reach + step * (f64::from(i) + 0.5));
+    let bright = |offset: f64| (interpolated(picture, edge + offset * outwards) - carpet) / (line - carpet);
+    places.map(bright).sum::<f64>() * step - reach
+}
+
+#[test]
+fn edges_of_lines_are_where_the_camera_projects_them() {
+    let field = scene::field_without_goals();
+    let near_lines = [
+        scene::pose([1.6, -0.6, 0.3], [0.5, 0.7, 0.05]),
+        scene::pose([-0.5, -0.2, 0.9], [0.45, 0.8, -0.1]),
+        scene::pose([2.3, 1.5, -0.4], [0.6, 0.6, 0.0]),
+    ];
+    for camera in [scene::fisheye([640, 480], 215.0), scene::barrel([640, 480], 400.0)] {
+        let offsets_px: Vec<f64> =
+            near_lines.iter().flat_map(|pose| edge_offsets_px(&camera, &field, *pose)).collect();
+        let mean_px = offsets_px.iter().sum::<f64>() / offsets_px.len() as f64;
+        let largest_px = offsets_px.iter().fold(0.0, |largest: f64, offset| largest.max(offset.abs()));
+        assert!(offsets_px.len() > 200, "{}", offsets_px.len());
+        assert!(largest_px < 0.1 && mean_px.abs() < 0.01, "{largest_px} {mean_px}");
+    }
+}
+
+/// Of all edges that no other line is near to.
+fn edge_offsets_px(camera: &Camera, field: &FieldDimensions, pose: CameraPose) -> Vec<f64> {
+    let picture = draw(camera, field, pose);
+    let mut offsets_px = Vec::new();
+    let alone = |visible: &VisibleSample| {
+        let from_mark = field.marks().map(|mark| mark.distance(visible.sample.point_in_world));
+        visible.half_width_px > 3.0
+            && visible.sample.clearance_m > 0.2
+            && from_mark.iter().all(|distance_m| *distance_m > 0.2)
+    };
+    for visible in lines_in_view(camera, field, pose).into_iter().filter(alone) {
+        for side in [-1.0, 1.0] {
+            let across = side * field.line_width_m / 2.0 * visible.sample.normal_in_world();
+            let point = (visible.sample.point_in_world + across).extend(0.0);
+            let edge = camera.project(pose.camera_from_world(point)).unwrap();
+            if [-4.0, 4.0].iter().all(|margin| camera.check_inside(edge + *margin).is_ok()) {
+                offsets_px.push(edge_offset_px(&picture, edge, side * visible.normal_in_image));
+            }
+        }
+    }
+    offsets_px
+}
+
+#[test]
+fn goals_hide_what_is_behind_them_and_nothing_else() {
+    let (camera, field) = (scene::fisheye([640, 480], 215.0), scene::field());
+    let pose = scene::pose([1.5, 0.2, 0.0], [0.5, 0.1, 0.0]);
+    let (picture, empty) = (draw(&camera, &field, pose), draw(&camera, &scene::field_without_goals(), pose));
+    let goal = scene::pixel_of(scene::colors().goal_positive_x_linear_rgb);
+    let seen = |point: DVec3| camera.project(pose.camera_from_world(point)).unwrap().round().as_uvec2();
+    for post in field.goals()[1].posts {
+        for height_m in [0.02, 0.3, 0.6, 0.88] {
+            let pixel = seen(post.center.extend(height_m));
+            assert_eq!(picture.get_pixel(pixel.x, pixel.y).0, goal);
+            assert_ne!(empty.get_pixel(pixel.x, pixel.y).0, goal);
+        }
+    }
+    let bar = seen(DVec3::new(3.0, 0.1, 0.85));
+    assert_eq!(picture.get_pixel(bar.x, bar.y).0, goal);
+    for beside in [DVec3::new(3.0, 0.1, 0.6), DVec3::new(3.0, 0.1, 1.0), DVec3::new(3.0, 1.0, 0.5)] {
+        let pixel = seen(beside);
+        assert_eq!(picture.get_pixel(pixel.x, pixel.y), empty.get_pixel(pixel.x, pixel.y));
+    }
+}
+
+#[test]
+fn the_nearer_goal_hides_the_farther_one() {
+    let (camera, field) = (scene::pinhole([200, 150], 150.0), scene::field());
+    for (x_m, yaw_rad, color) in [
+        (-5.0, 0.0, scene::colors().goal_negative_x_linear_rgb),
+        (5.0, std::f64::consts::PI, scene::colors().goal_positive_x_linear_rgb),
+    ] {
+        let post = field.goals()[usize::from(x_m > 0.0)].posts[0].center;
+        // In line with the posts of one side.
+        let pose = scene::pose([x_m, post.y, yaw_rad], [0.4, 0.0, 0.0]);
+        let pixel = camera.project(pose.camera_from_world(post.extend(0.4))).unwrap().round().as_uvec2();
+        assert_eq!(draw(&camera, &field, pose).get_pixel(pixel.x, pixel.y).0, scene::pixel_of(color));
+    }
+}
+
+#[test]
+fn beyond_the_image_circle_and_the_valid_angle_the_picture_is_black() {
+    let circle = ImageCircle { cx: 100.0, cy: 70.0, radius: 60.0 };
+    let camera = scene::fisheye([200, 150], 60.0);
+    let round = camera.clone().with_image_circle(Some(circle));
+    let narrow = camera.clone().with_max_angle_rad(0.9).unwrap();
+    for camera in [round, narrow] {
+        let picture = draw(&camera, &scene::field(), pose());
+        for (u, v, pixel) in picture.enumerate_pixels() {
+            let place = DVec2::new(f64::from(u), f64::from(v));
+            let sees = camera.check_inside(place).is_ok() && camera.unproject(place).is_ok();
+            assert_eq!(pixel.0 != [0; 3], sees, "{place}");
+        }
+    }
+}
+
+#[test]
+fn pixel_values_follow_the_gamma_of_the_photometry() {
+    let mut setup = scene::linear_setup(scene::pinhole([8, 6], 20.0));
+    let looking_down = scene::pose([1.0, 1.0, 0.0], [0.3, 1.5, 0.0]);
+    let mut green = |gamma: Option<f64>| {
+        setup.photometry = setup
+            .photometry
+            .zip(gamma)
+            .map(|(p, gamma)| reality_sim_core::sequence::Photometry { gamma, ..p });
+        let renderer = Renderer::new(&setup, &scene::field(), scene::colors());
+        renderer.draw(looking_down).unwrap().get_pixel(4, 3).0[1]
+    };
+    // A fifth of full scale, by hand.
+    assert_eq!(green(Some(1.0)), 51);
+    assert_eq!(green(Some(2.0)), 114);
+    assert_eq!(green(None), 123);
+}
+
+#[test]
+fn colors_are_those_of_the_camera_and_of_the_field() {
+    let mut setup = scene::linear_setup(scene::pinhole([8, 6], 20.0));
+    let field = FieldDimensions { goal_srgb_positive_x: Some([255, 188, 0]), ..scene::field() };
+    let colors = SceneColors::new(&setup, &field);
+    assert_eq!(colors.line_linear_rgb, SceneColors::default().line_linear_rgb);
+    let white_goals = FieldDimensions { goal_srgb_negative_x: None, ..field.clone() };
+    let default = SceneColors::default();
+    assert_eq!(
+        SceneColors::new(&setup, &white_goals).goal_negative_x_linear_rgb,
+        default.goal_negative_x_linear_rgb
+    );
+    // 188 is the sRGB value of half the light.
+    assert!((colors.goal_positive_x_linear_rgb - glam::Vec3::new(1.0, 0.5, 0.0)).abs().max_element() < 0.005);
+    let photometry = setup.photometry.as_mut().unwrap();
+    photometry.carpet_linear_rgb = Some([0.1, 0.2, 0.3]);
+    assert_eq!(SceneColors::new(&setup, &field).carpet_linear_rgb, glam::Vec3::new(0.1, 0.2, 0.3));
+}
+
+#[test]
+fn poses_from_which_nothing_can_be_drawn_are_errors() {
+    let setup = scene::linear_setup(scene::pinhole([8, 6], 20.0));
+    let renderer = Renderer::new(&setup, &scene::field(), scene::colors());
+    for value in [f64::NAN, f64::INFINITY] {
+        let poses = [
+            CameraPose { x_m: value, ..pose() },
+            CameraPose { yaw_rad: value, ..pose() },
+            CameraPose { height_m: value, ..pose() },
+            CameraPose { roll_rad: value, ..pose() },
+        ];
+        for pose in poses {
+            let error = renderer.draw(pose).unwrap_err();
+            assert!(matches!(error, PoseError::NotFinite(_)));
+            assert!(!error.to_string().contains('\n'));
+        }
+    }
+    for height_m in [0.0, -0.5] {
+        let error = renderer.draw(CameraPose { height_m, ..pose() }).unwrap_err();
+        assert_eq!(error, PoseError::NotAboveGround { height_m });
+    }
+}
+
+#[test]
+fn from_above_the_hall_the_field_is_seen() {
+    let camera = scene::pinhole([200, 150], 150.0);
+    let above = scene::pose([1.0, 1.0, 0.0], [9.0, std::f64::consts::FRAC_PI_2, 0.0]);
+    let picture = draw(&camera, &scene::field(), above);
+    let pixel = camera.project(above.camera_from_world(DVec3::new(1.0, 1.0, 0.0))).unwrap();
+    assert_eq!(green(&picture, pixel), scene::pixel_of(scene::colors().carpet_linear_rgb)[1]);
+    let line = camera.project(above.camera_from_world(DVec3::new(1.0, 2.0, 0.0))).unwrap();
+    assert!(green(&picture, line) > 100);
+}
+
+proptest! {
+    #[test]
+    fn no_finite_pose_is_too_strange(
+        place in proptest::array::uniform3(prop_oneof![-8.0..8.0, -1e12..1e12, Just(0.0), Just(3.0)]),
+        angles in proptest::array::uniform3(-4.0..4.0),
+        height_m in prop_oneof![1e-12..1e-3, 0.01..10.0, 1e3..1e12, Just(0.9), Just(4.0)],
+    ) {
+        let camera = scene::fisheye([24, 18], 9.0);
+        let pose = scene::pose([place[0], place[1], angles[0]], [height_m, angles[1], angles[2]]);
+        let picture = draw(&camera, &scene::field(), pose);
+        prop_assert_eq!(picture.dimensions(), (24, 18));
+    }
+}

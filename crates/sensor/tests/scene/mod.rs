@@ -1,0 +1,75 @@
+//! Cameras, poses and colours that the tests share.
+
+use glam::Vec3;
+use reality_sim_core::{
+    camera::{Camera, Distortion, Opencv, OpencvFisheye},
+    field::FieldDimensions,
+    pose::CameraPose,
+    sequence::{CameraSetup, Photometry},
+};
+use reality_sim_sensor::SceneColors;
+
+pub fn field() -> FieldDimensions {
+    FieldDimensions::preset("humanoid-kidsize-2010").unwrap()
+}
+
+/// As [`field`], but nothing stands on it.
+pub fn field_without_goals() -> FieldDimensions {
+    FieldDimensions { goal_height_m: 0.0, goal_post_diameter_m: 0.0, ..field() }
+}
+
+pub fn fisheye([width, height]: [u32; 2], focal_px: f64) -> Camera {
+    let lens = OpencvFisheye { k: [-0.058, 0.0082, -0.0009, 0.00005] };
+    camera([width, height], focal_px, Distortion::OpencvFisheye(lens))
+}
+
+pub fn pinhole(size: [u32; 2], focal_px: f64) -> Camera {
+    camera(size, focal_px, Distortion::Pinhole)
+}
+
+pub fn barrel(size: [u32; 2], focal_px: f64) -> Camera {
+    let lens = Opencv { k1: -0.25, k2: 0.05, p1: 0.001, p2: -0.002, k3: 0.0 };
+    camera(size, focal_px, Distortion::Opencv(lens))
+}
+
+fn camera([width, height]: [u32; 2], focal_px: f64, distortion: Distortion) -> Camera {
+    let center = [width, height].map(|pixels| (f64::from(pixels) - 1.0) / 2.0);
+    let intrinsics = [focal_px, 1.01 * focal_px, center[0] + 0.3, center[1] - 0.7];
+    Camera::new([width, height], intrinsics, distortion).unwrap()
+}
+
+/// A camera whose pixel values are 255 times the linear ones.
+pub fn linear_setup(camera: Camera) -> CameraSetup {
+    let photometry = Photometry {
+        gamma: 1.0,
+        line_linear_rgb: None,
+        carpet_linear_rgb: None,
+        black_level: None,
+        noise_shot: None,
+        noise_read: None,
+        psf_sigma_px: None,
+    };
+    CameraSetup { camera, mount_height_m: 0.5, photometry: Some(photometry) }
+}
+
+/// Whole pixel values that differ in every channel or two, most of all lines from carpet.
+pub fn colors() -> SceneColors {
+    SceneColors {
+        line_linear_rgb: Vec3::new(0.8, 1.0, 1.0),
+        carpet_linear_rgb: Vec3::new(0.0, 0.2, 0.0),
+        goal_negative_x_linear_rgb: Vec3::new(0.2, 0.4, 1.0),
+        goal_positive_x_linear_rgb: Vec3::new(1.0, 0.8, 0.2),
+        floor_linear_rgb: Vec3::new(0.4, 0.2, 0.2),
+        wall_linear_rgb: Vec3::new(0.4, 0.4, 0.6),
+        ceiling_linear_rgb: Vec3::new(0.8, 0.6, 0.4),
+    }
+}
+
+/// A pixel value for a linear one, by a camera of [`linear_setup`].
+pub fn pixel_of(linear_rgb: Vec3) -> [u8; 3] {
+    linear_rgb.to_array().map(|value| (255.0 * value).round() as u8)
+}
+
+pub fn pose([x_m, y_m, yaw_rad]: [f64; 3], [height_m, pitch_rad, roll_rad]: [f64; 3]) -> CameraPose {
+    CameraPose { x_m, y_m, yaw_rad, height_m, pitch_rad, roll_rad }
+}
