@@ -8,12 +8,14 @@ use std::{
     time::Duration,
 };
 
+use glam::DVec2;
 use image::RgbImage;
 use reality_sim_core::{
     field::FieldDimensions,
     sequence::{CameraSetup, decode_image},
+    warp::Hall,
 };
-use rusqlite::{Connection, OpenFlags, OptionalExtension, Row, Transaction};
+use rusqlite::{Connection, OpenFlags, OptionalExtension, Row, Transaction, params};
 
 use crate::{
     error::{DbError, DbFault},
@@ -95,6 +97,43 @@ impl Database {
             Ok((id, FieldDimensions::from_toml(&self.origin("field", id), &text)?))
         };
         texts.into_iter().map(field).collect()
+    }
+
+    /// The halls that were measured, by the ids of their fields.
+    pub fn halls(&self) -> Result<BTreeMap<i64, Hall>, DbError> {
+        let query = "SELECT field_id, min_x_m, min_y_m, max_x_m, max_y_m, ceiling_m, goal_depth_m FROM halls";
+        let hall = |row: &Row<'_>| {
+            let hall = Hall {
+                min_m: DVec2::new(row.get(1)?, row.get(2)?),
+                max_m: DVec2::new(row.get(3)?, row.get(4)?),
+                ceiling_m: row.get(5)?,
+                goal_depth_m: row.get(6)?,
+            };
+            Ok((row.get(0)?, hall))
+        };
+        let halls: BTreeMap<i64, Hall> = self.read(|transaction| all(transaction, query, hall))?;
+        let fields = self.fields()?;
+        for (&id, hall) in &halls {
+            if fields.get(&id).is_none_or(|field| !hall.holds(field)) {
+                let problem = "it does not hold its field";
+                return Err(DbError::new(&self.path, DbFault::BadRow { table: "hall", id, problem }));
+            }
+        }
+        Ok(halls)
+    }
+
+    /// Stores what was measured of the hall around a field, in place of what was before.
+    pub fn set_hall(&mut self, field_id: i64, hall: &Hall) -> Result<(), DbError> {
+        let fail = |fault| DbError::new(&self.path, fault);
+        if !self.is_writer {
+            return Err(fail(DbFault::OpenedForReading));
+        }
+        let Hall { min_m, max_m, ceiling_m, goal_depth_m } = *hall;
+        let values = params![field_id, min_m.x, min_m.y, max_m.x, max_m.y, ceiling_m, goal_depth_m];
+        let connection = self.connection.lock().unwrap_or_else(PoisonError::into_inner);
+        let stored =
+            connection.execute("INSERT OR REPLACE INTO halls VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)", values);
+        stored.map(drop).map_err(|error| fail(error.into()))
     }
 
     /// Where poses come from, by the ids of the sources.

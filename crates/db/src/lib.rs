@@ -6,7 +6,9 @@
 
 mod database;
 mod error;
+pub mod index;
 mod ingest;
+pub mod metric;
 mod record;
 mod schema;
 

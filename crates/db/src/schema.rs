@@ -51,6 +51,15 @@ const VERSION_1: &str = "
         covariance BLOB,
         UNIQUE (sequence_id, frame_index)
     ) STRICT;
+    CREATE TABLE halls (
+        field_id INTEGER PRIMARY KEY REFERENCES fields,
+        min_x_m REAL NOT NULL,
+        min_y_m REAL NOT NULL,
+        max_x_m REAL NOT NULL,
+        max_y_m REAL NOT NULL,
+        ceiling_m REAL NOT NULL,
+        goal_depth_m REAL NOT NULL
+    ) STRICT;
     CREATE TABLE image_bytes (
         image_id INTEGER PRIMARY KEY REFERENCES images,
         bytes BLOB NOT NULL

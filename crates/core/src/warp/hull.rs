@@ -1,7 +1,7 @@
 //! The shape that stands for the world: what the ray of a pixel ends on.
 //!
-//! The ground is the plane z = 0, exactly. Each goal is an upright *screen* between its posts, from which they
-//! and the crossbar do not stand out by more than their thickness. All else (walls, ceiling, what stands in front of them) is
+//! The ground is the plane z = 0, exactly. Each goal is two upright *screens*: its frame, from which posts and crossbar do not
+//! stand out by more than half their thickness, and its back. All else (walls, ceiling, what stands in front of them) is
 //! taken to lie on a box around the field, the *hull* of the hall. Ground and hull are closed: the map from one picture to
 //! another has no seam where the ground ends.
 
@@ -32,6 +32,39 @@ pub struct Screen {
     pub opening_height_m: f64,
 }
 
+/// The measures of the hall around a field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hall {
+    /// Where the walls stand towards −x and −y, metres.
+    pub min_m: DVec2,
+    /// Where the walls stand towards +x and +y, metres.
+    pub max_m: DVec2,
+    /// Height of the ceiling, metres.
+    pub ceiling_m: f64,
+    /// From the posts to the back of the goals, metres.
+    pub goal_depth_m: f64,
+}
+
+impl Hall {
+    /// A usual hall, until more is known.
+    pub fn usual(field: &FieldDimensions) -> Self {
+        let max_m = field.carpet_half_extent_m() + USUAL_WALLS_M;
+        Self { min_m: -max_m, max_m, ceiling_m: USUAL_CEILING_M, goal_depth_m: USUAL_GOAL_DEPTH_M }
+    }
+
+    /// Whether the measures are finite numbers of a hall that holds the field.
+    pub fn holds(&self, field: &FieldDimensions) -> bool {
+        let half = DVec2::new(field.length_m, field.width_m) / 2.0;
+        let sizes = [self.ceiling_m, self.goal_depth_m];
+        let is_finite =
+            self.min_m.is_finite() && self.max_m.is_finite() && sizes.iter().all(|size| size.is_finite());
+        is_finite
+            && self.min_m.cmplt(-half).all()
+            && self.max_m.cmpgt(half).all()
+            && sizes.iter().all(|&size| size > 0.0)
+    }
+}
+
 /// A box around the field with the goals in it, axes as the world's; its floor is the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hull {
@@ -39,24 +72,23 @@ pub struct Hull {
     pub min_in_world: DVec3,
     /// Corner with the largest coordinates, metres.
     pub max_in_world: DVec3,
-    /// The goals.
+    /// Frame and back of both goals.
     pub screens: [Screen; 4],
 }
 
 impl Hull {
-    /// A hall of the usual size around a field.
-    pub fn around(field: &FieldDimensions) -> Self {
-        let half = field.carpet_half_extent_m() + USUAL_WALLS_M;
+    /// The shape of a hall with a field in it.
+    pub fn new(hall: &Hall, field: &FieldDimensions) -> Self {
         Self {
-            min_in_world: (-half).extend(0.0),
-            max_in_world: half.extend(USUAL_CEILING_M),
-            screens: goal_screens(field),
+            min_in_world: hall.min_m.extend(0.0),
+            max_in_world: hall.max_m.extend(hall.ceiling_m),
+            screens: goal_screens(field, hall.goal_depth_m),
         }
     }
 
     /// The same hull, grown where it must be to hold a camera with this much room around it, metres.
     pub fn holding(mut self, pose: CameraPose, room_m: f64) -> Self {
-        let room = DVec2::splat(room_m).extend(room_m);
+        let room = DVec3::splat(room_m);
         self.min_in_world = self.min_in_world.min(pose.position_in_world() - room).with_z(0.0);
         self.max_in_world = self.max_in_world.max(pose.position_in_world() + room);
         self
@@ -64,7 +96,7 @@ impl Hull {
 }
 
 /// Frame and back of both goals.
-fn goal_screens(field: &FieldDimensions) -> [Screen; 4] {
+fn goal_screens(field: &FieldDimensions, depth_m: f64) -> [Screen; 4] {
     let (inner_half_width, thickness) = (field.goal_width_m / 2.0, field.goal_post_diameter_m);
     let front = Screen {
         x_m: field.length_m / 2.0,
@@ -74,7 +106,7 @@ fn goal_screens(field: &FieldDimensions) -> [Screen; 4] {
         opening_height_m: field.goal_height_m,
     };
     let back = Screen {
-        x_m: front.x_m + USUAL_GOAL_DEPTH_M,
+        x_m: front.x_m + depth_m,
         half_width_m: inner_half_width,
         height_m: field.goal_height_m,
         opening_half_width_m: 0.0,

@@ -12,7 +12,7 @@ mod rays;
 
 pub use self::{
     blend::{BlendWeights, MAX_SOURCES, Origin, Source, Target, Warped, blend, costs, glimpses},
-    hull::{Hull, Screen},
+    hull::{Hall, Hull, Screen},
     kernel::Placement,
     picture::Picture,
     rays::RayTable,

@@ -1,0 +1,150 @@
+//! Which images were recorded near a pose: Delaunay triangulations of where they were taken, one for each sector of
+//! headings.
+//!
+//! Images of one sector at nearly the same place share a vertex, a *spot*; all of them are kept. What is near is
+//! measured by [`PixelMetric`]. Natural neighbours and their weights (Sibson, 1981) are those of the two
+//! sectors on both sides of the heading, mixed in proportion: the weights change smoothly with x, y and yaw.
+
+mod nearest;
+mod sector;
+
+use reality_sim_core::pose::CameraPose;
+
+use self::sector::{SECTORS, Sector};
+use crate::metric::PixelMetric;
+
+/// Images closer than this share a spot, pixels: no one sees the difference.
+const SPOT_PX: f64 = 1.0;
+
+/// The index of an image in the list that a [`PoseIndex`] was made of.
+pub type ImageIndex = u32;
+
+/// An image near a pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Neighbour {
+    /// Which.
+    pub image: ImageIndex,
+    /// How far the picture moves from it to the pose asked for, root mean square pixels.
+    pub distance_px: f64,
+    /// Its share, of 1 over all neighbours.
+    pub weight: f64,
+}
+
+/// Why a pose has no neighbours.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum NoNeighbours {
+    /// There are no images at all.
+    #[error("there is no image: build the database from a recording first")]
+    NoImages,
+    /// The pose is not made of finite numbers.
+    #[error("the pose is not made of finite numbers")]
+    NotFinite,
+    /// Nothing recorded is near enough to reconstruct the picture from.
+    #[error(
+        "nothing was recorded near this pose: the nearest picture is {distance_px:.0} px away, the limit is {limit_px:.0} px; record pictures there, or ask for the best effort"
+    )]
+    OutOfReach {
+        /// The nearest image's distance, root mean square pixels.
+        distance_px: f64,
+        /// The largest distance allowed.
+        limit_px: f64,
+    },
+}
+
+/// Finds images by pose.
+#[derive(Debug)]
+pub struct PoseIndex {
+    metric: PixelMetric,
+    poses: Vec<CameraPose>,
+    sectors: Vec<Sector>,
+}
+
+impl PoseIndex {
+    /// An index of images taken at these poses. Poses that are not made of finite numbers are never found.
+    pub fn new(metric: PixelMetric, poses: Vec<CameraPose>) -> Self {
+        let spot_m = metric.reach_m(SPOT_PX);
+        let sectors = (0..SECTORS).map(|number| Sector::new(number, &poses, spot_m)).collect();
+        Self { metric, poses, sectors }
+    }
+
+    /// The poses of the images.
+    pub fn poses(&self) -> &[CameraPose] {
+        &self.poses
+    }
+
+    /// What distances are measured by.
+    pub fn metric(&self) -> &PixelMetric {
+        &self.metric
+    }
+
+    /// Checks that the nearest image is not farther than this, root mean square pixels.
+    pub fn check_reach(&self, pose: CameraPose, limit_px: f64) -> Result<Neighbour, NoNeighbours> {
+        let nearest = self.nearest(pose, 1)?[0];
+        let Neighbour { distance_px, .. } = nearest;
+        if distance_px <= limit_px {
+            Ok(nearest)
+        } else {
+            Err(NoNeighbours::OutOfReach { distance_px, limit_px })
+        }
+    }
+
+    /// The nearest images, nearest first, with equal weights: `count`, or all where there are fewer.
+    pub fn nearest(&self, pose: CameraPose, count: usize) -> Result<Vec<Neighbour>, NoNeighbours> {
+        self.check(pose)?;
+        let found = nearest::search(self, pose, count.max(1));
+        let weight = 1.0 / found.len() as f64;
+        Ok(found.into_iter().map(|(image, distance_px)| Neighbour { image, distance_px, weight }).collect())
+    }
+
+    /// The natural neighbours with their weights, the heaviest first. Outside the hull of a sector's images the nearest of
+    /// them takes their place.
+    pub fn natural(&self, pose: CameraPose) -> Result<Vec<Neighbour>, NoNeighbours> {
+        self.check(pose)?;
+        let mut neighbours: Vec<Neighbour> = Vec::new();
+        for (sector, share) in self.sectors_around(pose.yaw_rad) {
+            for (items, weight) in sector.natural_spots(pose) {
+                let (image, distance_px) = self.nearest_of(items, pose);
+                neighbours.push(Neighbour { image, distance_px, weight: share * weight });
+            }
+        }
+        if neighbours.is_empty() {
+            return self.nearest(pose, 1);
+        }
+        neighbours.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+        Ok(neighbours)
+    }
+
+    /// The edges of the triangulations used for a heading, each between two places, metres: for drawing.
+    pub fn edges(&self, yaw_rad: f64) -> Vec<[[f64; 2]; 2]> {
+        self.sectors_around(yaw_rad).flat_map(|(sector, _)| sector.edges()).collect()
+    }
+
+    fn check(&self, pose: CameraPose) -> Result<(), NoNeighbours> {
+        if !pose.is_finite() {
+            return Err(NoNeighbours::NotFinite);
+        }
+        if self.sectors.iter().all(Sector::is_empty) { Err(NoNeighbours::NoImages) } else { Ok(()) }
+    }
+
+    /// The sectors between whose middles a heading lies, with their shares: 1 together. An empty one leaves its share to the
+    /// other.
+    fn sectors_around(&self, yaw_rad: f64) -> impl Iterator<Item = (&Sector, f64)> {
+        let [(a, share_a), (b, share_b)] = sector::around(yaw_rad);
+        let (a, b) = (&self.sectors[a], &self.sectors[b]);
+        let shares = match (a.is_empty(), b.is_empty()) {
+            (false, false) => [share_a, share_b],
+            (a_is_empty, b_is_empty) => [f64::from(u8::from(!a_is_empty)), f64::from(u8::from(!b_is_empty))],
+        };
+        [(a, shares[0]), (b, shares[1])].into_iter().filter(|(_, share)| *share > 0.0)
+    }
+
+    /// The nearest of some images, of which there is at least one.
+    fn nearest_of(&self, items: &[ImageIndex], pose: CameraPose) -> (ImageIndex, f64) {
+        let distance =
+            |&image: &ImageIndex| (image, self.metric.distance_px(self.poses[image as usize], pose));
+        items.iter().map(distance).fold((0, f64::INFINITY), |a, b| if b.1 < a.1 { b } else { a })
+    }
+}
+
+#[cfg(test)]
+mod tests;

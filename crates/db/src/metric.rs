@@ -1,0 +1,153 @@
+//! How far apart two poses are: by how many pixels the picture moves between them.
+//!
+//! A small motion δ = (forward, left, turn, rise, pitch, roll) of the camera moves what is seen at a pixel by J δ pixels,
+//! J being the derivative of the projection of the point seen there. The mean over the picture of |J δ|² is δᵀ M δ with
+//! M = mean JᵀJ, and its square root is the distance: root mean square pixels. So no factor between metres and radians
+//! is chosen; lens, height and pitch of the camera decide. The points are those of the ground, and beyond the
+//! field a background at the distance of the carpet's corner from its centre.
+
+use glam::{DVec2, DVec3};
+use nalgebra::{Matrix2, Matrix6, Vector6};
+
+use reality_sim_core::{
+    camera::Camera,
+    field::FieldDimensions,
+    pose::{CameraPose, wrap_angle},
+};
+
+/// Columns and rows of the grid of pixels over which the motion is averaged.
+const GRID: [u32; 2] = [32, 24];
+
+/// Step of the numerical derivative, metres and radians.
+const STEP: f64 = 1e-5;
+
+/// The distance between poses of one camera, root mean square pixels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PixelMetric {
+    /// Of forward, left, turn, rise, pitch and roll, pixels² per metre² and radian².
+    matrix: Matrix6<f64>,
+    /// Least pixels that a metre in the plane moves the picture, whatever else moves with it.
+    least_px_per_m: f64,
+    /// Least pixels that a radian of heading moves the picture, whatever else moves with it.
+    least_px_per_rad: f64,
+    /// Half the picture's diagonal, pixels.
+    half_diagonal_px: f64,
+}
+
+impl PixelMetric {
+    /// For a camera that is usually at this height, pitch and roll, on this field. `None` where the camera sees too
+    /// little there for every motion to move something.
+    pub fn new(camera: &Camera, usual: CameraPose, field: &FieldDimensions) -> Option<Self> {
+        let pose = CameraPose { x_m: 0.0, y_m: 0.0, yaw_rad: 0.0, ..usual };
+        let background_m = field.carpet_half_extent_m().length();
+        let pixels = pixel_grid(camera);
+        let seen = pixels
+            .filter_map(|pixel| pixel_motion(camera, pose, point_seen(camera, pose, pixel, background_m)?));
+        let (sum, count) = seen.fold((Matrix6::zeros(), 0), |(sum, count), square| (sum + square, count + 1));
+        let matrix: Matrix6<f64> = sum / f64::from(count.max(1));
+        let half_diagonal_px = 0.5 * f64::from(camera.width).hypot(f64::from(camera.height));
+        let information = matrix.cholesky()?.inverse();
+        // What a block of the inverse says is what is left of the motion when all others make up for it (Schur).
+        let plane: Matrix2<f64> = information.fixed_view::<2, 2>(0, 0).into_owned().try_inverse()?;
+        let least_px_per_m = plane.symmetric_eigenvalues().min().max(0.0).sqrt();
+        let least_px_per_rad = (1.0 / information[(2, 2)]).sqrt();
+        Some(Self { matrix, least_px_per_m, least_px_per_rad, half_diagonal_px })
+    }
+
+    /// Root mean square pixels that the picture moves from one pose to the other, to first order: the motion is taken in
+    /// the axes of the mean heading, so that the distance is the same both ways.
+    pub fn distance_px(&self, a: CameraPose, b: CameraPose) -> f64 {
+        let turn_rad = wrap_angle(b.yaw_rad - a.yaw_rad);
+        let heading_rad = a.yaw_rad + 0.5 * turn_rad;
+        let moved = DVec2::from_angle(-heading_rad).rotate(DVec2::new(b.x_m - a.x_m, b.y_m - a.y_m));
+        let motion = Vector6::new(
+            moved.x,
+            moved.y,
+            turn_rad,
+            b.height_m - a.height_m,
+            wrap_angle(b.pitch_rad - a.pitch_rad),
+            wrap_angle(b.roll_rad - a.roll_rad),
+        );
+        (motion.transpose() * self.matrix * motion)[0].max(0.0).sqrt()
+    }
+
+    /// No two poses this far apart in the plane, metres, are nearer than this, pixels.
+    pub fn least_distance_px(&self, distance_m: f64) -> f64 {
+        self.least_px_per_m * distance_m
+    }
+
+    /// No two poses with headings this far apart, radians, are nearer than this, pixels.
+    pub fn least_turn_px(&self, turn_rad: f64) -> f64 {
+        self.least_px_per_rad * turn_rad
+    }
+
+    /// How far a camera moves in the plane, metres, until the picture has moved by this, pixels, in the direction in which it
+    /// moves most.
+    pub fn reach_m(&self, distance_px: f64) -> f64 {
+        let plane: Matrix2<f64> = self.matrix.fixed_view::<2, 2>(0, 0).into_owned();
+        distance_px / plane.symmetric_eigenvalues().max().sqrt()
+    }
+
+    /// Half the picture's diagonal, pixels: pictures farther apart have hardly anything in common.
+    pub fn half_diagonal_px(&self) -> f64 {
+        self.half_diagonal_px
+    }
+
+    /// M, of forward, left, turn, rise, pitch and roll, pixels² per metre² and radian².
+    pub fn matrix(&self) -> &Matrix6<f64> {
+        &self.matrix
+    }
+}
+
+fn pixel_grid(camera: &Camera) -> impl Iterator<Item = DVec2> {
+    let place = |index: u32, count: u32, size: u32| {
+        (f64::from(index) + 0.5) / f64::from(count) * f64::from(size) - 0.5
+    };
+    let (width, height) = (camera.width, camera.height);
+    (0..GRID[1]).flat_map(move |row| {
+        (0..GRID[0]).map(move |column| DVec2::new(place(column, GRID[0], width), place(row, GRID[1], height)))
+    })
+}
+
+/// The point of the ground that is seen at a pixel, or of the background where that is nearer.
+fn point_seen(camera: &Camera, pose: CameraPose, pixel: DVec2, background_m: f64) -> Option<DVec3> {
+    camera.check_inside(pixel).ok()?;
+    let ray = pose.rotation_world_from_camera() * camera.unproject(pixel).ok()?;
+    let to_ground_m = if ray.z < 0.0 { -pose.height_m / ray.z } else { f64::INFINITY };
+    Some(pose.position_in_world() + ray * to_ground_m.min(background_m))
+}
+
+/// JᵀJ of a point, by central differences.
+fn pixel_motion(camera: &Camera, pose: CameraPose, point_in_world: DVec3) -> Option<Matrix6<f64>> {
+    let mut square = Matrix6::zeros();
+    let mut gradients = [DVec2::ZERO; 6];
+    for (axis, gradient) in gradients.iter_mut().enumerate() {
+        let pixel = |step: f64| {
+            camera.project_unbounded(moved(pose, axis, step).camera_from_world(point_in_world)).ok()
+        };
+        *gradient = (pixel(STEP)? - pixel(-STEP)?) / (2.0 * STEP);
+    }
+    for row in 0..6 {
+        for column in 0..6 {
+            square[(row, column)] = gradients[row].dot(gradients[column]);
+        }
+    }
+    Some(square)
+}
+
+fn moved(mut pose: CameraPose, axis: usize, step: f64) -> CameraPose {
+    let coordinates = [
+        &mut pose.x_m,
+        &mut pose.y_m,
+        &mut pose.yaw_rad,
+        &mut pose.height_m,
+        &mut pose.pitch_rad,
+        &mut pose.roll_rad,
+    ];
+    for (index, coordinate) in coordinates.into_iter().enumerate() {
+        if index == axis {
+            *coordinate += step;
+        }
+    }
+    pose
+}

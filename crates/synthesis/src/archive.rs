@@ -1,0 +1,152 @@
+//! A database opened for pictures at any pose: what was recorded, where it lies, and the pictures decoded last.
+
+use std::{collections::BTreeMap, path::Path, sync::Arc};
+
+use rayon::prelude::*;
+use reality_sim_core::{
+    camera::{Camera, KernelCamera},
+    field::FieldDimensions,
+    pose::CameraPose,
+    sequence::CameraSetup,
+    warp::{Hall, Hull, Picture, Placement, Source},
+};
+use reality_sim_db::{
+    Database, ImageRecord,
+    index::{ImageIndex, PoseIndex},
+    metric::PixelMetric,
+};
+
+use crate::{SynthesisError, cache::PictureCache};
+
+/// Room around every camera inside the hull, metres.
+const ROOM_M: f64 = 0.3;
+
+/// Recorded images by pose. Threads share one.
+#[derive(Debug)]
+pub struct Archive {
+    database: Database,
+    images: Vec<ImageRecord>,
+    cameras: BTreeMap<i64, (Camera, KernelCamera)>,
+    setup: CameraSetup,
+    field: FieldDimensions,
+    hull: Hull,
+    index: PoseIndex,
+    cache: PictureCache,
+}
+
+impl Archive {
+    /// Opens a database without decoding any picture. At most `cache_bytes` are spent on decoded pictures.
+    ///
+    /// A database may hold recordings of several fields: the one that most images show is taken, with its images alone.
+    pub fn open(path: &Path, cache_bytes: usize) -> Result<Self, SynthesisError> {
+        let database = Database::open(path)?;
+        let mut images = database.images()?;
+        let empty = || SynthesisError::Empty { database: path.display().to_string() };
+        let field_id = most_common(images.iter().map(|image| image.field_id)).ok_or_else(empty)?;
+        images.retain(|image| image.field_id == field_id);
+        let field = database.fields()?.remove(&field_id).ok_or_else(empty)?;
+        let mut setups = database.cameras()?;
+        let cameras = setups
+            .iter()
+            .map(|(&id, CameraSetup { camera, .. })| (id, (camera.clone(), KernelCamera::new(camera))));
+        let cameras = cameras.collect();
+        let camera_id = most_common(images.iter().map(|image| image.camera_id)).ok_or_else(empty)?;
+        let setup = setups.remove(&camera_id).ok_or_else(empty)?;
+        let poses: Vec<CameraPose> = images.iter().map(|image| image.pose).collect();
+        let metric = PixelMetric::new(&setup.camera, usual_pose(&poses), &field)
+            .ok_or_else(|| SynthesisError::BlindCamera { database: path.display().to_string() })?;
+        let hall = database.halls()?.remove(&field_id).unwrap_or_else(|| Hall::usual(&field));
+        let hull = Hull::new(&hall, &field);
+        let hull = poses.iter().fold(hull, |hull, pose| hull.holding(*pose, ROOM_M));
+        let index = PoseIndex::new(metric, poses);
+        let cache = PictureCache::new(cache_bytes);
+        Ok(Self { database, images, cameras, setup, field, hull, index, cache })
+    }
+
+    /// The file it was opened from.
+    pub fn database(&self) -> &Database {
+        &self.database
+    }
+
+    /// What is known of the images, in the order of [`ImageIndex`].
+    pub fn images(&self) -> &[ImageRecord] {
+        &self.images
+    }
+
+    /// The camera that took most of the images.
+    pub fn setup(&self) -> &CameraSetup {
+        &self.setup
+    }
+
+    /// The field that the images show.
+    pub fn field(&self) -> &FieldDimensions {
+        &self.field
+    }
+
+    /// What stands for the world around the field.
+    pub fn hull(&self) -> &Hull {
+        &self.hull
+    }
+
+    /// Images by pose.
+    pub fn index(&self) -> &PoseIndex {
+        &self.index
+    }
+
+    /// Bytes of the decoded pictures held.
+    pub fn cached_bytes(&self) -> usize {
+        self.cache.bytes()
+    }
+
+    /// The pose that the camera has most often but for its place and heading: the medians of height, pitch and roll.
+    pub fn usual_pose(&self) -> CameraPose {
+        usual_pose(self.index.poses())
+    }
+
+    /// A decoded picture.
+    pub fn picture(&self, image: ImageIndex) -> Result<Arc<Picture>, SynthesisError> {
+        let decode = || Ok(Picture::from(&self.database.picture(self.images[image as usize].id)?));
+        self.cache.get(image, decode)
+    }
+
+    /// Several decoded pictures, those that are not held decoded at once.
+    pub fn pictures(&self, images: &[ImageIndex]) -> Result<Vec<Arc<Picture>>, SynthesisError> {
+        images.par_iter().with_max_len(1).map(|&image| self.picture(image)).collect()
+    }
+
+    /// The camera that took an image.
+    pub fn camera_of(&self, image: ImageIndex) -> &Camera {
+        &self.cameras[&self.images[image as usize].camera_id].0
+    }
+
+    /// An image as a source of others.
+    pub(crate) fn source<'a>(&'a self, image: ImageIndex, picture: &'a Arc<Picture>) -> Source<'a> {
+        let record = &self.images[image as usize];
+        Source {
+            camera: &self.cameras[&record.camera_id].1,
+            placement: Placement::new(record.pose),
+            picture,
+            gain: [1.0; 3],
+        }
+    }
+}
+
+fn most_common(ids: impl Iterator<Item = i64>) -> Option<i64> {
+    let mut counts: BTreeMap<i64, usize> = BTreeMap::new();
+    ids.for_each(|id| *counts.entry(id).or_default() += 1);
+    counts.into_iter().max_by_key(|(_, count)| *count).map(|(id, _)| id)
+}
+
+fn usual_pose(poses: &[CameraPose]) -> CameraPose {
+    let median = |of: fn(&CameraPose) -> f64| {
+        let mut values: Vec<f64> = poses.iter().map(of).collect();
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied().unwrap_or_default()
+    };
+    CameraPose {
+        height_m: median(|pose| pose.height_m),
+        pitch_rad: median(|pose| pose.pitch_rad),
+        roll_rad: median(|pose| pose.roll_rad),
+        ..Default::default()
+    }
+}

@@ -1,0 +1,135 @@
+//! Decoded pictures, the last ones used, within a bound of memory.
+
+use std::{
+    collections::{BTreeMap, HashMap},
+    sync::{Arc, Mutex, PoisonError},
+};
+
+use reality_sim_core::warp::Picture;
+use reality_sim_db::index::ImageIndex;
+
+/// Decoded pictures. Threads share one.
+#[derive(Debug)]
+pub(crate) struct PictureCache {
+    limit_bytes: usize,
+    held: Mutex<Held>,
+}
+
+#[derive(Debug, Default)]
+struct Held {
+    bytes: usize,
+    /// Counts uses.
+    clock: u64,
+    pictures: HashMap<ImageIndex, (Arc<Picture>, u64)>,
+    /// The pictures by when they were last used.
+    order: BTreeMap<u64, ImageIndex>,
+}
+
+impl PictureCache {
+    pub(crate) fn new(limit_bytes: usize) -> Self {
+        Self { limit_bytes, held: Mutex::default() }
+    }
+
+    /// A picture, decoded by `decode` where it is not held. Two threads may decode the same picture at once; one of
+    /// the two is kept.
+    pub(crate) fn get<E>(
+        &self,
+        image: ImageIndex,
+        decode: impl FnOnce() -> Result<Picture, E>,
+    ) -> Result<Arc<Picture>, E> {
+        if let Some(picture) = self.lock().used(image) {
+            return Ok(picture);
+        }
+        let picture = Arc::new(decode()?);
+        self.lock().insert(image, picture.clone(), self.limit_bytes);
+        Ok(picture)
+    }
+
+    /// Bytes of the pictures held.
+    pub(crate) fn bytes(&self) -> usize {
+        self.lock().bytes
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, Held> {
+        // Nothing panics while the lock is held, and a picture more or less does no harm.
+        self.held.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Held {
+    fn used(&mut self, image: ImageIndex) -> Option<Arc<Picture>> {
+        self.clock += 1;
+        let (picture, last) = self.pictures.get_mut(&image)?;
+        self.order.remove(last);
+        self.order.insert(self.clock, image);
+        *last = self.clock;
+        Some(picture.clone())
+    }
+
+    fn insert(&mut self, image: ImageIndex, picture: Arc<Picture>, limit_bytes: usize) {
+        self.clock += 1;
+        self.bytes += picture.bytes();
+        self.order.insert(self.clock, image);
+        if let Some((other, last)) = self.pictures.insert(image, (picture, self.clock)) {
+            self.bytes -= other.bytes();
+            self.order.remove(&last);
+        }
+        while self.bytes > limit_bytes
+            && let Some((_, oldest)) = self.order.pop_first()
+        {
+            self.bytes -= self.pictures.remove(&oldest).map_or(0, |(picture, _)| picture.bytes());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture() -> Picture {
+        Picture { width: 4, height: 4, pixels: vec![0; 16] }
+    }
+
+    fn get(cache: &PictureCache, image: ImageIndex, decoded: &mut usize) {
+        cache
+            .get(image, || {
+                *decoded += 1;
+                Ok::<_, ()>(picture())
+            })
+            .unwrap();
+    }
+
+    #[test]
+    fn what_was_used_longest_ago_goes_first() {
+        let cache = PictureCache::new(2 * picture().bytes());
+        let mut decoded = 0;
+        for image in [1, 2, 1, 3, 1] {
+            get(&cache, image, &mut decoded);
+        }
+        assert_eq!(decoded, 3, "1 was used again and again and stays");
+        get(&cache, 2, &mut decoded);
+        assert_eq!(decoded, 4, "2 had to go for 3");
+        assert_eq!(cache.bytes(), 2 * picture().bytes());
+    }
+
+    #[test]
+    fn a_bound_below_one_picture_holds_none() {
+        let cache = PictureCache::new(1);
+        let mut decoded = 0;
+        get(&cache, 1, &mut decoded);
+        get(&cache, 1, &mut decoded);
+        assert_eq!((decoded, cache.bytes()), (2, 0));
+    }
+
+    #[test]
+    fn threads_share_a_cache_within_its_bound() {
+        let cache = PictureCache::new(5 * picture().bytes());
+        std::thread::scope(|scope| {
+            for thread in 0..4 {
+                let cache = &cache;
+                scope.spawn(move || (0..500).for_each(|i| get(cache, (i * (thread + 3)) % 17, &mut 0)));
+            }
+        });
+        assert_eq!(cache.bytes(), 5 * picture().bytes());
+    }
+}

@@ -1,0 +1,61 @@
+//! Brightness of neighbours brought together: exposure and white balance differ from picture to picture.
+//!
+//! For every pair of neighbours and every channel, the median of the ratios of their colours at the places that both see;
+//! from these, by least squares, a factor for each neighbour. Their geometric mean is 1.
+
+use nalgebra::{DMatrix, DVector};
+use reality_sim_core::warp::{Source, Target, glimpses};
+
+/// Grey values outside this range say nothing about brightness: noise, or saturated.
+const USABLE: std::ops::Range<f32> = 10.0..245.0;
+
+/// Pairs with fewer places in common are not compared.
+const LEAST_PLACES: usize = 8;
+
+/// Places that holding on to a factor of 1 counts as.
+const PRIOR_PLACES: f64 = 2.0;
+
+/// No neighbour is made more than this much brighter, or darker: it shows something else then.
+const LARGEST_GAIN: f64 = 2.0;
+
+/// A factor for red, green and blue of each source.
+pub(crate) fn gains(target: &Target, sources: &[Source]) -> Vec<[f32; 3]> {
+    let seen: Vec<Vec<Option<[f32; 3]>>> = sources.iter().map(|source| glimpses(target, source)).collect();
+    let channels = [0, 1, 2].map(|channel| channel_gains(&seen, channel));
+    (0..sources.len()).map(|source| [0, 1, 2].map(|channel| channels[channel][source])).collect()
+}
+
+fn channel_gains(seen: &[Vec<Option<[f32; 3]>>], channel: usize) -> Vec<f32> {
+    let count = seen.len();
+    let mut normal = DMatrix::identity(count, count) * PRIOR_PLACES;
+    let mut right = DVector::zeros(count);
+    for a in 0..count {
+        for b in a + 1..count {
+            let Some((log_ratio, places)) = median_log_ratio(&seen[a], &seen[b], channel) else { continue };
+            // log gain a − log gain b = log (b / a).
+            normal[(a, a)] += places;
+            normal[(b, b)] += places;
+            normal[(a, b)] -= places;
+            normal[(b, a)] -= places;
+            right[a] += places * log_ratio;
+            right[b] -= places * log_ratio;
+        }
+    }
+    let limit = LARGEST_GAIN.ln();
+    // The matrix is positive definite by its prior.
+    let logs = normal.cholesky().map_or(DVector::zeros(count), |normal| normal.solve(&right));
+    logs.iter().map(|log| log.clamp(-limit, limit).exp() as f32).collect()
+}
+
+/// Median of log (b / a), and at how many places.
+fn median_log_ratio(a: &[Option<[f32; 3]>], b: &[Option<[f32; 3]>], channel: usize) -> Option<(f64, f64)> {
+    let both = a.iter().zip(b).filter_map(|(a, b)| Some(((*a)?[channel], (*b)?[channel])));
+    let usable = both.filter(|(a, b)| USABLE.contains(a) && USABLE.contains(b));
+    let mut logs: Vec<f64> = usable.map(|(a, b)| f64::from(b / a).ln()).collect();
+    if logs.len() < LEAST_PLACES {
+        return None;
+    }
+    let places = logs.len();
+    let (_, median, _) = logs.select_nth_unstable_by(places / 2, f64::total_cmp);
+    Some((*median, places as f64))
+}

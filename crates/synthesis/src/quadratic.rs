@@ -1,0 +1,163 @@
+//! The paper's Eq. 4: a polynomial of second order between the pixels of two pictures.
+//!
+//! x' = α₀ + α₁ x + α₂ y + α₃ x² + α₄ x y + α₅ y², and y' with β, fitted by least squares to the points of a 25 cm grid
+//! on the ground that both cameras see. Every pixel of the nearest picture is moved by it (forward model); pixels of
+//! the target that stay empty are looked up by the polynomial fitted the other way (reverse model).
+
+use glam::DVec2;
+use image::RgbImage;
+use nalgebra::{DMatrix, Matrix6, SMatrix};
+use reality_sim_core::{
+    camera::Camera,
+    field::FieldDimensions,
+    pose::CameraPose,
+    warp::{Origin, Picture},
+};
+
+use crate::{Method, Reconstruction, SynthesisError, Synthesizer, synthesizer::picture_of};
+
+/// Distance between the points of the grid, metres.
+const GRID_M: f64 = 0.25;
+
+/// Points that determine six coefficients.
+const LEAST_POINTS: usize = 6;
+
+/// The paper's Eq. 4 from the nearest picture.
+#[derive(Debug, Clone, Copy)]
+pub struct Quadratic;
+
+impl Method for Quadratic {
+    fn name(&self) -> &'static str {
+        "quadratic"
+    }
+
+    fn reconstruct(&self, from: &Synthesizer, pose: CameraPose) -> Result<Reconstruction, SynthesisError> {
+        let archive = from.archive();
+        let nearest = from.nearest(pose, 1)?[0];
+        let record = &archive.images()[nearest.image as usize];
+        let picture = archive.picture(nearest.image)?;
+        let pairs = ground_pairs(
+            (archive.camera_of(nearest.image), record.pose),
+            (from.camera(), pose),
+            archive.field(),
+        );
+        let few = SynthesisError::TooFewPoints { pose, found: pairs.len(), needed: LEAST_POINTS };
+        let reversed: Vec<[DVec2; 2]> = pairs.iter().map(|&[source, target]| [target, source]).collect();
+        let (Some(forward), Some(reverse)) = (Polynomial::fit(&pairs), Polynomial::fit(&reversed)) else {
+            return Err(few);
+        };
+        let (colors, origins) = moved(&picture, from.camera(), &forward, &reverse);
+        let picture: RgbImage = picture_of(from.camera(), colors);
+        Ok(Reconstruction::new(
+            picture,
+            self.name(),
+            std::iter::once((nearest.image, nearest.distance_px)),
+            origins,
+        ))
+    }
+}
+
+/// Pixels of points on the ground, in the source and in the target.
+fn ground_pairs(
+    (source, source_pose): (&Camera, CameraPose),
+    (target, target_pose): (&Camera, CameraPose),
+    field: &FieldDimensions,
+) -> Vec<[DVec2; 2]> {
+    let half = field.carpet_half_extent_m();
+    let steps = (half / GRID_M).floor().as_ivec2();
+    let mut pairs = Vec::new();
+    for x in -steps.x..=steps.x {
+        for y in -steps.y..=steps.y {
+            let point = (GRID_M * DVec2::new(f64::from(x), f64::from(y))).extend(0.0);
+            let pixel =
+                |camera: &Camera, pose: CameraPose| camera.project(pose.camera_from_world(point)).ok();
+            if let (Some(source), Some(target)) = (pixel(source, source_pose), pixel(target, target_pose)) {
+                pairs.push([source, target]);
+            }
+        }
+    }
+    pairs
+}
+
+/// Two polynomials of second order in two variables.
+struct Polynomial {
+    /// α and β.
+    coefficients: SMatrix<f64, 6, 2>,
+    /// Pixels are taken relative to this point, and in this unit, so that squares do not outgrow the rest.
+    origin: DVec2,
+    unit_px: f64,
+}
+
+impl Polynomial {
+    /// From the first to the second pixels of pairs; `None` where they do not determine it.
+    fn fit(pairs: &[[DVec2; 2]]) -> Option<Self> {
+        if pairs.len() < LEAST_POINTS {
+            return None;
+        }
+        let origin = pairs.iter().map(|[from, _]| *from).sum::<DVec2>() / pairs.len() as f64;
+        let unit_px = pairs.iter().map(|[from, _]| from.distance(origin)).fold(1.0, f64::max);
+        let rows: Vec<[f64; 6]> = pairs.iter().map(|[from, _]| terms((*from - origin) / unit_px)).collect();
+        let design = DMatrix::from_fn(pairs.len(), 6, |row, term| rows[row][term]);
+        let wanted = DMatrix::from_fn(pairs.len(), 2, |row, axis| pairs[row][1][axis]);
+        let normal: Matrix6<f64> = (design.transpose() * &design).fixed_view::<6, 6>(0, 0).into_owned();
+        let right: SMatrix<f64, 6, 2> = (design.transpose() * wanted).fixed_view::<6, 2>(0, 0).into_owned();
+        // Points on one curve of second order leave a polynomial free.
+        let least = normal.symmetric_eigenvalues().min();
+        let coefficients = normal.cholesky()?.solve(&right);
+        (least > 1e-9 * normal.trace()).then_some(Self { coefficients, origin, unit_px })
+    }
+
+    fn at(&self, pixel: DVec2) -> DVec2 {
+        let terms = terms((pixel - self.origin) / self.unit_px);
+        let value = |axis: usize| (0..6).map(|term| terms[term] * self.coefficients[(term, axis)]).sum();
+        DVec2::new(value(0), value(1))
+    }
+}
+
+fn terms(at: DVec2) -> [f64; 6] {
+    [1.0, at.x, at.y, at.x * at.x, at.x * at.y, at.y * at.y]
+}
+
+/// The picture moved by the forward model, with gaps filled by the reverse one; black where neither leads.
+fn moved(
+    picture: &Picture,
+    camera: &Camera,
+    forward: &Polynomial,
+    reverse: &Polynomial,
+) -> (Vec<[u8; 3]>, Vec<Origin>) {
+    const FORWARD: Origin = Origin { source: 0, trust: 128 };
+    const REVERSE: Origin = Origin { source: 0, trust: 64 };
+    let (width, height) = (camera.width, camera.height);
+    let count = width as usize * height as usize;
+    let mut colors = vec![[0; 3]; count];
+    let mut origins = vec![Origin { source: Origin::NOWHERE, trust: 0 }; count];
+    let color = |u: u32, v: u32| {
+        let [red, green, blue, _] = picture.pixels[(v * picture.width + u) as usize].to_le_bytes();
+        [red, green, blue]
+    };
+    for v in 0..picture.height {
+        for u in 0..picture.width {
+            let target = forward.at(DVec2::new(f64::from(u), f64::from(v)));
+            if let Some((column, row)) = pixel_at(target, width, height) {
+                let index = (row * width + column) as usize;
+                (colors[index], origins[index]) = (color(u, v), FORWARD);
+            }
+        }
+    }
+    for index in (0..count).filter(|&index| origins[index].source == Origin::NOWHERE).collect::<Vec<_>>() {
+        let (u, v) = (index as u32 % width, index as u32 / width);
+        let source = reverse.at(DVec2::new(f64::from(u), f64::from(v)));
+        if let Some((column, row)) = pixel_at(source, picture.width, picture.height) {
+            (colors[index], origins[index]) = (color(column, row), REVERSE);
+        }
+    }
+    (colors, origins)
+}
+
+/// The pixel nearest to a place, where it lies in the picture.
+fn pixel_at(place: DVec2, width: u32, height: u32) -> Option<(u32, u32)> {
+    let rounded = place.round();
+    let is_inside =
+        rounded.cmpge(DVec2::ZERO).all() && rounded.x < f64::from(width) && rounded.y < f64::from(height);
+    is_inside.then_some((rounded.x as u32, rounded.y as u32))
+}

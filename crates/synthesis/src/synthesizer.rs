@@ -1,0 +1,171 @@
+//! A picture at any pose: the neighbours are found, their pictures decoded, the method draws.
+
+use std::sync::Arc;
+
+use image::RgbImage;
+use reality_sim_core::{
+    camera::Camera,
+    pose::CameraPose,
+    warp::{BlendWeights, CpuWarper, Hull, Picture, Placement, RayTable, Source, Target, Warper},
+};
+use reality_sim_db::index::{ImageIndex, Neighbour};
+
+use crate::{Archive, Method, Reconstruction, SynthesisError, gain::gains, select::select};
+
+/// No field is larger, metres from its centre.
+const LIMIT_M: f64 = 200.0;
+
+/// Room around the camera inside the hull, metres.
+const ROOM_M: f64 = 0.3;
+
+/// How pictures are made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SynthesisConfig {
+    /// Neighbours that are mixed, at most [`reality_sim_core::warp::MAX_SOURCES`].
+    pub sources: usize,
+    /// Nearest images among which they are chosen.
+    pub candidates: usize,
+    /// How they are weighed against each other.
+    pub weights: BlendWeights,
+    /// No picture is given where the nearest image is farther, root mean square pixels; `None` for the best effort.
+    pub reach_px: Option<f64>,
+}
+
+impl SynthesisConfig {
+    /// For an archive: pictures are given where the nearest image has anything in common with them.
+    pub fn new(archive: &Archive) -> Self {
+        let reach_px = Some(archive.index().metric().half_diagonal_px());
+        Self { sources: 6, candidates: 120, weights: BlendWeights::default(), reach_px }
+    }
+}
+
+/// Gives pictures at any pose. Threads share one.
+pub struct Synthesizer {
+    archive: Arc<Archive>,
+    camera: Camera,
+    rays: RayTable,
+    warper: Arc<dyn Warper>,
+    config: SynthesisConfig,
+}
+
+impl Synthesizer {
+    /// Pictures of the camera that took the archive's images, drawn by the processor.
+    pub fn new(archive: Arc<Archive>) -> Self {
+        let camera = archive.setup().camera.clone();
+        let config = SynthesisConfig::new(&archive);
+        Self::with(archive, camera, Arc::new(CpuWarper), config)
+    }
+
+    /// Pictures of another camera, drawn on another device, or with other settings.
+    pub fn with(
+        archive: Arc<Archive>,
+        camera: Camera,
+        warper: Arc<dyn Warper>,
+        config: SynthesisConfig,
+    ) -> Self {
+        let rays = RayTable::new(&camera);
+        Self { archive, camera, rays, warper, config }
+    }
+
+    /// What was recorded.
+    pub fn archive(&self) -> &Arc<Archive> {
+        &self.archive
+    }
+
+    /// The camera whose pictures are drawn.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// The settings.
+    pub fn config(&self) -> &SynthesisConfig {
+        &self.config
+    }
+
+    /// The picture at a pose.
+    pub fn image_at(&self, pose: CameraPose, method: &dyn Method) -> Result<Reconstruction, SynthesisError> {
+        let is_possible = pose.position_in_world().length() < LIMIT_M && pose.height_m > 0.0;
+        if pose.is_finite() && !is_possible {
+            return Err(SynthesisError::ImpossiblePose { pose, limit_m: LIMIT_M });
+        }
+        let limit_px = self.config.reach_px.unwrap_or(f64::INFINITY);
+        self.archive
+            .index()
+            .check_reach(pose, limit_px)
+            .map_err(|reason| SynthesisError::NoNeighbours { pose, reason })?;
+        method.reconstruct(self, pose)
+    }
+
+    /// Decodes the pictures that a picture at this pose is made from, so that it is drawn without delay later.
+    pub fn prepare(&self, pose: CameraPose) -> Result<(), SynthesisError> {
+        let hull = self.archive.hull().holding(pose, ROOM_M);
+        let images = self.chosen(&self.target(pose, &hull), pose, self.config.sources)?;
+        let images: Vec<ImageIndex> = images.iter().map(|neighbour| neighbour.image).collect();
+        self.archive.pictures(&images).map(drop)
+    }
+
+    /// The nearest images.
+    pub fn nearest(&self, pose: CameraPose, count: usize) -> Result<Vec<Neighbour>, SynthesisError> {
+        let found = self.archive.index().nearest(pose, count);
+        found.map_err(|reason| SynthesisError::NoNeighbours { pose, reason })
+    }
+
+    /// The picture drawn from so many neighbours through ground, goals and hull.
+    pub(crate) fn warped(
+        &self,
+        method: &'static str,
+        pose: CameraPose,
+        count: usize,
+    ) -> Result<Reconstruction, SynthesisError> {
+        let hull = self.archive.hull().holding(pose, ROOM_M);
+        let target = self.target(pose, &hull);
+        let chosen = self.chosen(&target, pose, count)?;
+        let images: Vec<ImageIndex> = chosen.iter().map(|neighbour| neighbour.image).collect();
+        let pictures = self.archive.pictures(&images)?;
+        let mut sources: Vec<Source> = images
+            .iter()
+            .zip(&pictures)
+            .map(|(&image, picture)| self.archive.source(image, picture))
+            .collect();
+        if sources.len() > 1 {
+            let gains = gains(&target, &sources);
+            sources.iter_mut().zip(gains).for_each(|(source, gain)| source.gain = gain);
+        }
+        let warped = self.warper.blend(&target, &sources, &self.config.weights)?;
+        let picture = picture_of(&self.camera, warped.colors);
+        let images = chosen.iter().map(|neighbour| (neighbour.image, neighbour.distance_px));
+        Ok(Reconstruction::new(picture, method, images, warped.origins))
+    }
+
+    fn target<'a>(&'a self, pose: CameraPose, hull: &'a Hull) -> Target<'a> {
+        Target { rays: &self.rays, placement: Placement::new(pose), hull }
+    }
+
+    /// The neighbours to draw from: of the nearest and the natural ones those that together show most.
+    fn chosen(
+        &self,
+        target: &Target,
+        pose: CameraPose,
+        count: usize,
+    ) -> Result<Vec<Neighbour>, SynthesisError> {
+        let fail = |reason| SynthesisError::NoNeighbours { pose, reason };
+        let mut candidates = self.archive.index().nearest(pose, self.config.candidates).map_err(fail)?;
+        for natural in self.archive.index().natural(pose).map_err(fail)? {
+            if candidates.iter().all(|candidate| candidate.image != natural.image) {
+                candidates.push(natural);
+            }
+        }
+        // Where an image was taken decides whether it is chosen, not what it shows.
+        let nothing = Arc::new(Picture { width: 0, height: 0, pixels: Vec::new() });
+        let sources: Vec<Source> =
+            candidates.iter().map(|candidate| self.archive.source(candidate.image, &nothing)).collect();
+        let chosen = select(target, &sources, &self.config.weights, count);
+        Ok(chosen.into_iter().map(|index| candidates[index]).collect())
+    }
+}
+
+/// Colours as a picture of a camera.
+pub(crate) fn picture_of(camera: &Camera, colors: Vec<[u8; 3]>) -> RgbImage {
+    // A colour a pixel of the camera: there are as many as the picture holds.
+    RgbImage::from_raw(camera.width, camera.height, colors.into_flattened()).unwrap_or_default()
+}
