@@ -26,13 +26,14 @@
 //! ```
 
 pub mod evaluation;
+pub mod montage;
 pub mod overlay;
 
 #[cfg(feature = "gpu")]
 pub use reality_sim_gpu as gpu;
 
 pub use reality_sim_core::{
-    backend, camera, field, filter, observation, pose, preprocess, refine, search, sequence, tag,
+    backend, camera, field, filter, observation, pose, preprocess, refine, search, sequence, tag, warp,
 };
 pub use reality_sim_core::{
     camera::Camera,
@@ -42,3 +43,7 @@ pub use reality_sim_core::{
     sequence::{Sequence, SequenceError, StampedPose, write_tum},
     tag::{TagConfig, TagError, TaggedFrame, Tagger, tag_sequence},
 };
+pub use reality_sim_db as db;
+pub use reality_sim_sensor as sensor;
+pub use reality_sim_synthesis as synthesis;
+pub use reality_sim_synthesis::{Archive, Reconstruction, SynthesisError, Synthesizer};

@@ -1,9 +1,13 @@
 //! The program's commands.
 
+mod build;
 mod device;
 #[cfg(feature = "gpu")]
 mod doctor;
+mod evaluate;
 mod output;
+mod picture_at;
+mod render;
 mod tag;
 
 /// What to do.
@@ -11,6 +15,12 @@ mod tag;
 pub enum Command {
     /// Tag every picture of a sequence with the pose of the camera
     Tag(Box<tag::TagArgs>),
+    /// Put recordings with their poses into a database
+    Build(build::BuildArgs),
+    /// Give the picture at a pose, or the pictures along a path, from a database
+    Render(Box<render::RenderArgs>),
+    /// Compare pictures at poses that are not in a database with those taken there
+    Evaluate(evaluate::EvaluateArgs),
     /// List graphics adapters, and check that they compute what the CPU computes
     #[cfg(feature = "gpu")]
     Doctor(doctor::DoctorArgs),
@@ -21,6 +31,9 @@ impl Command {
     pub fn check_usage(&self) -> Result<(), String> {
         match self {
             Self::Tag(args) => args.check_usage(),
+            Self::Build(args) => args.check_usage(),
+            Self::Render(args) => args.check_usage(),
+            Self::Evaluate(args) => args.check_usage(),
             #[cfg(feature = "gpu")]
             Self::Doctor(_) => Ok(()),
         }
@@ -30,6 +43,9 @@ impl Command {
     pub fn run(&self) -> anyhow::Result<()> {
         match self {
             Self::Tag(args) => tag::run(args),
+            Self::Build(args) => build::run(args),
+            Self::Render(args) => render::run(args),
+            Self::Evaluate(args) => evaluate::run(args),
             #[cfg(feature = "gpu")]
             Self::Doctor(args) => doctor::run(args),
         }

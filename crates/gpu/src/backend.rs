@@ -8,6 +8,7 @@ use reality_sim_core::{
     field::FieldDimensions,
     filter::{Filter, FilterConfig},
     observation::{ObservationConfig, Scorer},
+    warp::{CpuWarper, Warper},
 };
 
 use crate::{GpuContext, GpuError, GpuFilter, GpuScorer};
@@ -49,6 +50,10 @@ impl Backend for GpuBackend {
         config: FilterConfig,
     ) -> Result<Box<dyn Filter>, BackendError> {
         Ok(Box::new(GpuFilter::new(self.context.clone(), camera, field, observation, config)?))
+    }
+
+    fn warper(&self) -> Result<Arc<dyn Warper>, BackendError> {
+        Ok(Arc::new(CpuWarper))
     }
 
     fn status(&self) -> Result<(), BackendError> {

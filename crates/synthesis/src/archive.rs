@@ -119,6 +119,11 @@ impl Archive {
         &self.cameras[&self.images[image as usize].camera_id].0
     }
 
+    /// Stands in for a picture where only its place counts.
+    pub(crate) fn no_picture() -> Arc<Picture> {
+        Arc::new(Picture { width: 0, height: 0, pixels: Vec::new() })
+    }
+
     /// An image as a source of others.
     pub(crate) fn source<'a>(&'a self, image: ImageIndex, picture: &'a Arc<Picture>) -> Source<'a> {
         let record = &self.images[image as usize];

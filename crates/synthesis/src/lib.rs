@@ -13,6 +13,7 @@ mod archive;
 mod cache;
 mod error;
 mod gain;
+mod hall;
 mod method;
 mod nearest;
 mod plane;
@@ -25,6 +26,7 @@ mod synthesizer;
 pub use self::{
     archive::Archive,
     error::SynthesisError,
+    hall::measure_hall,
     method::{METHODS, Method, method},
     nearest::Nearest,
     plane::{Blend, Plane},

@@ -6,7 +6,7 @@ use image::RgbImage;
 use reality_sim_core::{
     camera::Camera,
     pose::CameraPose,
-    warp::{BlendWeights, CpuWarper, Hull, Picture, Placement, RayTable, Source, Target, Warper},
+    warp::{BlendWeights, CpuWarper, Hull, Placement, RayTable, Source, Target, Warper},
 };
 use reality_sim_db::index::{ImageIndex, Neighbour};
 
@@ -156,7 +156,7 @@ impl Synthesizer {
             }
         }
         // Where an image was taken decides whether it is chosen, not what it shows.
-        let nothing = Arc::new(Picture { width: 0, height: 0, pixels: Vec::new() });
+        let nothing = Archive::no_picture();
         let sources: Vec<Source> =
             candidates.iter().map(|candidate| self.archive.source(candidate.image, &nothing)).collect();
         let chosen = select(target, &sources, &self.config.weights, count);

@@ -14,7 +14,7 @@ const TOLERANCE_S: f64 = 0.51e-3;
 
 /// The pose nearest in time to each frame, where one is near enough. A file without poses says nothing; poses of
 /// which none belongs to any frame are a mistake.
-pub(super) fn match_poses(
+pub fn match_poses(
     path: &Path,
     mut poses: Vec<StampedPose>,
     frames: &[FrameRecord],

@@ -29,12 +29,12 @@ pub use self::{
     error::{Fault, Printable, SequenceError},
     field_file::read_field,
     frames::FrameRecord,
+    groundtruth::match_poses,
     picture::{decode_image, save_image},
     tum::{StampedPose, read_tum, write_tum},
 };
 use self::{
     frames::parse_frames,
-    groundtruth::match_poses,
     picture::{copy_picture, load_picture, read_picture},
     sequence_file::{SEQUENCE_FILE, parse_sequence},
     text::read_and_parse,

@@ -1,0 +1,275 @@
+//! `reality-sim evaluate`: pictures at poses that are not in the database, against those really taken there.
+
+use std::{collections::BTreeMap, fmt::Write, path::PathBuf, time::Instant};
+
+use anyhow::bail;
+use clap::Args;
+use image::RgbImage;
+use serde::Serialize;
+
+use reality_sim::{
+    Archive, CameraPose, Reconstruction, Sequence, SynthesisError, Synthesizer,
+    evaluation::percentile,
+    montage::grid,
+    preprocess::luma,
+    sensor::{Renderer, SceneColors},
+    sequence::{save_image, write_atomically},
+    synthesis::{
+        METHODS,
+        quality::{Mask, psnr_db, ssim},
+    },
+};
+
+use super::{
+    output::{check_output_file, create_output_folder, frame_progress, print, print_json},
+    picture_at::SynthesisArgs,
+};
+
+/// Drawn from the model, beside the methods that use recorded pictures.
+const SIMULATED: &str = "simulated";
+
+/// Options of `evaluate`.
+#[derive(Debug, Args)]
+pub struct EvaluateArgs {
+    /// The database, as `build` makes it
+    database: PathBuf,
+    /// Folder of a sequence with ground truth whose pictures are not in the database
+    probes: PathBuf,
+    #[command(flatten)]
+    synthesis: SynthesisArgs,
+    /// Write the figures of every probe, as a CSV file
+    #[arg(long, value_name = "FILE")]
+    details: Option<PathBuf>,
+    /// Write for every probe the true picture and those of all methods side by side
+    #[arg(long, value_name = "FOLDER")]
+    pictures: Option<PathBuf>,
+    /// Print one JSON object on standard output
+    #[arg(long)]
+    json: bool,
+}
+
+/// What one method made of one probe.
+struct Outcome {
+    psnr_db: f64,
+    /// `None` where the probe shows no carpet.
+    psnr_field_db: Option<f64>,
+    ssim: Option<f64>,
+    milliseconds: f64,
+    /// Share of the pixels that some recorded picture shows.
+    covered: f64,
+    picture: RgbImage,
+}
+
+/// A probe, and the outcome of each method that answered.
+struct Judged {
+    frame: usize,
+    /// From the nearest recorded picture, root mean square pixels.
+    distance_px: Option<f64>,
+    truth: RgbImage,
+    outcomes: BTreeMap<&'static str, Outcome>,
+}
+
+#[derive(Serialize)]
+struct Report {
+    database: String,
+    probes: usize,
+    /// Images in the database.
+    images: usize,
+    /// By method.
+    methods: BTreeMap<&'static str, MethodReport>,
+}
+
+/// Means over the probes answered; the time is the median.
+#[derive(Serialize)]
+struct MethodReport {
+    psnr_db: Option<f64>,
+    psnr_field_db: Option<f64>,
+    ssim: Option<f64>,
+    milliseconds: Option<f64>,
+    /// Share of the pixels that some recorded picture shows.
+    covered: Option<f64>,
+    /// Share of the probes that were given a picture.
+    answered: f64,
+}
+
+impl EvaluateArgs {
+    /// Refuses options that contradict each other.
+    pub fn check_usage(&self) -> Result<(), String> {
+        self.synthesis.backend.check_usage()
+    }
+}
+
+/// Runs the command.
+pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
+    let archive = args.synthesis.archive(&args.database)?;
+    let probes = Sequence::open(&args.probes)?;
+    if probes.groundtruth.iter().all(Option::is_none) {
+        bail!("{}: has no ground truth: the poses of probes must be known", args.probes.display());
+    }
+    check_outputs(args, &probes)?;
+    let synthesizer = args.synthesis.synthesizer(archive.clone(), Some(probes.setup.camera.clone()))?;
+    let renderer =
+        Renderer::new(&probes.setup, archive.field(), SceneColors::new(&probes.setup, archive.field()));
+    let with_truth =
+        probes.groundtruth.iter().enumerate().filter_map(|(frame, pose)| Some((frame, (*pose)?)));
+    let with_truth: Vec<(usize, CameraPose)> = with_truth.collect();
+    let progress = frame_progress(with_truth.len())?;
+    let mut judged = Vec::new();
+    for (frame, pose) in with_truth {
+        let truth = probes.load_image(frame)?;
+        let probe = judge(&synthesizer, &renderer, frame, pose, truth)
+            .inspect_err(|_| progress.finish_and_clear())?;
+        if let Some(folder) = &args.pictures {
+            save_image(&folder.join(format!("{frame:06}.png")), &side_by_side(&probe))?;
+        }
+        judged.push(Judged { truth: RgbImage::default(), ..without_pictures(probe) });
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    if let Some(file) = &args.details {
+        write_atomically(file, details_csv(&judged).as_bytes())?;
+    }
+    let report = Report::new(args, &archive, &judged);
+    if args.json { print_json(&report) } else { print(&report.text()) }
+}
+
+fn check_outputs(args: &EvaluateArgs, probes: &Sequence) -> anyhow::Result<()> {
+    let mut inputs = probes.files.clone();
+    inputs.extend(probes.frames.iter().map(|frame| probes.folder.join(&frame.image)));
+    inputs.push(args.database.clone());
+    args.details.as_ref().map_or(Ok(()), |file| check_output_file(file, &inputs))?;
+    args.pictures.as_ref().map_or(Ok(()), |folder| create_output_folder(folder, &inputs))
+}
+
+fn judge(
+    synthesizer: &Synthesizer,
+    renderer: &Renderer,
+    frame: usize,
+    pose: CameraPose,
+    truth: RgbImage,
+) -> anyhow::Result<Judged> {
+    let mask = Mask::carpet(synthesizer.camera(), pose, synthesizer.archive().field());
+    let grey = luma(&truth);
+    let compare = |picture: RgbImage, milliseconds: f64, covered: f64| {
+        let psnr = psnr_db(&picture, &truth, None)?;
+        let (psnr_field_db, ssim) = (psnr_db(&picture, &truth, Some(&mask)), ssim(&luma(&picture), &grey));
+        Some(Outcome { psnr_db: psnr, psnr_field_db, ssim, milliseconds, covered, picture })
+    };
+    let mut outcomes = BTreeMap::new();
+    for method in METHODS {
+        // The first call decodes the neighbours, the second is timed.
+        let answer =
+            synthesizer.image_at(pose, method).and_then(|_| timed(|| synthesizer.image_at(pose, method)));
+        match answer {
+            Ok((Reconstruction { picture, origins, .. }, milliseconds)) => {
+                let seen = origins.iter().filter(|origin| origin.trust > 0).count();
+                let covered = seen as f64 / origins.len().max(1) as f64;
+                outcomes
+                    .extend(compare(picture, milliseconds, covered).map(|outcome| (method.name(), outcome)));
+            }
+            Err(SynthesisError::NoNeighbours { .. } | SynthesisError::TooFewPoints { .. }) => {}
+            Err(error) => return Err(error.into()),
+        }
+    }
+    let (drawn, milliseconds) = timed(|| renderer.draw(pose))?;
+    outcomes.extend(compare(drawn, milliseconds, 0.0).map(|outcome| (SIMULATED, outcome)));
+    let distance_px = synthesizer.nearest(pose, 1).ok().map(|nearest| nearest[0].distance_px);
+    Ok(Judged { frame, distance_px, truth, outcomes })
+}
+
+fn timed<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, f64), E> {
+    let start = Instant::now();
+    let result = work()?;
+    Ok((result, 1e3 * start.elapsed().as_secs_f64()))
+}
+
+/// The names of the columns, in the order in which they are shown.
+fn names() -> impl Iterator<Item = &'static str> {
+    METHODS.into_iter().map(|method| method.name()).chain([SIMULATED])
+}
+
+/// True picture first; grey where a method has no answer.
+fn side_by_side(probe: &Judged) -> RgbImage {
+    let missing = RgbImage::from_pixel(probe.truth.width(), probe.truth.height(), image::Rgb([128; 3]));
+    let of = |name| probe.outcomes.get(name).map_or(&missing, |outcome| &outcome.picture).clone();
+    let pictures: Vec<RgbImage> = std::iter::once(probe.truth.clone()).chain(names().map(of)).collect();
+    let rows: Vec<&[RgbImage]> = pictures.chunks(3).collect();
+    grid(&rows, probe.truth.width())
+}
+
+/// Pictures of all probes would fill the memory.
+fn without_pictures(mut probe: Judged) -> Judged {
+    probe.outcomes.values_mut().for_each(|outcome| outcome.picture = RgbImage::default());
+    probe
+}
+
+fn details_csv(judged: &[Judged]) -> String {
+    let mut csv = String::from("frame,distance_px,method,psnr_db,psnr_field_db,ssim,milliseconds,covered\n");
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+    for Judged { frame, distance_px, outcomes, .. } in judged {
+        for name in names() {
+            let Some(outcome) = outcomes.get(name) else { continue };
+            let Outcome { psnr_db, psnr_field_db, ssim, milliseconds, covered, .. } = outcome;
+            let (field, ssim) = (number(*psnr_field_db), number(*ssim));
+            // Writing into a string cannot fail.
+            let _ = writeln!(
+                csv,
+                "{frame},{},{name},{psnr_db},{field},{ssim},{milliseconds},{covered}",
+                number(*distance_px)
+            );
+        }
+    }
+    csv
+}
+
+impl Report {
+    fn new(args: &EvaluateArgs, archive: &Archive, judged: &[Judged]) -> Self {
+        Self {
+            database: args.database.display().to_string(),
+            probes: judged.len(),
+            images: archive.images().len(),
+            methods: names().map(|name| (name, MethodReport::new(name, judged))).collect(),
+        }
+    }
+
+    fn text(&self) -> String {
+        let mut text = format!("{} probes, {} images in {}\n\n", self.probes, self.images, self.database);
+        text.push_str("method      PSNR of the field    PSNR    SSIM       time  answered\n");
+        let shown = |value: Option<f64>, digits: usize| {
+            value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))
+        };
+        for name in names() {
+            let MethodReport { psnr_db, psnr_field_db, ssim, milliseconds, answered, .. } =
+                &self.methods[name];
+            let [field, whole, time] =
+                [(psnr_field_db, 2), (psnr_db, 2), (milliseconds, 1)].map(|(v, d)| shown(*v, d));
+            let (ssim, percent) = (shown(*ssim, 3), 100.0 * answered);
+            // Writing into a string cannot fail.
+            let _ = writeln!(
+                text,
+                "{name:12}{field:>14} dB {whole:>7} dB{ssim:>6}  {time:>6} ms{percent:>8.0} %"
+            );
+        }
+        text
+    }
+}
+
+impl MethodReport {
+    fn new(name: &str, judged: &[Judged]) -> Self {
+        let outcomes: Vec<&Outcome> = judged.iter().filter_map(|probe| probe.outcomes.get(name)).collect();
+        let values =
+            |of: fn(&Outcome) -> Option<f64>| outcomes.iter().filter_map(|outcome| of(outcome)).collect();
+        let mean =
+            |values: Vec<f64>| (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
+        let mut times: Vec<f64> = values(|outcome| Some(outcome.milliseconds));
+        times.sort_by(f64::total_cmp);
+        Self {
+            psnr_db: mean(values(|outcome| Some(outcome.psnr_db))),
+            psnr_field_db: mean(values(|outcome| outcome.psnr_field_db)),
+            ssim: mean(values(|outcome| outcome.ssim)),
+            milliseconds: percentile(&times, 0.5),
+            covered: mean(values(|outcome| Some(outcome.covered))),
+            answered: outcomes.len() as f64 / judged.len().max(1) as f64,
+        }
+    }
+}

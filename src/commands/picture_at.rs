@@ -1,0 +1,44 @@
+//! What `render` and `evaluate` share: a database opened, and the device that draws.
+
+use std::{path::Path, sync::Arc};
+
+use clap::Args;
+
+use reality_sim::{Archive, Camera, Synthesizer, synthesis::SynthesisConfig, warp::MAX_SOURCES};
+
+use super::device::BackendArgs;
+
+/// How pictures are made.
+#[derive(Debug, Args)]
+pub struct SynthesisArgs {
+    /// Pictures that `blend` mixes
+    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u8).range(1..=MAX_SOURCES as i64))]
+    neighbours: u8,
+    /// Give a picture however far the next one recorded is
+    #[arg(long)]
+    best_effort: bool,
+    /// Decoded pictures that are held in memory, MiB
+    #[arg(long, default_value_t = 1024, value_name = "MIB")]
+    cache: u32,
+    #[command(flatten)]
+    pub backend: BackendArgs,
+}
+
+impl SynthesisArgs {
+    /// Opens a database.
+    pub fn archive(&self, database: &Path) -> anyhow::Result<Arc<Archive>> {
+        Ok(Arc::new(Archive::open(database, (self.cache as usize) << 20)?))
+    }
+
+    /// Pictures of a camera, or of the one that took most of the archive's.
+    pub fn synthesizer(&self, archive: Arc<Archive>, camera: Option<Camera>) -> anyhow::Result<Synthesizer> {
+        let mut config = SynthesisConfig::new(&archive);
+        config.sources = usize::from(self.neighbours);
+        if self.best_effort {
+            config.reach_px = None;
+        }
+        let camera = camera.unwrap_or_else(|| archive.setup().camera.clone());
+        let warper = self.backend.device()?.backend.warper()?;
+        Ok(Synthesizer::with(archive, camera, warper, config))
+    }
+}
