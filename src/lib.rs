@@ -25,6 +25,7 @@
 //! # }
 //! ```
 
+pub mod coverage_chart;
 pub mod evaluation;
 pub mod montage;
 pub mod overlay;

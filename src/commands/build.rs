@@ -125,13 +125,8 @@ fn add(args: &BuildArgs, sequence: &Sequence, database: &mut Database) -> anyhow
     progress.finish_and_clear();
     let IngestReport { added, already_there, without_pose } = ingested?;
     let images_per_second = added as f64 / start.elapsed().as_secs_f64();
-    let poses = match source {
-        PoseSource::GroundTruth => "groundtruth",
-        PoseSource::Filter { .. } => "filter",
-        PoseSource::File { .. } => "file",
-    };
     let name = sequence.name.clone();
-    Ok(SequenceReport { name, poses, added, already_there, without_pose, images_per_second })
+    Ok(SequenceReport { name, poses: source.kind(), added, already_there, without_pose, images_per_second })
 }
 
 /// One pose a frame, where it has one, and where they are from.

@@ -8,7 +8,7 @@ use image::RgbImage;
 use serde::Serialize;
 
 use reality_sim::{
-    Archive, CameraPose, Reconstruction, Sequence, SynthesisError, Synthesizer,
+    Archive, CameraPose, Reconstruction, Sequence, Synthesizer,
     evaluation::percentile,
     montage::grid,
     preprocess::luma,
@@ -167,7 +167,7 @@ fn judge(
                 outcomes
                     .extend(compare(picture, milliseconds, covered).map(|outcome| (method.name(), outcome)));
             }
-            Err(SynthesisError::NoNeighbours { .. } | SynthesisError::TooFewPoints { .. }) => {}
+            Err(error) if error.is_refusal() => {}
             Err(error) => return Err(error.into()),
         }
     }

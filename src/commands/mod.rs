@@ -5,6 +5,7 @@ mod device;
 #[cfg(feature = "gpu")]
 mod doctor;
 mod evaluate;
+mod info;
 mod output;
 mod picture_at;
 mod render;
@@ -21,6 +22,8 @@ pub enum Command {
     Render(Box<render::RenderArgs>),
     /// Compare pictures at poses that are not in a database with those taken there
     Evaluate(evaluate::EvaluateArgs),
+    /// Say what a database holds, and which parts of the field it covers
+    Info(info::InfoArgs),
     /// List graphics adapters, and check that they compute what the CPU computes
     #[cfg(feature = "gpu")]
     Doctor(doctor::DoctorArgs),
@@ -34,6 +37,7 @@ impl Command {
             Self::Build(args) => args.check_usage(),
             Self::Render(args) => args.check_usage(),
             Self::Evaluate(args) => args.check_usage(),
+            Self::Info(_) => Ok(()),
             #[cfg(feature = "gpu")]
             Self::Doctor(_) => Ok(()),
         }
@@ -46,6 +50,7 @@ impl Command {
             Self::Build(args) => build::run(args),
             Self::Render(args) => render::run(args),
             Self::Evaluate(args) => evaluate::run(args),
+            Self::Info(args) => info::run(args),
             #[cfg(feature = "gpu")]
             Self::Doctor(args) => doctor::run(args),
         }

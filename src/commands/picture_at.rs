@@ -35,7 +35,7 @@ impl SynthesisArgs {
         let mut config = SynthesisConfig::new(&archive);
         config.sources = usize::from(self.neighbours);
         if self.best_effort {
-            config.reach_px = None;
+            config = config.best_effort();
         }
         let camera = camera.unwrap_or_else(|| archive.setup().camera.clone());
         let warper = self.backend.device()?.backend.warper()?;

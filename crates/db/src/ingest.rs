@@ -188,7 +188,11 @@ impl<'a> Recording<'a> {
             sequence_id: row("sequences", ["name", "first_frame"], [&self.sequence.name, &self.first_frame])?,
             camera_id: text("cameras", &self.camera)?,
             field_id: text("fields", &self.field)?,
-            pose_source_id: row("pose_sources", ["kind", "description"], self.source.columns())?,
+            pose_source_id: row(
+                "pose_sources",
+                ["kind", "description"],
+                [self.source.kind(), self.source.description()],
+            )?,
         })
     }
 }

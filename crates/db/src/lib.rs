@@ -4,6 +4,7 @@
 //! [`Database`] read. It holds the pictures' files as they were recorded, and the cameras and fields as the text of
 //! their files. Units and frames are those of [`reality_sim_core::pose`].
 
+pub mod coverage;
 mod database;
 mod error;
 pub mod index;

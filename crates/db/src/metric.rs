@@ -30,8 +30,8 @@ pub struct PixelMetric {
     least_px_per_m: f64,
     /// Least pixels that a radian of heading moves the picture, whatever else moves with it.
     least_px_per_rad: f64,
-    /// Half the picture's diagonal, pixels.
-    half_diagonal_px: f64,
+    /// The picture's diagonal, pixels.
+    diagonal_px: f64,
 }
 
 impl PixelMetric {
@@ -45,13 +45,13 @@ impl PixelMetric {
             .filter_map(|pixel| pixel_motion(camera, pose, point_seen(camera, pose, pixel, background_m)?));
         let (sum, count) = seen.fold((Matrix6::zeros(), 0), |(sum, count), square| (sum + square, count + 1));
         let matrix: Matrix6<f64> = sum / f64::from(count.max(1));
-        let half_diagonal_px = 0.5 * f64::from(camera.width).hypot(f64::from(camera.height));
+        let diagonal_px = f64::from(camera.width).hypot(f64::from(camera.height));
         let information = matrix.cholesky()?.inverse();
         // What a block of the inverse says is what is left of the motion when all others make up for it (Schur).
         let plane: Matrix2<f64> = information.fixed_view::<2, 2>(0, 0).into_owned().try_inverse()?;
         let least_px_per_m = plane.symmetric_eigenvalues().min().max(0.0).sqrt();
         let least_px_per_rad = (1.0 / information[(2, 2)]).sqrt();
-        Some(Self { matrix, least_px_per_m, least_px_per_rad, half_diagonal_px })
+        Some(Self { matrix, least_px_per_m, least_px_per_rad, diagonal_px })
     }
 
     /// Root mean square pixels that the picture moves from one pose to the other, to first order: the motion is taken in
@@ -88,9 +88,9 @@ impl PixelMetric {
         distance_px / plane.symmetric_eigenvalues().max().sqrt()
     }
 
-    /// Half the picture's diagonal, pixels: pictures farther apart have hardly anything in common.
-    pub fn half_diagonal_px(&self) -> f64 {
-        self.half_diagonal_px
+    /// The picture's diagonal, pixels: pictures farther apart have nothing in common.
+    pub fn diagonal_px(&self) -> f64 {
+        self.diagonal_px
     }
 
     /// M, of forward, left, turn, rise, pitch and roll, pixels² per metre² and radian².

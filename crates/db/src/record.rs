@@ -42,16 +42,25 @@ pub enum PoseSource {
 }
 
 impl PoseSource {
-    /// As it is stored: kind and description.
-    pub(crate) fn columns(&self) -> [&str; 2] {
+    /// `groundtruth`, `filter` or `file`.
+    pub fn kind(&self) -> &'static str {
         match self {
-            Self::GroundTruth => ["groundtruth", ""],
-            Self::Filter { settings } => ["filter", settings],
-            Self::File { name } => ["file", name],
+            Self::GroundTruth => "groundtruth",
+            Self::Filter { .. } => "filter",
+            Self::File { .. } => "file",
         }
     }
 
-    /// The reverse of [`PoseSource::columns`].
+    /// The filter's settings, or the file's name; empty for ground truth.
+    pub fn description(&self) -> &str {
+        match self {
+            Self::GroundTruth => "",
+            Self::Filter { settings } => settings,
+            Self::File { name } => name,
+        }
+    }
+
+    /// The reverse of [`PoseSource::kind`] and [`PoseSource::description`].
     pub(crate) fn from_columns(kind: &str, description: String) -> Option<Self> {
         match kind {
             "groundtruth" => Some(Self::GroundTruth),

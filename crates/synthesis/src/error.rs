@@ -29,6 +29,19 @@ pub enum SynthesisError {
         /// Why.
         reason: NoNeighbours,
     },
+    /// The images recorded show too little of what is seen from the pose.
+    #[error(
+        "{}: recorded pictures show {:.0} % of what is seen from there, {:.0} % are needed: record pictures there, or ask for the best effort",
+        shown(.pose), 100.0 * .covered, 100.0 * .needed
+    )]
+    TooLittleSeen {
+        /// The pose asked for.
+        pose: CameraPose,
+        /// Share of the pixels, 0 to 1.
+        covered: f64,
+        /// Share of the pixels, 0 to 1.
+        needed: f64,
+    },
     /// The pose is one that no camera above the carpet can have.
     #[error("{}: the camera must be above the ground, and within {limit_m:.0} m of the field's centre", shown(.pose))]
     ImpossiblePose {
@@ -50,6 +63,13 @@ pub enum SynthesisError {
     /// The device that draws has failed.
     #[error(transparent)]
     Backend(#[from] BackendError),
+}
+
+impl SynthesisError {
+    /// Whether there is no picture because too little was recorded near the pose: nothing is broken.
+    pub fn is_refusal(&self) -> bool {
+        matches!(self, Self::NoNeighbours { .. } | Self::TooLittleSeen { .. } | Self::TooFewPoints { .. })
+    }
 }
 
 fn shown(pose: &CameraPose) -> String {

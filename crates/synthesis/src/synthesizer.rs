@@ -27,15 +27,22 @@ pub struct SynthesisConfig {
     pub candidates: usize,
     /// How they are weighed against each other.
     pub weights: BlendWeights,
-    /// No picture is given where the nearest image is farther, root mean square pixels; `None` for the best effort.
-    pub reach_px: Option<f64>,
+    /// No picture is given where the nearest image is farther, root mean square pixels.
+    pub reach_px: f64,
+    /// No picture is drawn of which recorded images show a smaller share, 0 to 1.
+    pub least_covered: f64,
 }
 
 impl SynthesisConfig {
-    /// For an archive: pictures are given where the nearest image has anything in common with them.
+    /// For an archive: pictures are given where recorded images show at least two fifths of them.
     pub fn new(archive: &Archive) -> Self {
-        let reach_px = Some(archive.index().metric().half_diagonal_px());
-        Self { sources: 6, candidates: 120, weights: BlendWeights::default(), reach_px }
+        let reach_px = archive.index().metric().diagonal_px();
+        Self { sources: 6, candidates: 120, weights: BlendWeights::default(), reach_px, least_covered: 0.4 }
+    }
+
+    /// The same, with pictures wherever there is any image at all.
+    pub fn best_effort(self) -> Self {
+        Self { reach_px: f64::INFINITY, least_covered: 0.0, ..self }
     }
 }
 
@@ -88,10 +95,9 @@ impl Synthesizer {
         if pose.is_finite() && !is_possible {
             return Err(SynthesisError::ImpossiblePose { pose, limit_m: LIMIT_M });
         }
-        let limit_px = self.config.reach_px.unwrap_or(f64::INFINITY);
         self.archive
             .index()
-            .check_reach(pose, limit_px)
+            .check_reach(pose, self.config.reach_px)
             .map_err(|reason| SynthesisError::NoNeighbours { pose, reason })?;
         method.reconstruct(self, pose)
     }
@@ -134,7 +140,12 @@ impl Synthesizer {
         let warped = self.warper.blend(&target, &sources, &self.config.weights)?;
         let picture = picture_of(&self.camera, warped.colors);
         let images = chosen.iter().map(|neighbour| (neighbour.image, neighbour.distance_px));
-        Ok(Reconstruction::new(picture, method, images, warped.origins))
+        let reconstruction = Reconstruction::new(picture, method, images, warped.origins);
+        let (covered, needed) = (reconstruction.covered(), self.config.least_covered);
+        if covered < needed {
+            return Err(SynthesisError::TooLittleSeen { pose, covered, needed });
+        }
+        Ok(reconstruction)
     }
 
     fn target<'a>(&'a self, pose: CameraPose, hull: &'a Hull) -> Target<'a> {

@@ -1,0 +1,130 @@
+//! Where on the field pictures were taken, in which directions, and how far the next one is from any pose.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+use rayon::prelude::*;
+use reality_sim_core::{
+    field::FieldDimensions,
+    pose::{CameraPose, Pose2},
+};
+
+use crate::index::PoseIndex;
+
+/// Headings that are told apart.
+pub const HEADINGS: usize = 8;
+
+/// What is known of one cell of the carpet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoverageCell {
+    /// Its middle, world axes, metres.
+    pub middle_in_world: DVec2,
+    /// Pictures taken in it, by heading: 0 looks along +x, then counter-clockwise.
+    pub pictures: [u32; HEADINGS],
+    /// How far the nearest picture is from its middle, by heading, root mean square pixels.
+    pub distance_px: [f64; HEADINGS],
+}
+
+impl CoverageCell {
+    /// Pictures taken in it.
+    pub fn count(&self) -> u32 {
+        self.pictures.iter().sum()
+    }
+
+    /// Mean over the headings of how far the nearest picture is, root mean square pixels.
+    pub fn mean_distance_px(&self) -> f64 {
+        self.distance_px.iter().sum::<f64>() / HEADINGS as f64
+    }
+}
+
+/// The carpet in square cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Coverage {
+    /// Side of a cell, metres.
+    pub cell_m: f64,
+    /// Cells along x and along y.
+    pub size: [usize; 2],
+    /// Row by row: y from the smallest on, in each x from the smallest on.
+    pub cells: Vec<CoverageCell>,
+}
+
+/// A number of cells that is shown and computed in no time.
+const MOST_CELLS_ALONG: f64 = 64.0;
+
+impl Coverage {
+    /// Looks at the carpet of a field in cells of about this size, metres. Distances are those of a camera at this height,
+    /// pitch and roll. Pictures taken beside the carpet count in no cell.
+    pub fn new(index: &PoseIndex, field: &FieldDimensions, usual: CameraPose, cell_m: f64) -> Self {
+        let half = field.carpet_half_extent_m();
+        let cell_m = cell_m.max(2.0 * half.max_element() / MOST_CELLS_ALONG);
+        let size = (2.0 * half / cell_m).ceil().max(DVec2::ONE);
+        let (corner, size) = (-0.5 * cell_m * size, [size.x as usize, size.y as usize]);
+        let mut counts = vec![[0_u32; HEADINGS]; size[0] * size[1]];
+        for pose in index.poses() {
+            let cell = ((DVec2::new(pose.x_m, pose.y_m) - corner) / cell_m).floor();
+            let is_inside =
+                cell.cmpge(DVec2::ZERO).all() && cell.x < size[0] as f64 && cell.y < size[1] as f64;
+            if is_inside {
+                counts[cell.y as usize * size[0] + cell.x as usize][heading_of(pose.yaw_rad)] += 1;
+            }
+        }
+        let cell = |(number, pictures): (usize, [u32; HEADINGS])| {
+            let place = DVec2::new((number % size[0]) as f64, (number / size[0]) as f64);
+            let middle_in_world = corner + cell_m * (place + 0.5);
+            let distance_px = std::array::from_fn(|heading| {
+                let yaw_rad = TAU * heading as f64 / HEADINGS as f64;
+                let pose = usual.with_planar(Pose2::new(middle_in_world.x, middle_in_world.y, yaw_rad));
+                index.nearest(pose, 1).map_or(f64::INFINITY, |nearest| nearest[0].distance_px)
+            });
+            CoverageCell { middle_in_world, pictures, distance_px }
+        };
+        let cells = counts.into_par_iter().enumerate().map(cell).collect();
+        Self { cell_m, size, cells }
+    }
+
+    /// The share of all places and headings with a picture nearer than this, root mean square pixels.
+    pub fn share_within(&self, distance_px: f64) -> f64 {
+        let near = self.cells.iter().flat_map(|cell| cell.distance_px).filter(|found| *found < distance_px);
+        near.count() as f64 / (HEADINGS * self.cells.len()) as f64
+    }
+}
+
+fn heading_of(yaw_rad: f64) -> usize {
+    ((yaw_rad / TAU).rem_euclid(1.0) * HEADINGS as f64).round() as usize % HEADINGS
+}
+
+#[cfg(test)]
+mod tests {
+    use reality_sim_core::camera::{Camera, Distortion};
+
+    use super::*;
+    use crate::metric::PixelMetric;
+
+    #[test]
+    fn every_picture_on_the_carpet_is_counted_where_it_was_taken_and_where_it_looks() {
+        let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
+        let camera = Camera::new([640, 480], [215.0, 215.0, 319.5, 239.5], Distortion::Pinhole).unwrap();
+        let usual = CameraPose { height_m: 0.5, pitch_rad: 0.4, ..Default::default() };
+        let pose = |x, y, yaw| usual.with_planar(Pose2::new(x, y, yaw));
+        let poses = vec![
+            pose(1.0, 0.6, 0.1),
+            pose(1.0, 0.6, -0.1),
+            pose(-2.0, -1.1, 3.1),
+            pose(-2.0, -1.1, -3.1),
+            pose(90.0, 0.0, 0.0),
+        ];
+        let index = PoseIndex::new(PixelMetric::new(&camera, usual, &field).unwrap(), poses);
+        let coverage = Coverage::new(&index, &field, usual, 0.25);
+        assert_eq!(coverage.cells.iter().map(CoverageCell::count).sum::<u32>(), 4, "one was taken outside");
+        let cell_at = |x: f64, y: f64| {
+            let near = |cell: &&CoverageCell| {
+                (cell.middle_in_world - DVec2::new(x, y)).abs().max_element() <= 0.5 * coverage.cell_m
+            };
+            *coverage.cells.iter().find(near).unwrap()
+        };
+        assert_eq!(cell_at(1.0, 0.6).pictures[0], 2);
+        assert_eq!(cell_at(-2.0, -1.1).pictures[HEADINGS / 2], 2);
+        assert!(cell_at(1.0, 0.6).distance_px[0] < cell_at(1.0, 0.6).distance_px[4]);
+        assert!(coverage.share_within(1e9) == 1.0 && coverage.share_within(0.0) == 0.0);
+    }
+}
