@@ -29,6 +29,7 @@ pub mod coverage_chart;
 pub mod evaluation;
 pub mod montage;
 pub mod overlay;
+pub mod probing;
 
 #[cfg(feature = "gpu")]
 pub use reality_sim_gpu as gpu;

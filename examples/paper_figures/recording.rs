@@ -10,6 +10,7 @@ use reality_sim::{
     filter::{Filter, FilterConfig, ScoredFilter},
     observation::{NormalSearch, ObservationConfig, Scorer},
     tag::recorded,
+    warp::Warper,
 };
 
 /// The pictures of a sequence, decoded once for all runs.
@@ -49,6 +50,10 @@ impl Backend for NormalSearchBackend {
     ) -> Result<Box<dyn Filter>, BackendError> {
         let scorer = NormalSearch::new(camera, field, observation);
         Ok(Box::new(ScoredFilter::new(Box::new(scorer), config)))
+    }
+
+    fn warper(&self) -> Result<Arc<dyn Warper>, BackendError> {
+        CpuBackend.warper()
     }
 
     fn status(&self) -> Result<(), BackendError> {

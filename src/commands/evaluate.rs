@@ -1,6 +1,6 @@
 //! `reality-sim evaluate`: pictures at poses that are not in the database, against those really taken there.
 
-use std::{collections::BTreeMap, fmt::Write, path::PathBuf, time::Instant};
+use std::{collections::BTreeMap, fmt::Write, path::PathBuf};
 
 use anyhow::bail;
 use clap::Args;
@@ -8,25 +8,17 @@ use image::RgbImage;
 use serde::Serialize;
 
 use reality_sim::{
-    Archive, CameraPose, Reconstruction, Sequence, Synthesizer,
-    evaluation::percentile,
+    Archive, CameraPose, Sequence,
     montage::grid,
-    preprocess::luma,
+    probing::{Judged, MethodReport, Outcome, judge, names},
     sensor::{Renderer, SceneColors},
     sequence::{save_image, write_atomically},
-    synthesis::{
-        METHODS,
-        quality::{Mask, psnr_db, ssim},
-    },
 };
 
 use super::{
     output::{check_output_file, create_output_folder, frame_progress, print, print_json},
     picture_at::SynthesisArgs,
 };
-
-/// Drawn from the model, beside the methods that use recorded pictures.
-const SIMULATED: &str = "simulated";
 
 /// Options of `evaluate`.
 #[derive(Debug, Args)]
@@ -48,27 +40,6 @@ pub struct EvaluateArgs {
     json: bool,
 }
 
-/// What one method made of one probe.
-struct Outcome {
-    psnr_db: f64,
-    /// `None` where the probe shows no carpet.
-    psnr_field_db: Option<f64>,
-    ssim: Option<f64>,
-    milliseconds: f64,
-    /// Share of the pixels that some recorded picture shows.
-    covered: f64,
-    picture: RgbImage,
-}
-
-/// A probe, and the outcome of each method that answered.
-struct Judged {
-    frame: usize,
-    /// From the nearest recorded picture, root mean square pixels.
-    distance_px: Option<f64>,
-    truth: RgbImage,
-    outcomes: BTreeMap<&'static str, Outcome>,
-}
-
 #[derive(Serialize)]
 struct Report {
     database: String,
@@ -77,19 +48,6 @@ struct Report {
     images: usize,
     /// By method.
     methods: BTreeMap<&'static str, MethodReport>,
-}
-
-/// Means over the probes answered; the time is the median.
-#[derive(Serialize)]
-struct MethodReport {
-    psnr_db: Option<f64>,
-    psnr_field_db: Option<f64>,
-    ssim: Option<f64>,
-    milliseconds: Option<f64>,
-    /// Share of the pixels that some recorded picture shows.
-    covered: Option<f64>,
-    /// Share of the probes that were given a picture.
-    answered: f64,
 }
 
 impl EvaluateArgs {
@@ -141,53 +99,6 @@ fn check_outputs(args: &EvaluateArgs, probes: &Sequence) -> anyhow::Result<()> {
     args.pictures.as_ref().map_or(Ok(()), |folder| create_output_folder(folder, &inputs))
 }
 
-fn judge(
-    synthesizer: &Synthesizer,
-    renderer: &Renderer,
-    frame: usize,
-    pose: CameraPose,
-    truth: RgbImage,
-) -> anyhow::Result<Judged> {
-    let mask = Mask::carpet(synthesizer.camera(), pose, synthesizer.archive().field());
-    let grey = luma(&truth);
-    let compare = |picture: RgbImage, milliseconds: f64, covered: f64| {
-        let psnr = psnr_db(&picture, &truth, None)?;
-        let (psnr_field_db, ssim) = (psnr_db(&picture, &truth, Some(&mask)), ssim(&luma(&picture), &grey));
-        Some(Outcome { psnr_db: psnr, psnr_field_db, ssim, milliseconds, covered, picture })
-    };
-    let mut outcomes = BTreeMap::new();
-    for method in METHODS {
-        // The first call decodes the neighbours, the second is timed.
-        let answer =
-            synthesizer.image_at(pose, method).and_then(|_| timed(|| synthesizer.image_at(pose, method)));
-        match answer {
-            Ok((Reconstruction { picture, origins, .. }, milliseconds)) => {
-                let seen = origins.iter().filter(|origin| origin.trust > 0).count();
-                let covered = seen as f64 / origins.len().max(1) as f64;
-                outcomes
-                    .extend(compare(picture, milliseconds, covered).map(|outcome| (method.name(), outcome)));
-            }
-            Err(error) if error.is_refusal() => {}
-            Err(error) => return Err(error.into()),
-        }
-    }
-    let (drawn, milliseconds) = timed(|| renderer.draw(pose))?;
-    outcomes.extend(compare(drawn, milliseconds, 0.0).map(|outcome| (SIMULATED, outcome)));
-    let distance_px = synthesizer.nearest(pose, 1).ok().map(|nearest| nearest[0].distance_px);
-    Ok(Judged { frame, distance_px, truth, outcomes })
-}
-
-fn timed<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, f64), E> {
-    let start = Instant::now();
-    let result = work()?;
-    Ok((result, 1e3 * start.elapsed().as_secs_f64()))
-}
-
-/// The names of the columns, in the order in which they are shown.
-fn names() -> impl Iterator<Item = &'static str> {
-    METHODS.into_iter().map(|method| method.name()).chain([SIMULATED])
-}
-
 /// True picture first; grey where a method has no answer.
 fn side_by_side(probe: &Judged) -> RgbImage {
     let missing = RgbImage::from_pixel(probe.truth.width(), probe.truth.height(), image::Rgb([128; 3]));
@@ -214,8 +125,9 @@ fn details_csv(judged: &[Judged]) -> String {
             // Writing into a string cannot fail.
             let _ = writeln!(
                 csv,
-                "{frame},{},{name},{psnr_db},{field},{ssim},{milliseconds},{covered}",
-                number(*distance_px)
+                "{frame},{},{name},{psnr_db},{field},{ssim},{milliseconds},{}",
+                number(*distance_px),
+                number(*covered)
             );
         }
     }
@@ -251,25 +163,5 @@ impl Report {
             );
         }
         text
-    }
-}
-
-impl MethodReport {
-    fn new(name: &str, judged: &[Judged]) -> Self {
-        let outcomes: Vec<&Outcome> = judged.iter().filter_map(|probe| probe.outcomes.get(name)).collect();
-        let values =
-            |of: fn(&Outcome) -> Option<f64>| outcomes.iter().filter_map(|outcome| of(outcome)).collect();
-        let mean =
-            |values: Vec<f64>| (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
-        let mut times: Vec<f64> = values(|outcome| Some(outcome.milliseconds));
-        times.sort_by(f64::total_cmp);
-        Self {
-            psnr_db: mean(values(|outcome| Some(outcome.psnr_db))),
-            psnr_field_db: mean(values(|outcome| outcome.psnr_field_db)),
-            ssim: mean(values(|outcome| outcome.ssim)),
-            milliseconds: percentile(&times, 0.5),
-            covered: mean(values(|outcome| Some(outcome.covered))),
-            answered: outcomes.len() as f64 / judged.len().max(1) as f64,
-        }
     }
 }

@@ -1,0 +1,139 @@
+//! Parts of a walk that are reconstructed from its other parts: are they smooth, and do they do as input of the filter?
+
+use std::{fmt::Write, path::Path, sync::Arc};
+
+use image::RgbImage;
+use reality_sim::{
+    ObservationKind, Sequence, TagConfig, Tagger,
+    evaluation::{ErrorStatistics, PoseError},
+    montage::grid,
+    sequence::save_image,
+    synthesis::METHODS,
+    tag::recorded,
+};
+
+use crate::{IMAGES, synthesizer};
+
+/// Parts, and pictures in each.
+const PARTS: usize = 5;
+const PICTURES: usize = 20;
+/// Pictures of a path in its strip.
+const SHOWN: usize = 8;
+
+/// Pictures of one part by one method, true ones first.
+struct Row {
+    name: &'static str,
+    pictures: Vec<Arc<RgbImage>>,
+}
+
+/// What is summed up over the parts, for one method.
+#[derive(Default)]
+struct Sums {
+    name: &'static str,
+    /// Mean change from picture to picture, grey levels, beyond that of the true pictures, one a step.
+    excess: Vec<f64>,
+    gauss: Vec<PoseError>,
+    contrast: Vec<PoseError>,
+}
+
+pub fn write(walk: &Sequence, text: &mut String) -> anyhow::Result<()> {
+    let mut sums: Vec<Sums> = Vec::new();
+    for part in 0..PARTS {
+        let first = (2 * part + 1) * walk.frames.len() / (2 * PARTS) - PICTURES / 2;
+        let rows = rows(walk, first)?;
+        let truth = changes(&rows[0].pictures);
+        for (number, row) in rows.iter().enumerate() {
+            if sums.len() <= number {
+                sums.push(Sums { name: row.name, ..Default::default() });
+            }
+            let excess = changes(&row.pictures)
+                .into_iter()
+                .zip(&truth)
+                .map(|(change, truth)| (change - truth).max(0.0));
+            sums[number].excess.extend(excess);
+            sums[number].gauss.extend(tag(walk, first, row, ObservationKind::Gauss)?);
+            sums[number].contrast.extend(tag(walk, first, row, ObservationKind::Contrast)?);
+        }
+        if part == PARTS / 2 {
+            show(&rows)?;
+        }
+    }
+    writeln!(
+        text,
+        "\n## Along a path\n\nOf `{}`, {PARTS} times {PICTURES} pictures in a row are left out and reconstructed from all others. \
+         Change: by how much two pictures in a row differ beyond what the true ones do, mean grey levels. Error: of the \
+         poses that the particle filter (800 particles, seed 0, from the true pose of the part's first picture) finds \
+         in these pictures.\n\n| pictures | change | mean error, `gauss` | mean error, `contrast` |\n|---|---|---|---|",
+        walk.name
+    )?;
+    for Sums { name, excess, gauss, contrast } in &sums {
+        let cm = |errors: &[PoseError]| {
+            ErrorStatistics::new(errors)
+                .map_or("–".to_owned(), |error| format!("{:.2} cm", 100.0 * error.mean_m))
+        };
+        let change = excess.iter().sum::<f64>() / excess.len().max(1) as f64;
+        writeln!(text, "| {name} | {change:.2} | {} | {} |", cm(gauss), cm(contrast))?;
+    }
+    text.push_str(
+        "\n![A path, true and reconstructed](images/path.jpg)\n\nEvery other or third picture of the third part, from top to \
+         bottom: true, `nearest`, `plane`, `blend`.\n",
+    );
+    Ok(())
+}
+
+/// True pictures and those of every method.
+fn rows(walk: &Sequence, first: usize) -> anyhow::Result<Vec<Row>> {
+    let left_out = first..first + PICTURES;
+    let mut rest = walk.clone();
+    rest.frames = walk.frames[..first].to_vec();
+    rest.frames.extend_from_slice(&walk.frames[left_out.end..]);
+    rest.groundtruth = walk.groundtruth[..first].to_vec();
+    rest.groundtruth.extend_from_slice(&walk.groundtruth[left_out.end..]);
+    let (_folder, synthesizer) = synthesizer(&rest)?;
+    let truth =
+        left_out.clone().map(|frame| walk.load_image(frame).map(Arc::new)).collect::<Result<_, _>>()?;
+    let mut rows = vec![Row { name: "true", pictures: truth }];
+    for method in METHODS {
+        let mut pictures = Vec::new();
+        for frame in left_out.clone() {
+            let Some(pose) = walk.groundtruth[frame] else { continue };
+            pictures.push(Arc::new(synthesizer.image_at(pose, method)?.picture));
+        }
+        rows.push(Row { name: method.name(), pictures });
+    }
+    Ok(rows)
+}
+
+/// Mean absolute difference of each picture from the one before, grey levels.
+fn changes(pictures: &[Arc<RgbImage>]) -> Vec<f64> {
+    let change = |pair: &[Arc<RgbImage>]| {
+        let differences = pair[0].iter().zip(pair[1].iter()).map(|(&a, &b)| f64::from(a.abs_diff(b)));
+        differences.sum::<f64>() / pair[0].len() as f64
+    };
+    pictures.windows(2).map(change).collect()
+}
+
+/// Errors of the filter on pictures that stand for a part of a walk.
+fn tag(walk: &Sequence, first: usize, row: &Row, kind: ObservationKind) -> anyhow::Result<Vec<PoseError>> {
+    let start = walk.groundtruth[first].map(|pose| pose.planar());
+    let mut tagger = Tagger::new(&walk.setup.camera, &walk.field, start, TagConfig::new(kind));
+    let mut errors = Vec::new();
+    for (offset, picture) in row.pictures.iter().enumerate() {
+        let tagged = tagger.tag(&recorded(walk, first + offset, picture))?;
+        errors.extend(walk.groundtruth[first + offset].map(|truth| PoseError::new(tagged.pose, truth)));
+    }
+    Ok(errors)
+}
+
+fn show(rows: &[Row]) -> anyhow::Result<()> {
+    let shown: Vec<Vec<RgbImage>> = rows
+        .iter()
+        .filter(|row| row.name != "quadratic")
+        .map(|row| {
+            let pictures = (0..SHOWN).map(|i| &row.pictures[i * (row.pictures.len() - 1) / (SHOWN - 1)]);
+            pictures.map(|picture| (**picture).clone()).collect()
+        })
+        .collect();
+    let rows: Vec<&[RgbImage]> = shown.iter().map(Vec::as_slice).collect();
+    Ok(save_image(&Path::new(IMAGES).join("path.jpg"), &grid(&rows, 220))?)
+}

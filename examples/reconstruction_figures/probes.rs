@@ -1,0 +1,126 @@
+//! Single pictures at poses of their own.
+
+use std::{collections::BTreeMap, fmt::Write, path::Path};
+
+use image::RgbImage;
+use reality_sim::{
+    Sequence,
+    evaluation::percentile,
+    montage::grid,
+    probing::{Judged, MethodReport, judge, names},
+    sensor::{Renderer, SceneColors},
+    sequence::save_image,
+    synthesis::Blend,
+};
+
+use crate::{IMAGES, lines::displacements_px, synthesizer};
+
+/// Probes that are shown: from near to far.
+const SHOWN: usize = 5;
+/// Width of a picture in the table of pictures, pixels.
+const WIDTH: u32 = 300;
+
+pub fn write(walk: &Sequence, probes: &Sequence, text: &mut String) -> anyhow::Result<()> {
+    let (_folder, synthesizer) = synthesizer(walk)?;
+    let renderer = Renderer::new(&probes.setup, &walk.field, SceneColors::new(&probes.setup, &walk.field));
+    let camera = &probes.setup.camera;
+    let mut judged: Vec<Judged> = Vec::new();
+    let mut displacements: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    for (frame, pose) in probes.groundtruth.iter().enumerate() {
+        let Some(pose) = *pose else { continue };
+        let probe = judge(&synthesizer, &renderer, frame, pose, probes.load_image(frame)?)?;
+        let lines = |picture: &RgbImage| displacements_px(picture, camera, &walk.field, pose);
+        displacements.entry("true picture").or_default().extend(lines(&probe.truth));
+        for (name, outcome) in &probe.outcomes {
+            displacements.entry(name).or_default().extend(lines(&outcome.picture));
+        }
+        judged.push(probe);
+    }
+    table(&judged, &mut displacements, text)?;
+    judged.sort_by(|a, b| a.distance_px.partial_cmp(&b.distance_px).unwrap_or(std::cmp::Ordering::Equal));
+    pictures(&judged, text)?;
+    provenance(&synthesizer, probes, &judged, text)
+}
+
+fn table(
+    judged: &[Judged],
+    displacements: &mut BTreeMap<&str, Vec<f64>>,
+    text: &mut String,
+) -> anyhow::Result<()> {
+    text.push_str(
+        "\nMeans over all probes; lines: median of how far a line lies from where the true pose puts it, and the 95th \
+         percentile, of lines found within 8 px; time: median of one picture with decoded neighbours.\n\n\
+         | method | PSNR of the field | PSNR | SSIM | lines | answered | time |\n|---|---|---|---|---|---|---|\n",
+    );
+    for values in displacements.values_mut() {
+        values.sort_by(f64::total_cmp);
+    }
+    let lines = |name: &str| -> String {
+        let values = displacements.get(name).map(Vec::as_slice).unwrap_or_default();
+        let at = |share: f64| percentile(values, share).map_or("–".to_owned(), |px| format!("{px:.2}"));
+        format!("{} px, {} px", at(0.5), at(0.95))
+    };
+    writeln!(text, "| true picture | | | | {} | | |", lines("true picture"))?;
+    for name in names() {
+        let report = MethodReport::new(name, judged);
+        let shown = |value: Option<f64>, digits: usize| {
+            value.map_or("–".to_owned(), |value| format!("{value:.digits$}"))
+        };
+        writeln!(
+            text,
+            "| `{name}` | {} dB | {} dB | {} | {} | {:.0} % | {} ms |",
+            shown(report.psnr_field_db, 2),
+            shown(report.psnr_db, 2),
+            shown(report.ssim, 3),
+            lines(name),
+            100.0 * report.answered,
+            shown(report.milliseconds, 1),
+        )?;
+    }
+    Ok(())
+}
+
+/// True picture and those of all methods, for probes spread evenly from the one with the nearest neighbour on.
+fn pictures(judged: &[Judged], text: &mut String) -> anyhow::Result<()> {
+    let chosen: Vec<&Judged> = (0..SHOWN).map(|i| &judged[i * (judged.len() - 1) / (SHOWN - 1)]).collect();
+    let missing = RgbImage::from_pixel(4, 3, image::Rgb([128; 3]));
+    let rows: Vec<Vec<RgbImage>> = chosen
+        .iter()
+        .map(|probe| {
+            let of = |name| probe.outcomes.get(name).map_or(&missing, |outcome| &outcome.picture).clone();
+            std::iter::once(probe.truth.clone()).chain(names().map(of)).collect()
+        })
+        .collect();
+    let rows: Vec<&[RgbImage]> = rows.iter().map(Vec::as_slice).collect();
+    save_image(&Path::new(IMAGES).join("methods.jpg"), &grid(&rows, WIDTH))?;
+    let distances: Vec<String> =
+        chosen.iter().map(|probe| format!("{:.0}", probe.distance_px.unwrap_or(f64::NAN))).collect();
+    writeln!(
+        text,
+        "\n![The true picture beside those of all methods](images/methods.jpg)\n\nFrom left to right: the true picture, \
+         {}. From top to bottom the nearest recorded picture is {} px away (root mean square over the picture).",
+        names().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
+        distances.join(", ")
+    )?;
+    Ok(())
+}
+
+/// Where the pixels of one picture came from.
+fn provenance(
+    synthesizer: &reality_sim::Synthesizer,
+    probes: &Sequence,
+    judged: &[Judged],
+    text: &mut String,
+) -> anyhow::Result<()> {
+    let probe = &judged[judged.len() / 2];
+    let Some(pose) = probes.groundtruth[probe.frame] else { return Ok(()) };
+    let made = synthesizer.image_at(pose, &Blend)?;
+    let trust = image::DynamicImage::from(made.trust_picture()).into_rgb8();
+    let row = [probe.truth.clone(), made.picture.clone(), made.origin_picture(), trust];
+    save_image(&Path::new(IMAGES).join("origins.jpg"), &grid(&[&row], 400))?;
+    text.push_str(
+        "\n![Where the pixels came from](images/origins.jpg)\n\nThe true picture, `blend`, which recorded picture each \
+         pixel came from most (a hue each, black: none), and how far each can be trusted.\n",
+    );
+    Ok(())
+}

@@ -1,0 +1,147 @@
+//! Pictures at poses where the true picture is known, by every method, and how near each comes to the truth.
+
+use std::{collections::BTreeMap, time::Instant};
+
+use image::RgbImage;
+use serde::Serialize;
+
+use crate::{
+    CameraPose, SynthesisError, Synthesizer,
+    evaluation::percentile,
+    preprocess::luma,
+    sensor::{PoseError, Renderer},
+    synthesis::{
+        METHODS,
+        quality::{Mask, psnr_db, ssim},
+    },
+};
+
+/// Drawn from the model, beside the methods that use recorded pictures.
+pub const SIMULATED: &str = "simulated";
+
+/// What one method made of one probe.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// Peak signal-to-noise ratio against the true picture, dB.
+    pub psnr_db: f64,
+    /// The same over the field's carpet; `None` where the probe shows no carpet.
+    pub psnr_field_db: Option<f64>,
+    /// Structural similarity of the grey values; `None` in pictures smaller than its window.
+    pub ssim: Option<f64>,
+    /// With the neighbours' pictures decoded.
+    pub milliseconds: f64,
+    /// Share of the pixels that some recorded picture shows; `None` for a drawn one.
+    pub covered: Option<f64>,
+    /// What it made.
+    pub picture: RgbImage,
+}
+
+/// A probe, and the outcome of each method that answered.
+#[derive(Debug, Clone)]
+pub struct Judged {
+    /// Number of the probe.
+    pub frame: usize,
+    /// From the nearest recorded picture, root mean square pixels.
+    pub distance_px: Option<f64>,
+    /// The true picture.
+    pub truth: RgbImage,
+    /// By the methods' names.
+    pub outcomes: BTreeMap<&'static str, Outcome>,
+}
+
+/// Means over the probes answered; the time is the median.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MethodReport {
+    /// Over whole pictures, dB.
+    pub psnr_db: Option<f64>,
+    /// Over the field's carpet, dB.
+    pub psnr_field_db: Option<f64>,
+    /// Of the grey values.
+    pub ssim: Option<f64>,
+    /// With the neighbours' pictures decoded.
+    pub milliseconds: Option<f64>,
+    /// Share of the pixels that some recorded picture shows.
+    pub covered: Option<f64>,
+    /// Share of the probes that were given a picture.
+    pub answered: f64,
+}
+
+/// Makes the picture at a pose by every method and compares it with the one really taken there, which is in the size of the
+/// synthesizer's camera. Methods that refuse have no outcome.
+pub fn judge(
+    synthesizer: &Synthesizer,
+    renderer: &Renderer,
+    frame: usize,
+    pose: CameraPose,
+    truth: RgbImage,
+) -> Result<Judged, ProbingError> {
+    let mask = Mask::carpet(synthesizer.camera(), pose, synthesizer.archive().field());
+    let grey = luma(&truth);
+    let compare = |picture: RgbImage, milliseconds: f64, covered: Option<f64>| {
+        let psnr = psnr_db(&picture, &truth, None)?;
+        let (psnr_field_db, ssim) = (psnr_db(&picture, &truth, Some(&mask)), ssim(&luma(&picture), &grey));
+        Some(Outcome { psnr_db: psnr, psnr_field_db, ssim, milliseconds, covered, picture })
+    };
+    let mut outcomes = BTreeMap::new();
+    for method in METHODS {
+        // The first call decodes the neighbours, the second is timed.
+        let answer =
+            synthesizer.image_at(pose, method).and_then(|_| timed(|| synthesizer.image_at(pose, method)));
+        match answer {
+            Ok((reconstruction, milliseconds)) => {
+                let covered = Some(reconstruction.covered());
+                let outcome = compare(reconstruction.picture, milliseconds, covered);
+                outcomes.extend(outcome.map(|outcome| (method.name(), outcome)));
+            }
+            Err(error) if error.is_refusal() => {}
+            Err(error) => return Err(error.into()),
+        }
+    }
+    let (drawn, milliseconds) = timed(|| renderer.draw(pose))?;
+    outcomes.extend(compare(drawn, milliseconds, None).map(|outcome| (SIMULATED, outcome)));
+    let distance_px = synthesizer.nearest(pose, 1).ok().map(|nearest| nearest[0].distance_px);
+    Ok(Judged { frame, distance_px, truth, outcomes })
+}
+
+/// A probe that cannot be judged.
+#[derive(Debug, thiserror::Error)]
+pub enum ProbingError {
+    /// A method failed.
+    #[error(transparent)]
+    Synthesis(#[from] SynthesisError),
+    /// The pose cannot be drawn.
+    #[error(transparent)]
+    Pose(#[from] PoseError),
+}
+
+fn timed<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, f64), E> {
+    let start = Instant::now();
+    let result = work()?;
+    Ok((result, 1e3 * start.elapsed().as_secs_f64()))
+}
+
+/// The names of the methods, in the order in which they are shown.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    METHODS.into_iter().map(|method| method.name()).chain([SIMULATED])
+}
+
+impl MethodReport {
+    /// For the method of this name.
+    pub fn new(name: &str, judged: &[Judged]) -> Self {
+        let outcomes: Vec<&Outcome> = judged.iter().filter_map(|probe| probe.outcomes.get(name)).collect();
+        let values =
+            |of: fn(&Outcome) -> Option<f64>| outcomes.iter().filter_map(|outcome| of(outcome)).collect();
+        let mean =
+            |values: Vec<f64>| (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
+        let mut times: Vec<f64> = values(|outcome| Some(outcome.milliseconds));
+        times.sort_by(f64::total_cmp);
+        Self {
+            psnr_db: mean(values(|outcome| Some(outcome.psnr_db))),
+            psnr_field_db: mean(values(|outcome| outcome.psnr_field_db)),
+            ssim: mean(values(|outcome| outcome.ssim)),
+            milliseconds: percentile(&times, 0.5),
+            covered: mean(values(|outcome| outcome.covered)),
+            answered: outcomes.len() as f64 / judged.len().max(1) as f64,
+        }
+    }
+}
