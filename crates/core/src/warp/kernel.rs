@@ -51,22 +51,12 @@ impl Edges {
         }
     }
 
-    /// The same screen, wider on all sides by this, metres.
+    /// Whether a place in the screen's plane, above the ground, lies on it, or beside it by no more than this, metres.
     #[inline(always)]
-    fn widened(mut self, by: f32) -> Self {
-        self.half_width += by;
-        self.top += by;
-        self.opening_half_width -= by;
-        self.opening_top -= by;
-        self
-    }
-
-    /// Whether a place in the screen's plane, above the ground, lies on it.
-    #[inline(always)]
-    fn hold(&self, across: f32, up: f32) -> bool {
+    fn hold(&self, across: f32, up: f32, margin: f32) -> bool {
         let across = across.abs();
-        let is_opening = (across < self.opening_half_width) & (up < self.opening_top);
-        (across <= self.half_width) & (up <= self.top) & !is_opening
+        let is_opening = (across < self.opening_half_width - margin) & (up < self.opening_top - margin);
+        (across <= self.half_width + margin) & (up <= self.top + margin) & !is_opening
     }
 }
 
@@ -112,7 +102,7 @@ pub(crate) fn hull_points(hull: &Hull, from: &Placement, rays: &RayBlock) -> Hul
             let to_screen = x / direction[0][i];
             let y = from.position_in_world[1] + to_screen * direction[1][i];
             let z = from.position_in_world[2] + to_screen * direction[2][i];
-            let is_hit = (to_screen > 0.0) & (to_screen < distance[i]) & (z >= 0.0) & screen.hold(y, z);
+            let is_hit = (to_screen > 0.0) & (to_screen < distance[i]) & (z >= 0.0) & screen.hold(y, z, 0.0);
             distance[i] = if is_hit { to_screen } else { distance[i] };
             on_ground[i] = if is_hit { 0.0 } else { on_ground[i] };
         }
@@ -146,19 +136,27 @@ pub(crate) fn see(camera: &KernelCamera, placement: &Placement, points: &HullPoi
 pub(crate) fn unhidden(hull: &Hull, from: &Placement, points: &HullPoints) -> Lanes {
     /// A point on the screen itself is not hidden by it, as a share of the way to it.
     const ON_SCREEN: f32 = 1.0 - 1e-3;
-    /// A round post hides more than the flat one that stands for it, seen from the side.
+    /// Of a usual post. Seen from the side, a round one hides more than the flat one that stands for it; by how
+    /// much, grows with one over the cosine.
     const POST_RADIUS_M: f32 = 0.05;
+    /// Below 1: pixels and compression spread a post's colour beyond its edge.
+    const SHARP_EDGE: f32 = 0.6;
+    /// Nearly along the screen it would hide everything.
+    const MOST_OBLIQUE: f32 = 4.0;
     let [x, y, z] = from.position_in_world;
     let mut unhidden = [1.0_f32; LANES];
     for screen in &hull.screens {
         let to_screen = screen.x_m as f32 - x;
-        let screen = Edges::new(screen).widened(POST_RADIUS_M);
+        let screen = Edges::new(screen);
         for i in 0..LANES {
-            let share = to_screen / (points.place[0][i] - x);
-            let across = y + share * (points.place[1][i] - y);
+            let (dx, dy) = (points.place[0][i] - x, points.place[1][i] - y);
+            let share = to_screen / dx;
+            let across = y + share * dy;
             let up = z + share * (points.place[2][i] - z);
             let is_between = (share > 0.0) & (share < ON_SCREEN);
-            let is_hidden = is_between & screen.hold(across, up);
+            let slope = dy / dx;
+            let margin = POST_RADIUS_M * ((1.0 + slope * slope).sqrt().min(MOST_OBLIQUE) - SHARP_EDGE);
+            let is_hidden = is_between & screen.hold(across, up, margin);
             unhidden[i] = if is_hidden { 0.0 } else { unhidden[i] };
         }
     }
