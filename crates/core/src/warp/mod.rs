@@ -44,3 +44,6 @@ impl Warper for CpuWarper {
         Ok(blend(target, sources, weights))
     }
 }
+
+#[cfg(test)]
+mod tests;
