@@ -1,11 +1,14 @@
-//! Where poses are scored and particles live: this processor, or a device of another package. Chosen once and handed
-//! down; nothing in this package knows which it is.
+//! Where poses are scored, particles live and pictures are drawn: this processor, or a device of another package. Chosen
+//! once and handed down; nothing in this package knows which it is.
+
+use std::sync::Arc;
 
 use crate::{
     camera::Camera,
     field::FieldDimensions,
     filter::{Filter, FilterConfig, ScoredFilter},
     observation::{CpuScorer, ObservationConfig, Scorer},
+    warp::{CpuWarper, Warper},
 };
 
 /// A device that cannot do what was asked for, or no longer works: what is wrong, and what to do about it.
@@ -31,6 +34,9 @@ pub trait Backend: Send + Sync {
         observation: ObservationConfig,
         config: FilterConfig,
     ) -> Result<Box<dyn Filter>, BackendError>;
+
+    /// What draws pictures from others; threads share it.
+    fn warper(&self) -> Result<Arc<dyn Warper>, BackendError>;
 
     /// What has gone wrong on the device so far. What was scored since is worth nothing.
     fn status(&self) -> Result<(), BackendError>;
@@ -59,6 +65,10 @@ impl Backend for CpuBackend {
     ) -> Result<Box<dyn Filter>, BackendError> {
         let scorer = Box::new(CpuScorer::new(camera, field, observation));
         Ok(Box::new(ScoredFilter::new(scorer, config)))
+    }
+
+    fn warper(&self) -> Result<Arc<dyn Warper>, BackendError> {
+        Ok(Arc::new(CpuWarper))
     }
 
     fn status(&self) -> Result<(), BackendError> {

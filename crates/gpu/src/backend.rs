@@ -8,11 +8,12 @@ use reality_sim_core::{
     field::FieldDimensions,
     filter::{Filter, FilterConfig},
     observation::{ObservationConfig, Scorer},
+    warp::Warper,
 };
 
-use crate::{GpuContext, GpuError, GpuFilter, GpuScorer};
+use crate::{GpuContext, GpuError, GpuFilter, GpuScorer, GpuWarper};
 
-/// Scores and filters on one device.
+/// Scores, filters and draws on one device.
 #[derive(Debug, Clone)]
 pub struct GpuBackend {
     context: Arc<GpuContext>,
@@ -49,6 +50,10 @@ impl Backend for GpuBackend {
         config: FilterConfig,
     ) -> Result<Box<dyn Filter>, BackendError> {
         Ok(Box::new(GpuFilter::new(self.context.clone(), camera, field, observation, config)?))
+    }
+
+    fn warper(&self) -> Result<Arc<dyn Warper>, BackendError> {
+        Ok(Arc::new(GpuWarper::new(self.context.clone())?))
     }
 
     fn status(&self) -> Result<(), BackendError> {
