@@ -32,7 +32,7 @@ pub mod overlay;
 pub use reality_sim_gpu as gpu;
 
 pub use reality_sim_core::{
-    backend, camera, field, filter, observation, pose, preprocess, refine, search, sequence, tag,
+    backend, camera, field, filter, observation, pose, preprocess, refine, search, sequence, tag, warp,
 };
 pub use reality_sim_core::{
     camera::Camera,

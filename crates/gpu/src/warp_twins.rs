@@ -3,24 +3,22 @@
 use std::sync::Arc;
 
 use reality_sim_core::{
-    backend::BackendError,
     camera::{Camera, Distortion, ImageCircle, InvalidCamera, KernelCamera, Opencv, OpencvFisheye},
     field::FieldDimensions,
     filter::{Purpose, Stream},
     pose::{CameraPose, Pose2},
     preprocess::Attitude,
     warp::{
-        BlendWeights, Hall, Hull, MAX_SOURCES, Origin, Picture, Placement, RayTable, Source, Target, Warper,
-        blend,
+        BlendWeights, Hall, Hull, MAX_SOURCES, Origin, Picture, Placement, RayTable, Source, Target, blend,
     },
 };
 
-use crate::{GpuContext, GpuWarper};
+use crate::{GpuContext, GpuError, GpuWarper};
 
 /// So many of the pixels may differ by more than a grey level, come from another source, or differ in trust by more than
 /// two: those at the edges of goals, of the hull and of what a source sees fall to one side here and to the other there,
 /// and of two sources that are worth the same either may be named.
-pub const WARP_TOLERANCE: f64 = 1e-3;
+pub const WARP_TOLERANCE: f64 = 1e-4;
 
 /// How far the shader is from its twin.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -47,7 +45,7 @@ impl WarpComparison {
 }
 
 /// Compares pictures from none to all sources on so many scenes.
-pub fn compare_warps(context: &Arc<GpuContext>, scenes: u64) -> Result<WarpComparison, BackendError> {
+pub fn compare_warps(context: &Arc<GpuContext>, scenes: u64) -> Result<WarpComparison, GpuError> {
     let field = FieldDimensions::preset("humanoid-kidsize-2010").expect("a preset of the core");
     let cameras = cameras().expect("lenses that are valid");
     let kernel_cameras: Vec<KernelCamera> = cameras.iter().map(KernelCamera::new).collect();
@@ -61,7 +59,7 @@ pub fn compare_warps(context: &Arc<GpuContext>, scenes: u64) -> Result<WarpCompa
             Target { rays: &tables[scene.camera], placement: Placement::new(scene.pose), hull: &hull };
         let sources: Vec<Source> =
             scene.views.iter().map(|view| view.source(&kernel_cameras[view.camera])).collect();
-        let found = warper.blend(&target, &sources, &BlendWeights::default())?;
+        let found = warper.draw(&target, &sources, &BlendWeights::default())?;
         let expected = blend(&target, &sources, &BlendWeights::default());
         comparison.pixels += expected.colors.len();
         comparison.seen += expected.origins.iter().filter(|origin| origin.source != Origin::NOWHERE).count();
