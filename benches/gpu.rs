@@ -1,5 +1,5 @@
-//! The graphics device beside the CPU: whole frames of the filter, many particles, the search of the whole field. The
-//! groups carry the adapter's name; without an adapter there are none, and a line says so.
+//! The graphics device beside the CPU: whole frames of the filter, many particles, the search of the whole field, pictures
+//! drawn from others. The groups carry the adapter's name; without an adapter there are none, and a line says so.
 
 #![expect(
     clippy::print_stdout,
@@ -19,7 +19,7 @@ use reality_sim::{
     search::{GlobalSearch, SearchGrid},
 };
 
-use crate::{scene::Scene, scoring::MODELS};
+use crate::{scene::Scene, scoring::MODELS, warp};
 
 const SIGMA: PlanarSigma = PlanarSigma { position_m: 0.03, yaw_rad: 0.03 };
 /// Scored at once by one iteration of the filter.
@@ -46,6 +46,7 @@ fn bench_on(criterion: &mut Criterion, scene: &Scene, context: &Arc<GpuContext>)
     print_stages(scene, context);
     many_particles(criterion, scene, &backends, adapter.is_processor);
     search(criterion, scene, &backends);
+    warp::bench(criterion, scene, &backends);
     start(criterion, scene, context, &adapter.name);
 }
 

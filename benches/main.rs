@@ -12,6 +12,8 @@ mod scene;
 mod scoring;
 mod search;
 mod smoothing;
+#[cfg(feature = "gpu")]
+mod warp;
 mod white_lines;
 
 use std::time::Duration;

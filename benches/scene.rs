@@ -45,6 +45,18 @@ impl Scene {
         self.pictures.iter().enumerate().map(|(index, picture)| recorded(&self.walk, index, picture))
     }
 
+    /// The pictures around that one, from so many frames on, and where they were taken.
+    pub fn views(&self, count: usize) -> impl Iterator<Item = (CameraPose, &RgbImage)> {
+        let first = MIDDLE - count / 2;
+        let frames = (first..).filter(|&frame| frame != MIDDLE).take(count);
+        frames.map(|frame| (self.true_pose(frame), &*self.pictures[frame]))
+    }
+
+    /// Where a picture was taken.
+    fn true_pose(&self, frame: usize) -> CameraPose {
+        self.walk.groundtruth[frame].expect("the demonstration walk has ground truth")
+    }
+
     /// The picture that single stages are measured on.
     pub fn picture(&self) -> &Arc<RgbImage> {
         &self.pictures[MIDDLE]
@@ -62,7 +74,7 @@ impl Scene {
 
     /// Where it was taken.
     pub fn pose(&self) -> Pose2 {
-        self.walk.groundtruth[MIDDLE].expect("the demonstration walk has ground truth").planar()
+        self.true_pose(MIDDLE).planar()
     }
 
     /// Particles around that place.

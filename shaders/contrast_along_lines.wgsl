@@ -1,7 +1,7 @@
 // Σ weight · contrast and Σ weight over all samples seen with both flanks, for every pose: `contrast`.
 // Twin: `contrast_along_lines` in crates/core/src/observation/kernel.rs.
 
-#import shared/camera.wgsl
+#import shared/ground.wgsl
 #import shared/texture.wgsl
 #import shared/scoring.wgsl
 

@@ -1,7 +1,7 @@
 // Σ texture value along all lines in view, and the number of samples in view, for every pose: `gauss` and `distance`.
 // Twin: `sum_along_lines` in crates/core/src/observation/kernel.rs.
 
-#import shared/camera.wgsl
+#import shared/ground.wgsl
 #import shared/texture.wgsl
 #import shared/scoring.wgsl
 

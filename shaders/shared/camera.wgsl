@@ -1,11 +1,5 @@
-// Ground points through a pose and the lens to pixels: the same steps, in the same order, as `project_block` and `project_lanes` in
-// crates/core/src/{observation,camera}/kernel.rs.
-
-#import shared/pose.wgsl
-
-/// Set when the pipeline is made: whether the lens is the radial one, or else the perspective one. A branch on a value
-/// read would cost both sides where a driver runs on a processor.
-override is_radial: bool = true;
+// Points in a camera's axes through the lens to pixels: the same steps, in the same order, as `project_lanes` in
+// crates/core/src/camera/kernel.rs.
 
 /// `KernelCamera`, laid out for a uniform buffer.
 struct Camera {
@@ -17,7 +11,8 @@ struct Camera {
     largest_px: vec2<f32>,
     /// Cosine of the largest valid angle.
     min_cos: f32,
-    padding: u32,
+    /// 1 where the lens is the radial one, 0 where it is the perspective one.
+    is_radial: u32,
     /// Centre and squared radius of the image circle; a negative radius where the lens fills the picture.
     circle: vec4<f32>,
     /// Radial: eleven coefficients, scale, offset. Perspective: k1, k2, p1, p2, k3.
@@ -31,12 +26,9 @@ struct Pixel {
     seen: bool,
 }
 
-fn project(camera: Camera, pose: CameraFromGround, ground: vec2<f32>) -> Pixel {
-    let p = vec3<f32>(
-        pose.x.x * ground.x + pose.x.y * ground.y + pose.x.z,
-        pose.y.x * ground.x + pose.y.y * ground.y + pose.y.z,
-        pose.z.x * ground.x + pose.z.y * ground.y + pose.z.z,
-    );
+/// `is_radial` is the camera's, or a constant: a branch on a value read costs both sides where a driver runs on a
+/// processor.
+fn project_point(camera: Camera, is_radial: bool, p: vec3<f32>) -> Pixel {
     let nearness = 1.0 / sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
     let cosine = p.z * nearness;
     // Written out: an index that is no constant makes a load of every step.

@@ -8,13 +8,16 @@ use serde::Serialize;
 
 use reality_sim::gpu::{
     AdapterSummary, GpuContext, GpuError, SCORE_TOLERANCE, ScoreComparison, adapters, compare_filters,
-    compare_scores,
+    compare_scores, compare_warps,
 };
 
 use super::output::{print, print_json};
 
 /// Scenes that every model and every lens is compared on.
 const SCENES: u64 = 4;
+
+/// Pictures that are drawn from others for comparison: from none to all sources, once.
+const PICTURES: u64 = 9;
 
 /// Options of `doctor`.
 #[derive(Debug, Args)]
@@ -47,6 +50,9 @@ struct AdapterReport {
     /// Of the filter's updates, those with the same best particle as on the CPU.
     #[serde(skip_serializing_if = "Option::is_none")]
     same_best_particle: Option<[usize; 2]>,
+    /// Of the pixels drawn from other pictures, those that are as on the CPU to a grey level.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    same_pixels: Option<[usize; 2]>,
     agrees: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
@@ -93,22 +99,26 @@ fn examine(summary: &AdapterSummary) -> AdapterReport {
     let start_seconds = begin.elapsed().as_secs_f64();
     let comparisons = context.and_then(|context| {
         let context = Arc::new(context);
-        let comparisons = (compare_scores(&context, SCENES)?, compare_filters(&context, SCENES)?);
-        context.status().map(|()| comparisons)
+        let scores = compare_scores(&context, SCENES)?;
+        let filters = compare_filters(&context, SCENES)?;
+        let warps = compare_warps(&context, PICTURES)?;
+        context.status().map(|()| (scores, filters, warps))
     });
     let report = AdapterReport {
         summary: summary.clone(),
         start_seconds,
         worst_difference: None,
         same_best_particle: None,
+        same_pixels: None,
         agrees: false,
         error: None,
     };
     match comparisons {
-        Ok((scores, filters)) => AdapterReport {
+        Ok((scores, filters, warps)) => AdapterReport {
             worst_difference: Some(scores.iter().map(|comparison| comparison.worst).fold(0.0, f64::max)),
             same_best_particle: Some([filters.same_best, filters.updates]),
-            agrees: scores.iter().all(ScoreComparison::agrees) && filters.agrees(),
+            same_pixels: Some([warps.pixels - warps.other_color, warps.pixels]),
+            agrees: scores.iter().all(ScoreComparison::agrees) && filters.agrees() && warps.agrees(),
             ..report
         },
         Err(error) => AdapterReport { error: Some(error.to_string()), ..report },
@@ -120,10 +130,11 @@ fn text(report: &Report) -> String {
     for adapter in &report.adapters {
         let AdapterSummary { name, backend, kind, driver, .. } = &adapter.summary;
         let mebibytes = |bytes: u64| bytes >> 20;
-        let verdict = match (&adapter.error, adapter.worst_difference, adapter.same_best_particle) {
-            (None, Some(worst), Some([same, updates])) => format!(
+        let compared = adapter.same_best_particle.zip(adapter.same_pixels);
+        let verdict = match (&adapter.error, adapter.worst_difference, compared) {
+            (None, Some(worst), Some(([same, updates], [same_pixels, pixels]))) => format!(
                 "{} the CPU: scores differ by {worst:.0e} at most, {SCORE_TOLERANCE:.0e} allowed; the best particle is the \
-                 same in {same} of {updates} updates",
+                 same in {same} of {updates} updates; {same_pixels} of {pixels} pixels drawn are the same to a grey level",
                 if adapter.agrees { "compute as" } else { "DO NOT compute as" }
             ),
             (error, ..) => format!("failed: {}", error.as_deref().unwrap_or("not compared")),

@@ -1,5 +1,5 @@
-//! Where poses are scored and particles live: this processor, or a device of another package. Chosen once and handed
-//! down; nothing in this package knows which it is.
+//! Where poses are scored, particles live and pictures are drawn: this processor, or a device of another package. Chosen
+//! once and handed down; nothing in this package knows which it is.
 
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ pub trait Backend: Send + Sync {
         config: FilterConfig,
     ) -> Result<Box<dyn Filter>, BackendError>;
 
-    /// What draws pictures from others.
+    /// What draws pictures from others; threads share it.
     fn warper(&self) -> Result<Arc<dyn Warper>, BackendError>;
 
     /// What has gone wrong on the device so far. What was scored since is worth nothing.

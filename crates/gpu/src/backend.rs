@@ -8,12 +8,12 @@ use reality_sim_core::{
     field::FieldDimensions,
     filter::{Filter, FilterConfig},
     observation::{ObservationConfig, Scorer},
-    warp::{CpuWarper, Warper},
+    warp::Warper,
 };
 
-use crate::{GpuContext, GpuError, GpuFilter, GpuScorer};
+use crate::{GpuContext, GpuError, GpuFilter, GpuScorer, GpuWarper};
 
-/// Scores and filters on one device.
+/// Scores, filters and draws on one device.
 #[derive(Debug, Clone)]
 pub struct GpuBackend {
     context: Arc<GpuContext>,
@@ -53,7 +53,7 @@ impl Backend for GpuBackend {
     }
 
     fn warper(&self) -> Result<Arc<dyn Warper>, BackendError> {
-        Ok(Arc::new(CpuWarper))
+        Ok(Arc::new(GpuWarper::new(self.context.clone())?))
     }
 
     fn status(&self) -> Result<(), BackendError> {

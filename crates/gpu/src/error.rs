@@ -25,7 +25,9 @@ pub enum GpuError {
         reason: String,
     },
     /// Something is larger than the device allows.
-    #[error("{what} takes {bytes} bytes and the device allows {limit}: use fewer particles, or the CPU")]
+    #[error(
+        "{what} takes {bytes} bytes and the device allows {limit}: use fewer particles, smaller pictures, or the CPU"
+    )]
     TooLarge {
         /// What was to be stored.
         what: &'static str,
@@ -33,6 +35,28 @@ pub enum GpuError {
         bytes: u64,
         /// The device's limit.
         limit: u64,
+    },
+    /// A picture has more columns or rows than the device allows.
+    #[error(
+        "a picture has {width} x {height} pixels and the device allows {limit} each way: scale it down, or use the CPU"
+    )]
+    TooManyPixels {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// The device's limit.
+        limit: u32,
+    },
+    /// A picture that has not a word for every pixel.
+    #[error("a picture of {width} x {height} pixels has {words} words: give it one for every pixel")]
+    NotAPicture {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Its words.
+        words: usize,
     },
     /// What only the CPU does.
     #[error("{what} is not computed on the graphics device: use the CPU")]

@@ -5,6 +5,7 @@ use reality_sim_core::{
     camera::{KernelCamera, Lens, RADIAL_TERMS},
     observation::{CameraFromGround, ContrastScale},
     pose::CameraPose,
+    warp::{BlendWeights, Hull, MAX_SOURCES, Placement, Screen, Source, Target},
 };
 
 /// `Camera` in `shaders/shared/camera.wgsl`.
@@ -15,12 +16,12 @@ pub(crate) struct CameraLayout {
     centre_px: [f32; 2],
     largest_px: [f32; 2],
     min_cos: f32,
-    padding: u32,
+    is_radial: u32,
     circle: [f32; 4],
     lens_parameters: [f32; 16],
 }
 
-/// `CameraFromGround` in `shaders/shared/camera.wgsl`.
+/// `CameraFromGround` in `shaders/shared/pose.wgsl`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct PoseLayout {
@@ -123,6 +124,74 @@ pub(crate) struct OutcomeLayout {
     pub spread_m: f32,
 }
 
+/// `Placement` in `shaders/shared/hull.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct PlacementLayout {
+    right: [f32; 4],
+    down: [f32; 4],
+    forward: [f32; 4],
+    position: [f32; 4],
+}
+
+/// `Screen` in `shaders/shared/hull.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct ScreenLayout {
+    x: f32,
+    half_width: f32,
+    top: f32,
+    opening_half_width: f32,
+    opening_top: f32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
+}
+
+/// `Hull` in `shaders/shared/hull.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct HullLayout {
+    low: [f32; 4],
+    high: [f32; 4],
+    screens: [ScreenLayout; 4],
+}
+
+/// `Scene` in `shaders/blend.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct SceneLayout {
+    eye: PlacementLayout,
+    hull: HullLayout,
+    width: u32,
+    height: u32,
+    sources: u32,
+    angle_on_ground: f32,
+    angle_above: f32,
+    resolution: f32,
+    border_px: f32,
+    softness: f32,
+    disagreement: f32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
+}
+
+/// `Source` in `shaders/blend.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct SourceLayout {
+    camera: CameraLayout,
+    placement: PlacementLayout,
+    gain: [f32; 4],
+    size: [u32; 2],
+    layer: u32,
+    padding: u32,
+}
+
+/// All sources of a picture.
+pub(crate) type SourcesLayout = [SourceLayout; MAX_SOURCES];
+
 impl From<CameraPose> for ParticleLayout {
     fn from(pose: CameraPose) -> Self {
         Self {
@@ -169,7 +238,7 @@ impl From<&KernelCamera> for CameraLayout {
             centre_px: [camera.cx, camera.cy],
             largest_px: [camera.max_u, camera.max_v],
             min_cos: camera.min_cos,
-            padding: 0,
+            is_radial: u32::from(matches!(camera.lens, Lens::Radial { .. })),
             circle: [u, v, radius_squared, 0.0],
             lens_parameters,
         }
@@ -195,6 +264,78 @@ impl SettingsLayout {
             min_width_px: scale.min_width_px,
             per_width_px: scale.per_width_px,
             relative_area: scale.relative_area,
+        }
+    }
+}
+
+/// A fourth number that nobody reads.
+fn padded([x, y, z]: [f32; 3]) -> [f32; 4] {
+    [x, y, z, 0.0]
+}
+
+impl From<&Placement> for PlacementLayout {
+    fn from(placement: &Placement) -> Self {
+        let [right, down, forward] = placement.axes_in_world.map(padded);
+        Self { right, down, forward, position: padded(placement.position_in_world) }
+    }
+}
+
+impl From<Screen> for ScreenLayout {
+    fn from(screen: Screen) -> Self {
+        Self {
+            x: screen.x_m as f32,
+            half_width: screen.half_width_m as f32,
+            top: screen.height_m as f32,
+            opening_half_width: screen.opening_half_width_m as f32,
+            opening_top: screen.opening_height_m as f32,
+            padding_0: 0,
+            padding_1: 0,
+            padding_2: 0,
+        }
+    }
+}
+
+impl From<&Hull> for HullLayout {
+    fn from(hull: &Hull) -> Self {
+        Self {
+            low: padded(hull.min_in_world.as_vec3().to_array()),
+            high: padded(hull.max_in_world.as_vec3().to_array()),
+            screens: hull.screens.map(ScreenLayout::from),
+        }
+    }
+}
+
+impl SceneLayout {
+    pub fn new(target: &Target, sources: usize, weights: &BlendWeights) -> Self {
+        Self {
+            eye: PlacementLayout::from(&target.placement),
+            hull: HullLayout::from(target.hull),
+            width: target.rays.width,
+            height: target.rays.height,
+            sources: sources as u32,
+            angle_on_ground: weights.angle_on_ground,
+            angle_above: weights.angle_above,
+            resolution: weights.resolution,
+            border_px: weights.border_px,
+            softness: weights.softness,
+            disagreement: weights.disagreement,
+            padding_0: 0,
+            padding_1: 0,
+            padding_2: 0,
+        }
+    }
+}
+
+impl SourceLayout {
+    /// A source whose picture lies in this layer of the texture.
+    pub fn new(source: &Source, layer: u32) -> Self {
+        Self {
+            camera: CameraLayout::from(source.camera),
+            placement: PlacementLayout::from(&source.placement),
+            gain: padded(source.gain),
+            size: [source.picture.width, source.picture.height],
+            layer,
+            padding: 0,
         }
     }
 }
@@ -228,7 +369,7 @@ mod tests {
     #[test]
     fn every_shared_struct_has_one_layout() {
         assert_same_layout!(CameraLayout in "contrast_along_lines.wgsl" as "Camera":
-            focal_px centre_px largest_px min_cos padding circle lens_parameters);
+            focal_px centre_px largest_px min_cos is_radial circle lens_parameters);
         assert_same_layout!(PoseLayout in "contrast_along_lines.wgsl" as "CameraFromGround": x y z);
         assert_same_layout!(SettingsLayout in "contrast_along_lines.wgsl" as "Settings":
             samples poses groups_along_x per_contrast dark_level min_width_px per_width_px relative_area);
@@ -243,5 +384,16 @@ mod tests {
         assert_same_layout!(IterationLayout in "diffuse.wgsl" as "Iteration": number scale padding_0 padding_1);
         assert_same_layout!(OutcomeLayout in "summarise.wgsl" as "Outcome":
             best estimate rivals rival_count best_log_weight effective_sample_size spread_m);
+        assert_same_layout!(CameraLayout in "blend.wgsl" as "Camera":
+            focal_px centre_px largest_px min_cos is_radial circle lens_parameters);
+        assert_same_layout!(PlacementLayout in "blend.wgsl" as "Placement": right down forward position);
+        assert_same_layout!(ScreenLayout in "blend.wgsl" as "Screen":
+            x half_width top opening_half_width opening_top padding_0 padding_1 padding_2);
+        assert_same_layout!(HullLayout in "blend.wgsl" as "Hull": low high screens);
+        assert_same_layout!(SceneLayout in "blend.wgsl" as "Scene":
+            eye hull width height sources angle_on_ground angle_above resolution border_px softness disagreement
+            padding_0 padding_1 padding_2);
+        assert_same_layout!(SourceLayout in "blend.wgsl" as "Source":
+            camera placement gain size layer padding);
     }
 }

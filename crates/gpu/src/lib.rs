@@ -1,6 +1,6 @@
-//! Reality Sim's observation models and particle filter on the GPU: the same results as
-//! [`reality_sim_core::backend::CpuBackend`] gives, from compute shaders through wgpu. The shaders lie in the workspace's `shaders/`, one entry point a file, named as
-//! their twins on the CPU.
+//! Reality Sim's observation models, particle filter and picture warp on the GPU: the same results as
+//! [`reality_sim_core::backend::CpuBackend`] gives, from compute shaders through wgpu. The shaders lie in the workspace's
+//! `shaders/`, one entry point a file, named as their twins on the CPU.
 
 mod backend;
 mod buffers;
@@ -8,13 +8,17 @@ mod context;
 mod error;
 mod filter;
 mod kernel;
+mod layers;
 mod layout;
 mod picture;
+mod recent;
 mod scorer;
 mod scoring;
 mod shader;
 mod timing;
 mod twins;
+mod warp;
+mod warp_twins;
 
 pub use self::{
     backend::GpuBackend,
@@ -25,6 +29,8 @@ pub use self::{
     twins::{
         EDGE_TOLERANCE, FilterComparison, SCORE_TOLERANCE, ScoreComparison, compare_filters, compare_scores,
     },
+    warp::GpuWarper,
+    warp_twins::{WARP_TOLERANCE, WarpComparison, compare_warps},
 };
 
 /// A device for tests: the best adapter there is. Without one a test fails and says what to install.

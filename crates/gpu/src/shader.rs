@@ -9,6 +9,7 @@ macro_rules! files {
 
 /// Every file in `shaders/`, by its path from there.
 pub(crate) const FILES: &[(&str, &str)] = files![
+    "blend.wgsl",
     "blur_columns.wgsl",
     "blur_rows.wgsl",
     "camera_from_ground.wgsl",
@@ -30,6 +31,8 @@ pub(crate) const FILES: &[(&str, &str)] = files![
     "shared/camera.wgsl",
     "shared/color.wgsl",
     "shared/filter.wgsl",
+    "shared/ground.wgsl",
+    "shared/hull.wgsl",
     "shared/largest.wgsl",
     "shared/picture.wgsl",
     "shared/pose.wgsl",

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use reality_sim_gpu::{GpuContext, compare_filters, compare_scores};
+use reality_sim_gpu::{GpuContext, compare_filters, compare_scores, compare_warps};
 
 fn context() -> Arc<GpuContext> {
     let context = GpuContext::new(None).unwrap();
@@ -28,6 +28,16 @@ fn an_iteration_of_the_filter_is_that_of_the_cpu() {
     let comparison = compare_filters(&context(), 24).unwrap();
     println!("{comparison:?}");
     assert!(comparison.updates == 24 && comparison.agrees(), "{comparison:?}");
+}
+
+/// From none to all sources, every lens, alone and mixed.
+#[test]
+fn pictures_are_drawn_as_on_the_cpu() {
+    let context = context();
+    let comparison = compare_warps(&context, 144).unwrap();
+    println!("{comparison:?}");
+    assert!(comparison.agrees(), "{comparison:?}");
+    context.status().unwrap();
 }
 
 #[test]

@@ -99,6 +99,15 @@ pub struct Warped {
     pub origins: Vec<Origin>,
 }
 
+impl Warped {
+    /// The same picture of so many columns, with pixels that no source saw coloured as their surroundings are: the last
+    /// step of [`blend`], on all devices.
+    pub fn filled(mut self, width: usize) -> Self {
+        fill(&mut self.colors, width, |index| self.origins[index].source != Origin::NOWHERE);
+        self
+    }
+}
+
 /// Draws the picture at the target from the sources, at most [`MAX_SOURCES`] of them.
 pub fn blend(target: &Target, sources: &[Source], weights: &BlendWeights) -> Warped {
     let (width, height) = (target.rays.width as usize, target.rays.height as usize);
@@ -109,8 +118,7 @@ pub fn blend(target: &Target, sources: &[Source], weights: &BlendWeights) -> War
     rows.with_min_len(8).for_each(|(row, (colors, origins))| {
         blend_row(target, sources, weights, target.rays.row(row), colors, origins);
     });
-    fill(&mut colors, width, |index| origins[index].source != Origin::NOWHERE);
-    Warped { colors, origins }
+    Warped { colors, origins }.filled(width)
 }
 
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]

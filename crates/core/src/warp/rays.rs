@@ -1,5 +1,7 @@
 //! The directions in which a camera's pixels look, computed once.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -16,7 +18,7 @@ pub struct RayTable {
     /// Rows.
     pub height: u32,
     blocks_in_row: usize,
-    blocks: Vec<RayBlock>,
+    blocks: Arc<Vec<RayBlock>>,
 }
 
 impl RayTable {
@@ -26,7 +28,15 @@ impl RayTable {
         let rows = (0..camera.height).into_par_iter();
         let blocks =
             rows.flat_map_iter(|row| (0..blocks_in_row).map(move |block| ray_block(camera, block, row)));
-        Self { width: camera.width, height: camera.height, blocks_in_row, blocks: blocks.collect() }
+        let blocks = Arc::new(blocks.collect());
+        Self { width: camera.width, height: camera.height, blocks_in_row, blocks }
+    }
+
+    /// Unit directions in the camera's axes, row by row from the top. A block holds the right, down and forward parts of
+    /// sixteen neighbouring pixels of a row; NaN where a pixel sees nothing and beyond the row's end. Clones of a table
+    /// share them.
+    pub fn blocks(&self) -> &Arc<Vec<[Lanes; 3]>> {
+        &self.blocks
     }
 
     /// The directions of a row, sixteen pixels a block; the last block is filled up with NaN.

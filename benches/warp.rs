@@ -1,0 +1,49 @@
+//! A picture drawn from others beside the way of a walk: from one and from four of them. Elements are pixels.
+
+use std::sync::Arc;
+
+use criterion::{Criterion, SamplingMode, Throughput};
+use reality_sim::{
+    CameraPose, Pose2,
+    backend::Backend,
+    camera::KernelCamera,
+    warp::{BlendWeights, Hall, Hull, Picture, Placement, RayTable, Source, Target},
+};
+
+use crate::scene::Scene;
+
+/// Names, and the number of pictures drawn from.
+const METHODS: [(&str, usize); 2] = [("plane", 1), ("blend4", 4)];
+
+/// On every backend in turn. The pictures drawn from stay the same, as they do while a viewer moves about.
+pub fn bench(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dyn Backend)]) {
+    let walk = &scene.walk;
+    let camera = KernelCamera::new(&walk.setup.camera);
+    let rays = RayTable::new(&walk.setup.camera);
+    let Pose2 { x_m, y_m, yaw_rad } = scene.pose();
+    let pose = scene.attitude().at(Pose2::new(x_m + 0.1, y_m - 0.05, yaw_rad + 0.1));
+    let hull = Hull::new(&Hall::usual(&walk.field), &walk.field).holding(pose, 0.3);
+    let target = Target { rays: &rays, placement: Placement::new(pose), hull: &hull };
+    for (name, count) in METHODS {
+        let views: Vec<(CameraPose, Arc<Picture>)> =
+            scene.views(count).map(|(pose, picture)| (pose, Arc::new(Picture::from(picture)))).collect();
+        let source = |(pose, picture)| Source {
+            camera: &camera,
+            placement: Placement::new(pose),
+            picture,
+            gain: [1.0; 3],
+        };
+        let sources: Vec<Source> = views.iter().map(|(pose, picture)| source((*pose, picture))).collect();
+        let mut group = criterion.benchmark_group(format!("warp/{name}"));
+        group.sampling_mode(SamplingMode::Flat);
+        group.throughput(Throughput::Elements(u64::from(rays.width * rays.height)));
+        for (device, backend) in backends {
+            let warper = backend.warper().expect("a device that works");
+            let weights = BlendWeights::default();
+            group.bench_function(*device, |bencher| {
+                bencher.iter(|| warper.blend(&target, &sources, &weights).expect("a device that works"));
+            });
+        }
+        group.finish();
+    }
+}

@@ -1,0 +1,301 @@
+//! Pictures drawn from others on the device.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use reality_sim_core::{
+    backend::BackendError,
+    camera::{Lanes, Lens},
+    warp::{BlendWeights, MAX_SOURCES, Origin, Source, Target, Warped, Warper},
+};
+
+use crate::{
+    GpuContext, GpuError,
+    buffers::{readback, storage, storage_of, uniform, write},
+    kernel::{Kernel, groups, run_steps},
+    layers::Layers,
+    layout::{SceneLayout, SourceLayout, SourcesLayout},
+    recent::Recent,
+};
+
+/// Threads of a workgroup, a pixel each.
+const THREADS: u32 = 64;
+/// Cameras whose rays are kept.
+const RAY_TABLES: usize = 4;
+
+/// Rays as `RayTable` has them.
+type Rays = Vec<[Lanes; 3]>;
+
+/// Colour and source in a word, then the trust.
+type WarpedWords = [u32; 2];
+
+/// Pictures by a compute shader, see [`reality_sim_core::warp::blend`]. What it draws from is kept on the device: a picture
+/// is uploaded when it is first drawn from, the rays of a camera when they are first followed. Threads take turns.
+#[derive(Debug)]
+pub struct GpuWarper {
+    context: Arc<GpuContext>,
+    /// One for each kind of lenses.
+    kernels: [Kernel; 3],
+    scene: wgpu::Buffer,
+    sources: wgpu::Buffer,
+    kept: Mutex<Kept>,
+}
+
+/// What one picture leaves for the next.
+#[derive(Debug)]
+struct Kept {
+    layers: Layers,
+    rays: Recent<Rays, wgpu::Buffer>,
+    outputs: Outputs,
+}
+
+/// Pixels on their way back.
+#[derive(Debug)]
+struct Outputs {
+    pixels: usize,
+    warped: wgpu::Buffer,
+    readback: wgpu::Buffer,
+}
+
+impl GpuWarper {
+    /// On a device that was opened before.
+    pub fn new(context: Arc<GpuContext>) -> Result<Self, GpuError> {
+        let kernel = |lenses: Lenses| {
+            Kernel::with_constants(&context, "blend", &[("lenses", f64::from(lenses as u32))])
+        };
+        let kept = Kept {
+            layers: Layers::new(&context, [0, 0])?,
+            rays: Recent::new(RAY_TABLES),
+            outputs: Outputs::new(&context, 0)?,
+        };
+        let warper = Self {
+            kernels: [Lenses::Perspective, Lenses::Radial, Lenses::Mixed].map(kernel),
+            scene: uniform::<SceneLayout>(&context, "the picture wanted")?,
+            sources: uniform::<SourcesLayout>(&context, "the sources")?,
+            kept: Mutex::new(kept),
+            context,
+        };
+        warper.context.status()?;
+        Ok(warper)
+    }
+
+    /// See [`reality_sim_core::warp::blend`].
+    pub fn draw(
+        &self,
+        target: &Target,
+        sources: &[Source],
+        weights: &BlendWeights,
+    ) -> Result<Warped, GpuError> {
+        let sources = &sources[..sources.len().min(MAX_SOURCES)];
+        let words = self.words(target, sources, weights)?;
+        let origin = |[word, trust]: &WarpedWords| Origin { source: (word >> 24) as u8, trust: *trust as u8 };
+        let color = |[word, _]: &WarpedWords| [*word as u8, (word >> 8) as u8, (word >> 16) as u8];
+        let warped =
+            Warped { colors: words.iter().map(color).collect(), origins: words.iter().map(origin).collect() };
+        Ok(warped.filled(target.rays.width as usize))
+    }
+
+    fn words(
+        &self,
+        target: &Target,
+        sources: &[Source],
+        weights: &BlendWeights,
+    ) -> Result<Vec<WarpedWords>, GpuError> {
+        let context = &*self.context;
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let pixels = target.rays.width as usize * target.rays.height as usize;
+        kept.make_room(context, pixels, sources)?;
+        let Kept { layers, rays, outputs } = &mut *kept;
+        let mut layouts: SourcesLayout = bytemuck::Zeroable::zeroed();
+        for (layout, source) in layouts.iter_mut().zip(sources) {
+            *layout = SourceLayout::new(source, layers.layer(context, source.picture)?);
+        }
+        let rays = rays.get_or_make(target.rays.blocks(), |_| ray_buffer(context, target.rays.blocks()))?;
+        write(context, &self.sources, &layouts);
+        write(context, &self.scene, &[SceneLayout::new(target, sources.len(), weights)]);
+        let bindings = [
+            (&self.scene).into(),
+            (&self.sources).into(),
+            (&*rays).into(),
+            layers.view().into(),
+            (&outputs.warped).into(),
+        ];
+        let kernel = self.kernels[lenses(sources) as usize].bind_all(context, &bindings);
+        let groups = groups(context, (pixels as u32).div_ceil(THREADS));
+        let bytes = (pixels * size_of::<WarpedWords>()) as u64;
+        context.submit(|encoder| {
+            run_steps(encoder, [(&kernel, groups)]);
+            encoder.copy_buffer_to_buffer(&outputs.warped, 0, &outputs.readback, 0, bytes);
+        });
+        context.read(&outputs.readback, bytes)
+    }
+}
+
+impl Warper for GpuWarper {
+    fn blend(
+        &self,
+        target: &Target,
+        sources: &[Source],
+        weights: &BlendWeights,
+    ) -> Result<Warped, BackendError> {
+        Ok(self.draw(target, sources, weights)?)
+    }
+}
+
+impl Kept {
+    /// Room for a picture of so many pixels from these sources.
+    fn make_room(&mut self, context: &GpuContext, pixels: usize, sources: &[Source]) -> Result<(), GpuError> {
+        let size = sources.iter().fold(self.layers.size(), |[width, height], source| {
+            [width.max(source.picture.width), height.max(source.picture.height)]
+        });
+        if size != self.layers.size() {
+            self.layers = Layers::new(context, size)?;
+        }
+        if pixels > self.outputs.pixels {
+            self.outputs = Outputs::new(context, pixels)?;
+        }
+        Ok(())
+    }
+}
+
+impl Outputs {
+    fn new(context: &GpuContext, pixels: usize) -> Result<Self, GpuError> {
+        let bytes = pixels * size_of::<WarpedWords>();
+        Ok(Self {
+            pixels,
+            warped: storage(context, "the picture drawn", bytes)?,
+            readback: readback(context, "the picture read back", bytes)?,
+        })
+    }
+}
+
+/// What `lenses` means in `shaders/blend.wgsl`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Lenses {
+    Perspective,
+    Radial,
+    Mixed,
+}
+
+fn lenses(sources: &[Source]) -> Lenses {
+    let is_radial = |source: &Source| matches!(source.camera.lens, Lens::Radial { .. });
+    match sources.iter().filter(|source| is_radial(source)).count() {
+        0 => Lenses::Perspective,
+        count if count == sources.len() => Lenses::Radial,
+        _ => Lenses::Mixed,
+    }
+}
+
+/// Rays for the kernel: 0 where a pixel sees nothing, since shaders need not know NaN.
+fn ray_buffer(context: &GpuContext, rays: &Rays) -> Result<wgpu::Buffer, GpuError> {
+    let known = |value: &f32| if value.is_nan() { 0.0 } else { *value };
+    let values: Vec<f32> = rays.as_flattened().as_flattened().iter().map(known).collect();
+    storage_of(context, "the rays of a camera", &values)
+}
+
+#[cfg(test)]
+mod tests {
+    use reality_sim_core::{
+        camera::{Camera, Distortion, KernelCamera},
+        field::FieldDimensions,
+        pose::{CameraPose, Pose2},
+        warp::{Hall, Hull, Picture, Placement, RayTable, blend},
+    };
+
+    use super::*;
+    use crate::test_context;
+
+    fn camera(size: [u32; 2]) -> Camera {
+        let [u, v] = size.map(|pixels| f64::from(pixels) / 2.0);
+        Camera::new(size, [30.0, 30.0, u, v], Distortion::Pinhole).unwrap()
+    }
+
+    fn pose(x_m: f64) -> CameraPose {
+        CameraPose::new(Pose2::new(x_m, 0.0, 0.0), 0.5, 0.3, 0.0)
+    }
+
+    /// A picture of one colour.
+    fn plain([width, height]: [u32; 2], value: u8) -> Arc<Picture> {
+        let word = u32::from_le_bytes([value, 255 - value, 7, 0]);
+        Arc::new(Picture { width, height, pixels: vec![word; (width * height) as usize] })
+    }
+
+    /// What the warper draws at a size from pictures along a line; asserts that it is what the CPU draws.
+    fn drawn(warper: &GpuWarper, size: [u32; 2], pictures: &[Arc<Picture>]) -> Warped {
+        let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
+        let hull = Hull::new(&Hall::usual(&field), &field);
+        let rays = RayTable::new(&camera(size));
+        let target = Target { rays: &rays, placement: Placement::new(pose(0.0)), hull: &hull };
+        let cameras: Vec<KernelCamera> = pictures
+            .iter()
+            .map(|picture| KernelCamera::new(&camera([picture.width.max(2), picture.height.max(2)])))
+            .collect();
+        let source = |(number, camera): (usize, _)| Source {
+            camera,
+            placement: Placement::new(pose(-0.05 * number as f64)),
+            picture: &pictures[number],
+            gain: [1.0; 3],
+        };
+        let sources: Vec<Source> = cameras.iter().enumerate().map(source).collect();
+        let found = warper.blend(&target, &sources, &BlendWeights::default()).unwrap();
+        let expected = blend(&target, &sources, &BlendWeights::default());
+        assert_eq!(found.colors.len(), (size[0] * size[1]) as usize);
+        for (a, b) in found.colors.iter().zip(&expected.colors) {
+            assert!((0..3).all(|channel| a[channel].abs_diff(b[channel]) <= 1), "{a:?}, not {b:?}");
+        }
+        assert!(found.origins.iter().zip(&expected.origins).all(|(a, b)| a.source == b.source));
+        found
+    }
+
+    #[test]
+    fn pictures_of_any_size_are_drawn_from_pictures_of_any_size() {
+        let warper = GpuWarper::new(test_context()).unwrap();
+        let pictures = [plain([60, 40], 10), plain([33, 71], 200), plain([0, 0], 0), plain([90, 20], 90)];
+        for size in [[1, 1], [1, 50], [50, 1], [63, 5], [130, 70]] {
+            drawn(&warper, size, &[]);
+            drawn(&warper, size, &pictures[..1]);
+            drawn(&warper, size, &pictures);
+        }
+        // More than are ever mixed.
+        drawn(&warper, [40, 30], &vec![pictures[0].clone(); MAX_SOURCES + 3]);
+    }
+
+    #[test]
+    fn a_new_picture_is_never_taken_for_an_old_one() {
+        let warper = GpuWarper::new(test_context()).unwrap();
+        let lasting = plain([40, 30], 128);
+        // More than there are layers; each is gone before the next one is made.
+        for number in 0..300 {
+            let value = (number % 200) as u8 + 20;
+            let warped = drawn(&warper, [20, 16], &[plain([40, 30], value)]);
+            assert!(warped.colors.contains(&[value, 255 - value, 7]));
+            if number % 100 == 50 {
+                drawn(&warper, [20, 16], &[lasting.clone(), plain([40, 30], value)]);
+            }
+        }
+        // And with all of them alive.
+        let pictures: Vec<_> = (0..300).map(|number| plain([40, 30], (number % 251) as u8)).collect();
+        pictures.chunks(MAX_SOURCES).chain(pictures.chunks(3)).for_each(|pictures| {
+            drawn(&warper, [20, 16], pictures);
+        });
+    }
+
+    #[test]
+    fn what_the_device_cannot_draw_from_is_refused_and_the_rest_goes_on() {
+        let context = test_context();
+        let warper = GpuWarper::new(context.clone()).unwrap();
+        let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
+        let hull = Hull::new(&Hall::usual(&field), &field);
+        let (camera, placement) = (camera([20, 16]), Placement::new(pose(0.0)));
+        let (rays, camera) = (RayTable::new(&camera), KernelCamera::new(&camera));
+        let target = Target { rays: &rays, placement, hull: &hull };
+        let wide = context.device.limits().max_texture_dimension_2d + 1;
+        let torn = Arc::new(Picture { pixels: vec![0; 7], ..(*plain([40, 30], 0)).clone() });
+        for (picture, words) in [(plain([wide, 2], 0), "scale it down"), (torn, "has 7 words")] {
+            let source = Source { camera: &camera, placement, picture: &picture, gain: [1.0; 3] };
+            let error = warper.blend(&target, &[source], &BlendWeights::default()).unwrap_err();
+            assert!(error.to_string().contains(words), "{error}");
+        }
+        drawn(&warper, [20, 16], &[plain([40, 30], 50)]);
+        context.status().unwrap();
+    }
+}

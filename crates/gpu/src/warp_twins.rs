@@ -1,0 +1,154 @@
+//! Does the shader draw what its twin on the CPU draws? On seeded scenes, with every lens model among the sources.
+
+use std::sync::Arc;
+
+use reality_sim_core::{
+    camera::{Camera, Distortion, ImageCircle, InvalidCamera, KernelCamera, Opencv, OpencvFisheye},
+    field::FieldDimensions,
+    filter::{Purpose, Stream},
+    pose::{CameraPose, Pose2},
+    preprocess::Attitude,
+    warp::{
+        BlendWeights, Hall, Hull, MAX_SOURCES, Origin, Picture, Placement, RayTable, Source, Target, blend,
+    },
+};
+
+use crate::{GpuContext, GpuError, GpuWarper};
+
+/// So many of the pixels may differ by more than a grey level, come from another source, or differ in trust by more than
+/// two: those at the edges of goals, of the hull and of what a source sees fall to one side here and to the other there,
+/// and of two sources that are worth the same either may be named.
+pub const WARP_TOLERANCE: f64 = 1e-4;
+
+/// How far the shader is from its twin.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct WarpComparison {
+    /// Pixels drawn.
+    pub pixels: usize,
+    /// Pixels that a source saw.
+    pub seen: usize,
+    /// Pixels with a channel that differs by more than a grey level.
+    pub other_color: usize,
+    /// Pixels from another source.
+    pub other_source: usize,
+    /// Pixels whose trust differs by more than two.
+    pub other_trust: usize,
+}
+
+impl WarpComparison {
+    /// Whether both draw the same.
+    pub fn agrees(&self) -> bool {
+        let most = (WARP_TOLERANCE * self.pixels as f64) as usize;
+        let is_same = [self.other_color, self.other_source, self.other_trust].iter().all(|&off| off <= most);
+        is_same && 2 * self.seen > self.pixels
+    }
+}
+
+/// Compares pictures from none to all sources on so many scenes.
+pub fn compare_warps(context: &Arc<GpuContext>, scenes: u64) -> Result<WarpComparison, GpuError> {
+    let field = FieldDimensions::preset("humanoid-kidsize-2010").expect("a preset of the core");
+    let cameras = cameras().expect("lenses that are valid");
+    let kernel_cameras: Vec<KernelCamera> = cameras.iter().map(KernelCamera::new).collect();
+    let tables: Vec<RayTable> = cameras.iter().map(RayTable::new).collect();
+    let warper = GpuWarper::new(context.clone())?;
+    let mut comparison = WarpComparison::default();
+    for seed in 0..scenes {
+        let scene = Scene::new(seed, &cameras);
+        let hull = Hull::new(&Hall::usual(&field), &field).holding(scene.pose, 0.3);
+        let target =
+            Target { rays: &tables[scene.camera], placement: Placement::new(scene.pose), hull: &hull };
+        let sources: Vec<Source> =
+            scene.views.iter().map(|view| view.source(&kernel_cameras[view.camera])).collect();
+        let found = warper.draw(&target, &sources, &BlendWeights::default())?;
+        let expected = blend(&target, &sources, &BlendWeights::default());
+        comparison.pixels += expected.colors.len();
+        comparison.seen += expected.origins.iter().filter(|origin| origin.source != Origin::NOWHERE).count();
+        for (a, b) in found.colors.iter().zip(&expected.colors) {
+            comparison.other_color += usize::from((0..3).any(|channel| a[channel].abs_diff(b[channel]) > 1));
+        }
+        for (a, b) in found.origins.iter().zip(&expected.origins) {
+            comparison.other_source += usize::from(a.source != b.source);
+            comparison.other_trust += usize::from(a.trust.abs_diff(b.trust) > 2);
+        }
+    }
+    Ok(comparison)
+}
+
+/// Small cameras: one of every model, and one with an image circle.
+fn cameras() -> Result<Vec<Camera>, InvalidCamera> {
+    let fisheye = |k| Distortion::OpencvFisheye(OpencvFisheye { k });
+    let opencv = Opencv { k1: -0.12, k2: 0.03, p1: 0.001, p2: -0.002, k3: 0.0 };
+    let circle = ImageCircle { cx: 75.0, cy: 97.5, radius: 95.0 };
+    Ok(vec![
+        Camera::new([160, 120], [53.7, 53.7, 79.5, 59.5], fisheye([-0.058, 0.0082, -0.0009, 0.00005]))?,
+        Camera::new([152, 200], [82.5, 82.5, 73.0, 100.3], fisheye([-0.033, 0.001, 0.0, 0.0]))?
+            .with_image_circle(Some(circle)),
+        Camera::new([160, 120], [155.0, 154.5, 76.7, 57.9], Distortion::Opencv(opencv))?,
+        // Rows end in the middle of a block.
+        Camera::new([159, 119], [125.0, 125.0, 80.0, 60.0], Distortion::Pinhole)?,
+    ])
+}
+
+/// A pose, and what was seen from others around it. Cameras are numbers of the list.
+struct Scene {
+    camera: usize,
+    pose: CameraPose,
+    views: Vec<View>,
+}
+
+struct View {
+    camera: usize,
+    pose: CameraPose,
+    picture: Arc<Picture>,
+    gain: [f32; 3],
+}
+
+impl Scene {
+    /// From no view to the most there can be. In every other round of those, all have the same camera.
+    fn new(seed: u64, cameras: &[Camera]) -> Self {
+        let stream = Stream::new(seed, Purpose::Initialise, 0, 0);
+        let round = seed as usize / (MAX_SOURCES + 1);
+        let camera = |number: usize| (seed as usize + round % 2 * number) % cameras.len();
+        let n = stream.normals(0);
+        let attitude = Attitude { height_m: 0.5, pitch_rad: 0.3 + 0.1 * n[3], roll_rad: 0.1 * n[4] };
+        let planar = Pose2::new(1.5 * n[0], n[1], 2.0 * n[2]);
+        let view = |number: usize| {
+            let n = stream.normals(number as u32 + 1);
+            let planar =
+                Pose2::new(planar.x_m + 0.3 * n[0], planar.y_m + 0.3 * n[1], planar.yaw_rad + 0.3 * n[2]);
+            let attitude = Attitude {
+                height_m: attitude.height_m * (1.0 + 0.1 * n[5].clamp(-3.0, 3.0)),
+                pitch_rad: attitude.pitch_rad + 0.1 * n[3],
+                roll_rad: attitude.roll_rad + 0.1 * n[4],
+            };
+            let camera = camera(number);
+            let gain =
+                [0, 1, 2].map(|channel| 0.8 + 0.5 * stream.uniform(100 + 3 * number as u32 + channel) as f32);
+            let picture = Arc::new(picture(&cameras[camera], &stream, number as u32));
+            View { camera, pose: attitude.at(planar), picture, gain }
+        };
+        let views = (0..seed as usize % (MAX_SOURCES + 1)).map(view).collect();
+        Self { camera: camera(1), pose: attitude.at(planar), views }
+    }
+}
+
+impl View {
+    fn source<'a>(&'a self, camera: &'a KernelCamera) -> Source<'a> {
+        Source { camera, placement: Placement::new(self.pose), picture: &self.picture, gain: self.gain }
+    }
+}
+
+/// Waves of all three colours with noise over them.
+fn picture(camera: &Camera, stream: &Stream, number: u32) -> Picture {
+    let pixel = |index: u32| {
+        let (u, v) = (index % camera.width, index / camera.width);
+        let words = stream.words(index, 1000 + number);
+        let channel = |channel: u32| {
+            let wave = (0.05 * f64::from((channel + 1) * u + number * v)).sin();
+            (120.0 + 80.0 * wave) as u8 + (words[channel as usize] >> 27) as u8
+        };
+        u32::from_le_bytes([channel(0), channel(1), channel(2), 0])
+    };
+    let pixels = (0..camera.width * camera.height).map(pixel).collect();
+    Picture { width: camera.width, height: camera.height, pixels }
+}

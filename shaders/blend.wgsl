@@ -1,0 +1,198 @@
+// One picture from several: every pixel from those sources that see its place best. A thread a pixel.
+// Twin: `blend` in crates/core/src/warp/blend.rs.
+
+#import shared/hull.wgsl
+
+const SOURCES: u32 = 8u;
+const THREADS: u32 = 64u;
+
+/// Which lenses the sources have, set when the pipeline is made: a branch on a value read would cost both sides where a
+/// driver runs on a processor.
+override lenses: u32 = MIXED;
+
+const PERSPECTIVE: u32 = 0u;
+const RADIAL: u32 = 1u;
+const MIXED: u32 = 2u;
+
+/// The picture that is wanted.
+struct Scene {
+    eye: Placement,
+    hull: Hull,
+    width: u32,
+    height: u32,
+    /// Number of sources.
+    sources: u32,
+    /// `BlendWeights` from here on.
+    angle_on_ground: f32,
+    angle_above: f32,
+    resolution: f32,
+    border_px: f32,
+    softness: f32,
+    disagreement: f32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
+}
+
+/// A picture that was recorded, and from where.
+struct Source {
+    camera: Camera,
+    placement: Placement,
+    /// Of red, green and blue.
+    gain: vec4<f32>,
+    /// Columns and rows.
+    size: vec2<u32>,
+    /// Where it lies in the texture.
+    layer: u32,
+    padding: u32,
+}
+
+@group(0) @binding(0) var<uniform> scene: Scene;
+@group(0) @binding(1) var<uniform> sources: array<Source, SOURCES>;
+/// `RayTable`: sixteen pixels of a row a block, 0 where a pixel sees nothing.
+@group(0) @binding(2) var<storage, read> rays: array<f32>;
+/// A word a pixel: red in the lowest byte, then green and blue.
+@group(0) @binding(3) var pictures: texture_2d_array<u32>;
+/// Colour and source in a word, then the trust.
+@group(0) @binding(4) var<storage, read_write> warped: array<vec2<u32>>;
+
+const NOWHERE: u32 = 255u;
+const LANES: u32 = 16u;
+
+/// What a source says of a pixel.
+struct Opinion {
+    color: vec3<f32>,
+    weight: f32,
+}
+
+var<private> opinions: array<Opinion, SOURCES>;
+
+fn ray(column: u32, row: u32) -> vec3<f32> {
+    let blocks_in_row = (scene.width + LANES - 1u) / LANES;
+    let first = (row * blocks_in_row + column / LANES) * (3u * LANES) + column % LANES;
+    return vec3<f32>(rays[first], rays[first + LANES], rays[first + 2u * LANES]);
+}
+
+fn texel(place: vec2<u32>, layer: u32) -> vec3<f32> {
+    let word = textureLoad(pictures, place, layer, 0).x;
+    return vec3<f32>(vec3<u32>(word & 255u, (word >> 8u) & 255u, (word >> 16u) & 255u));
+}
+
+/// Bilinear colours (0–255). A picture of one column or row has no second one.
+fn sample(number: u32, place: vec2<f32>) -> vec3<f32> {
+    let size = sources[number].size;
+    let layer = sources[number].layer;
+    let last = vec2<f32>(max(size, vec2<u32>(2u)) - 2u);
+    let inside = clamp(place, vec2<f32>(0.0), last + 1.0);
+    let corner = floor(min(inside, last));
+    let f = inside - corner;
+    let first = vec2<u32>(corner);
+    let a = texel(first, layer);
+    let b = texel(first + vec2<u32>(1u, 0u), layer);
+    let c = texel(first + vec2<u32>(0u, 1u), layer);
+    let d = texel(first + vec2<u32>(1u, 1u), layer);
+    let top = a + f.x * (b - a);
+    let bottom = c + f.x * (d - c);
+    return select(vec3<f32>(0.0), top + f.y * (bottom - top), all(size >= vec2<u32>(2u)));
+}
+
+/// The weight of a source that sees the point, before it is compared with the others.
+fn source_weight(number: u32, point: HullPoint, pixel: Pixel) -> f32 {
+    let position = sources[number].placement.position.xyz;
+    let cosine = dot(point.direction, point.place - position) * pixel.nearness;
+    let ground = point.on_ground;
+    // Pixels for a length on the surface, the target's over the source's: squared, falls with the distance squared, and
+    // on the ground once more for the flat view.
+    let nearer = 1.0 / (point.distance * pixel.nearness);
+    let flatter = nearer * scene.eye.position.z / position.z;
+    let density = nearer * nearer * (1.0 + ground * (flatter - 1.0));
+    let per_angle = scene.angle_above + ground * (scene.angle_on_ground - scene.angle_above);
+    let penalty =
+        scene.softness + per_angle * (1.0 - cosine) + scene.resolution * max(density - 1.0, 0.0) / 3.0;
+    let to_border = min(pixel.place, sources[number].camera.largest_px - pixel.place);
+    let fade = min((min(to_border.x, to_border.y) + 1.0) / scene.border_px, 1.0);
+    return fade / (penalty * penalty);
+}
+
+fn opinion_of(number: u32, point: HullPoint) -> Opinion {
+    let camera = sources[number].camera;
+    let is_radial = lenses == RADIAL || (lenses == MIXED && camera.is_radial == 1u);
+    let pixel = see(camera, is_radial, sources[number].placement, point);
+    if !(pixel.seen && unhidden(sources[number].placement.position.xyz, point)) {
+        return Opinion(vec3<f32>(0.0), 0.0);
+    }
+    let color = min(sample(number, pixel.place) * sources[number].gain.xyz, vec3<f32>(255.0));
+    return Opinion(color, source_weight(number, point, pixel));
+}
+
+/// The weighted mean colour, and the sum of the weights.
+fn weighted_mean() -> vec4<f32> {
+    var sum = vec4<f32>(0.0);
+    for (var number = 0u; number < scene.sources; number++) {
+        let opinion = opinions[number];
+        sum += opinion.weight * vec4<f32>(opinion.color, 1.0);
+    }
+    return vec4<f32>(sum.xyz / (1e-12 + sum.w), sum.w);
+}
+
+/// The mean colour with less weight for those far from it, and the sum of the weights; they are left as they were used.
+fn agreed(before: vec4<f32>) -> vec4<f32> {
+    if scene.sources < 3u {
+        return before;
+    }
+    let per_square = 1.0 / (scene.disagreement * scene.disagreement);
+    var priors: array<f32, SOURCES>;
+    for (var number = 0u; number < scene.sources; number++) {
+        priors[number] = opinions[number].weight;
+    }
+    var mean = before;
+    for (var round = 0u; round < 3u; round++) {
+        for (var number = 0u; number < scene.sources; number++) {
+            let difference = opinions[number].color - mean.xyz;
+            opinions[number].weight = priors[number] / (1.0 + per_square * dot(difference, difference));
+        }
+        mean = weighted_mean();
+    }
+    return mean;
+}
+
+/// What is known of a point: its colour and source in a word, then the trust.
+fn mixed(point: HullPoint) -> vec2<u32> {
+    var best = 0.0;
+    for (var number = 0u; number < scene.sources; number++) {
+        opinions[number] = opinion_of(number, point);
+        best = max(best, opinions[number].weight);
+    }
+    let before = weighted_mean();
+    let mean = agreed(before);
+    var source = NOWHERE;
+    var largest = 0.0;
+    for (var number = 0u; number < scene.sources; number++) {
+        let weight = opinions[number].weight;
+        source = select(source, number, weight > largest);
+        largest = max(largest, weight);
+    }
+    let penalty = 1.0 / sqrt(max(best, 1e-12)) - scene.softness;
+    let agreement = mean.w / max(before.w, 1e-12);
+    let trust = select(min(agreement / (1.0 + max(penalty, 0.0)), 1.0), 0.0, source == NOWHERE);
+    let color = vec3<u32>(mean.xyz + 0.5);
+    return vec2<u32>(color.x | (color.y << 8u) | (color.z << 16u) | (source << 24u), u32(255.0 * trust + 0.5));
+}
+
+@compute @workgroup_size(THREADS)
+fn blend(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    let index = (group.y * groups.x + group.x) * THREADS + thread;
+    if index >= scene.width * scene.height {
+        return;
+    }
+    let in_camera = ray(index % scene.width, index / scene.width);
+    if all(in_camera == vec3<f32>(0.0)) {
+        warped[index] = vec2<u32>(NOWHERE << 24u, 0u);
+        return;
+    }
+    warped[index] = mixed(hull_point(scene.eye, in_camera));
+}
