@@ -34,3 +34,6 @@ pub use self::{
     reconstruction::{Reconstruction, Used},
     synthesizer::{SynthesisConfig, Synthesizer},
 };
+
+#[cfg(test)]
+mod tests;

@@ -161,3 +161,36 @@ fn pixel_at(place: DVec2, width: u32, height: u32) -> Option<(u32, u32)> {
         rounded.cmpge(DVec2::ZERO).all() && rounded.x < f64::from(width) && rounded.y < f64::from(height);
     is_inside.then_some((rounded.x as u32, rounded.y as u32))
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn a_polynomial_of_second_order_is_found_again(
+            coefficients in prop::array::uniform12(-1.0..1.0_f64),
+            points in prop::collection::vec((0.0..640.0_f64, 0.0..480.0_f64), 20..80),
+        ) {
+            let value = |of: &[f64], x: f64, y: f64| {
+                of[0] * 300.0 + of[1] * x + of[2] * y + 1e-3 * (of[3] * x * x + of[4] * x * y + of[5] * y * y)
+            };
+            let wanted = |x: f64, y: f64| DVec2::new(value(&coefficients[..6], x, y), value(&coefficients[6..], x, y));
+            let pairs: Vec<[DVec2; 2]> = points.iter().map(|&(x, y)| [DVec2::new(x, y), wanted(x, y)]).collect();
+            let found = Polynomial::fit(&pairs).unwrap();
+            for (x, y) in [(0.0, 0.0), (639.0, 479.0), (100.0, 400.0)] {
+                prop_assert!(found.at(DVec2::new(x, y)).distance(wanted(x, y)) < 1e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn points_that_leave_the_polynomial_free_are_refused() {
+        let line: Vec<[DVec2; 2]> = (0..40).map(|i| [DVec2::splat(f64::from(i)), DVec2::X]).collect();
+        assert!(Polynomial::fit(&line).is_none(), "on a line");
+        assert!(Polynomial::fit(&line[..3]).is_none(), "too few");
+        assert!(Polynomial::fit(&[]).is_none());
+    }
+}

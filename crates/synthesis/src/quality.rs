@@ -100,3 +100,44 @@ fn gauss(values: &[f64], width: usize, height: usize) -> Vec<f64> {
     }
     result
 }
+
+#[cfg(test)]
+mod tests {
+    use image::{Luma, Rgb};
+
+    use super::*;
+
+    fn grey(value: impl Fn(u32, u32) -> u32) -> GrayImage {
+        GrayImage::from_fn(64, 48, |u, v| Luma([(value(u, v) % 256) as u8]))
+    }
+
+    /// The expected value is scikit-image's: `structural_similarity` with Gaussian weights, σ = 1.5 and population
+    /// covariance.
+    #[test]
+    fn similarity_is_that_of_scikit_image() {
+        let (a, b) = (grey(|u, v| 7 * u + 13 * v), grey(|u, v| 7 * u + 13 * v + (u * v) % 29));
+        let found = ssim(&a, &b).unwrap();
+        assert!((found - 0.671_750_209_451_642).abs() < 1e-9, "{found}");
+        assert!((ssim(&a, &a).unwrap() - 1.0).abs() < 1e-12);
+        assert_eq!(ssim(&a, &GrayImage::new(64, 47)), None);
+        assert_eq!(ssim(&GrayImage::new(10, 48), &GrayImage::new(10, 48)), None, "smaller than the window");
+    }
+
+    #[test]
+    fn a_constant_error_has_the_psnr_of_its_size_and_the_mask_chooses_the_pixels() {
+        let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
+        let camera =
+            Camera::new([64, 48], [30.0, 30.0, 31.5, 23.5], reality_sim_core::camera::Distortion::Pinhole)
+                .unwrap();
+        let pose = CameraPose { height_m: 0.5, pitch_rad: 0.3, ..Default::default() };
+        let mask = Mask::carpet(&camera, pose, &field);
+        assert!(mask.count() > 100 && mask.count() < 64 * 48);
+        let truth = RgbImage::from_pixel(64, 48, Rgb([100; 3]));
+        // Wrong above the horizon alone: row 14 is the horizon's.
+        let sky = RgbImage::from_fn(64, 48, |_, v| if v < 14 { Rgb([0; 3]) } else { Rgb([110; 3]) });
+        assert!((psnr_db(&sky, &truth, Some(&mask)).unwrap() - 20.0 * 25.5_f64.log10()).abs() < 1e-9);
+        assert!(psnr_db(&sky, &truth, None).unwrap() < 15.0);
+        assert_eq!(psnr_db(&truth, &truth, None), Some(MAX_PSNR_DB));
+        assert_eq!(psnr_db(&truth, &RgbImage::new(64, 47), None), None);
+    }
+}

@@ -6,7 +6,7 @@ use image::RgbImage;
 use reality_sim_core::{
     camera::Camera,
     pose::CameraPose,
-    warp::{BlendWeights, CpuWarper, Hull, Placement, RayTable, Source, Target, Warper},
+    warp::{BlendWeights, CpuWarper, Hull, MAX_SOURCES, Placement, RayTable, Source, Target, Warper},
 };
 use reality_sim_db::index::{ImageIndex, Neighbour};
 
@@ -170,7 +170,7 @@ impl Synthesizer {
         let nothing = Archive::no_picture();
         let sources: Vec<Source> =
             candidates.iter().map(|candidate| self.archive.source(candidate.image, &nothing)).collect();
-        let chosen = select(target, &sources, &self.config.weights, count);
+        let chosen = select(target, &sources, &self.config.weights, count.min(MAX_SOURCES));
         Ok(chosen.into_iter().map(|index| candidates[index]).collect())
     }
 }

@@ -1,0 +1,282 @@
+use std::{path::Path, sync::Arc};
+
+use image::{Rgb, RgbImage};
+use reality_sim_core::{
+    pose::{CameraPose, Pose2},
+    sequence::{FrameRecord, Sequence, save_image},
+    warp::{Hall, Hull, MAX_SOURCES},
+};
+use reality_sim_db::{Database, PoseEstimate, PoseSource, index::NoNeighbours};
+use tempfile::TempDir;
+
+use crate::{
+    quality::{Mask, psnr_db},
+    *,
+};
+
+/// Frames of the walk that are left out of the database.
+const LEFT_OUT: std::ops::Range<usize> = 20..30;
+
+fn walk() -> Sequence {
+    Sequence::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk")).unwrap()
+}
+
+/// The walk without some frames, in a database.
+fn stored(sequence: &Sequence) -> (TempDir, Archive) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("walk.db");
+    let poses: Vec<Option<PoseEstimate>> = sequence
+        .groundtruth
+        .iter()
+        .map(|pose| pose.map(|pose| PoseEstimate { pose, covariance: None }))
+        .collect();
+    let mut database = Database::create_or_open(&path).unwrap();
+    database.ingest(sequence, &poses, &PoseSource::GroundTruth, |_| ()).unwrap();
+    let archive = Archive::open(&path, 64 << 20).unwrap();
+    (folder, archive)
+}
+
+fn without_some_frames() -> (TempDir, Synthesizer) {
+    let mut sequence = walk();
+    LEFT_OUT.for_each(|frame| sequence.groundtruth[frame] = None);
+    let (folder, archive) = stored(&sequence);
+    (folder, Synthesizer::new(Arc::new(archive)))
+}
+
+fn truth(walk: &Sequence, frame: usize) -> (CameraPose, RgbImage) {
+    (walk.groundtruth[frame].unwrap(), walk.load_image(frame).unwrap())
+}
+
+#[test]
+fn frames_that_were_left_out_look_as_they_were_recorded() {
+    let walk = walk();
+    let (_folder, synthesizer) = without_some_frames();
+    let field_psnr_db = |frame: usize, method: &dyn Method| {
+        let (pose, truth) = truth(&walk, frame);
+        let mask = Mask::carpet(synthesizer.camera(), pose, &walk.field);
+        psnr_db(&synthesizer.image_at(pose, method).unwrap().picture, &truth, Some(&mask)).unwrap()
+    };
+    let mean_db = |method: &dyn Method| {
+        LEFT_OUT.map(|frame| field_psnr_db(frame, method)).sum::<f64>() / LEFT_OUT.len() as f64
+    };
+    let [nearest, quadratic, plane, blend] = METHODS.map(mean_db);
+    assert!(plane > nearest + 5.0 && plane > quadratic + 2.0, "{plane} {nearest} {quadratic}");
+    assert!(blend > nearest + 8.0 && blend > plane, "{blend} {nearest} {plane}");
+}
+
+#[test]
+fn at_a_recorded_pose_the_nearest_picture_is_the_one_recorded() {
+    let walk = walk();
+    let (_folder, synthesizer) = without_some_frames();
+    let (pose, recorded) = truth(&walk, 7);
+    let found = synthesizer.image_at(pose, &Nearest).unwrap();
+    assert_eq!(found.picture, recorded);
+    assert_eq!(synthesizer.archive().images()[found.used[0].image as usize].frame_index, 7);
+    assert!(found.origins.iter().all(|origin| origin.trust == 255));
+}
+
+#[test]
+fn the_maps_of_origin_and_trust_agree_with_what_was_used() {
+    let (_folder, synthesizer) = without_some_frames();
+    let (pose, _) = truth(&walk(), 25);
+    for method in METHODS {
+        let made = synthesizer.image_at(pose, method).unwrap();
+        assert_eq!(made.origins.len(), 640 * 480, "{}", method.name());
+        let used: f64 = made.used.iter().map(|used| used.share).sum();
+        assert!((used - made.covered()).abs() < 1e-9, "{}", method.name());
+        assert!(made.used.len() <= if method.name() == "blend" { synthesizer.config().sources } else { 1 });
+        let black = made.origin_picture().pixels().filter(|pixel| pixel.0 == [0; 3]).count();
+        let nowhere = made.origins.iter().filter(|origin| origin.source == u8::MAX).count();
+        assert_eq!(black, nowhere, "{}", method.name());
+    }
+}
+
+#[test]
+fn what_cannot_be_answered_is_refused_and_the_best_effort_is_not() {
+    let (_folder, synthesizer) = without_some_frames();
+    let usual = synthesizer.archive().usual_pose();
+    let away = usual.with_planar(Pose2::new(2.9, -1.9, -1.5));
+    let outside = usual.with_planar(Pose2::new(40.0, 0.0, 0.0));
+    for method in METHODS {
+        let error = synthesizer.image_at(outside, method).unwrap_err();
+        assert!(
+            matches!(error, SynthesisError::NoNeighbours { reason: NoNeighbours::OutOfReach { .. }, .. }),
+            "{error}"
+        );
+        let nowhere = CameraPose { x_m: f64::NAN, ..usual };
+        let error = synthesizer.image_at(nowhere, method).unwrap_err();
+        assert!(
+            matches!(error, SynthesisError::NoNeighbours { reason: NoNeighbours::NotFinite, .. }),
+            "{error}"
+        );
+        for impossible in [CameraPose { height_m: -0.1, ..usual }, CameraPose { x_m: 1e9, ..usual }] {
+            let error = synthesizer.image_at(impossible, method).unwrap_err();
+            assert!(matches!(error, SynthesisError::ImpossiblePose { .. }), "{error}");
+        }
+    }
+    let error = synthesizer.image_at(away, &Blend).unwrap_err();
+    assert!(error.is_refusal(), "{error}");
+    let archive = synthesizer.archive().clone();
+    let config = SynthesisConfig::new(&archive).best_effort();
+    let eager = Synthesizer::with(
+        archive,
+        synthesizer.camera().clone(),
+        Arc::new(reality_sim_core::warp::CpuWarper),
+        config,
+    );
+    for method in [&Nearest as &dyn Method, &Plane, &Blend] {
+        assert_eq!(eager.image_at(outside, method).unwrap().picture.dimensions(), (640, 480));
+    }
+}
+
+#[test]
+fn threads_get_the_same_pictures_and_the_cache_keeps_its_bound() {
+    let walk = walk();
+    let folder;
+    let synthesizer;
+    {
+        let (temporary, archive) = stored(&walk);
+        let path = archive.database().path().to_path_buf();
+        // Room for three pictures.
+        synthesizer = Synthesizer::new(Arc::new(Archive::open(&path, 3 * 640 * 480 * 4).unwrap()));
+        folder = temporary;
+    }
+    let poses: Vec<CameraPose> = (0..6).map(|frame| walk.groundtruth[10 * frame].unwrap()).collect();
+    let alone: Vec<_> = poses.iter().map(|&pose| synthesizer.image_at(pose, &Blend).unwrap()).collect();
+    std::thread::scope(|scope| {
+        for thread in 0..3 {
+            let (synthesizer, poses, alone) = (&synthesizer, &poses, &alone);
+            scope.spawn(move || {
+                for step in 0..poses.len() {
+                    let index = (step + 2 * thread) % poses.len();
+                    assert_eq!(synthesizer.image_at(poses[index], &Blend).unwrap(), alone[index]);
+                }
+            });
+        }
+    });
+    assert!(synthesizer.archive().cached_bytes() <= 3 * 640 * 480 * 4);
+    drop(folder);
+}
+
+#[test]
+fn what_was_prepared_needs_no_more_decoding() {
+    let (_folder, synthesizer) = without_some_frames();
+    let (pose, _) = truth(&walk(), 25);
+    synthesizer.prepare(pose).unwrap();
+    let held = synthesizer.archive().cached_bytes();
+    assert_eq!(held, synthesizer.config().sources * 640 * 480 * 4);
+    synthesizer.image_at(pose, &Blend).unwrap();
+    assert_eq!(synthesizer.archive().cached_bytes(), held);
+}
+
+/// A recording whose exposure jumps up and down: without matching gains the pictures' borders would show.
+#[test]
+fn pictures_of_different_brightness_are_brought_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut bright_and_dark = walk();
+    bright_and_dark.folder = folder.path().to_path_buf();
+    for frame in 0..bright_and_dark.frames.len() {
+        let factor = if frame % 2 == 0 { 0.75 } else { 1.0 };
+        let mut picture = walk().load_image(frame).unwrap();
+        picture.pixels_mut().for_each(|Rgb(rgb)| *rgb = rgb.map(|value| (f64::from(value) * factor) as u8));
+        let name = Path::new("images").join(format!("{frame:06}.png"));
+        save_image(&folder.path().join(&name), &picture).unwrap();
+        bright_and_dark.frames[frame].image = name;
+    }
+    let (_folder, archive) = stored(&bright_and_dark);
+    let synthesizer = Synthesizer::new(Arc::new(archive));
+    let (_even_folder, even) = stored(&walk());
+    let even = Synthesizer::new(Arc::new(even));
+    let (pose, _) = truth(&walk(), 25);
+    let [made, wanted] = [&synthesizer, &even].map(|from| from.image_at(pose, &Blend).unwrap().picture);
+    // All that is left of the jumps is a common factor.
+    let ratios: Vec<f64> = made
+        .pixels()
+        .zip(wanted.pixels())
+        .filter(|(_, b)| b.0[1] > 60)
+        .map(|(a, b)| f64::from(a.0[1]) / f64::from(b.0[1]))
+        .collect();
+    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+    let spread =
+        (ratios.iter().map(|ratio| (ratio - mean).powi(2)).sum::<f64>() / ratios.len() as f64).sqrt();
+    assert!((0.74..1.01).contains(&mean) && spread < 0.05, "{mean} ± {spread}");
+}
+
+/// A hall painted with known walls, photographed, and measured again.
+#[test]
+fn the_hall_is_measured_from_what_pictures_agree_on() {
+    let walk = walk();
+    let hall = Hall {
+        min_m: glam::DVec2::new(-5.2, -3.3),
+        max_m: glam::DVec2::new(4.4, 4.6),
+        ceiling_m: 2.6,
+        goal_depth_m: 0.4,
+    };
+    let mut hull = Hull::new(&hall, &walk.field);
+    hull.screens.iter_mut().for_each(|screen| screen.half_width_m = -1.0);
+    let (_pictures, sequence) = painted(&walk, &hull);
+    let (_folder, archive) = stored(&sequence);
+    let found = measure_hall(&archive).unwrap().unwrap();
+    assert!((found.min_m - hall.min_m).abs().max_element() < 0.15, "{found:?}");
+    assert!((found.max_m - hall.max_m).abs().max_element() < 0.15, "{found:?}");
+    assert!((found.ceiling_m - hall.ceiling_m).abs() < 0.15, "{found:?}");
+}
+
+/// A recording of a painted hall from many places.
+fn painted(walk: &Sequence, hull: &Hull) -> (TempDir, Sequence) {
+    let pictures = tempfile::tempdir().unwrap();
+    let folder = pictures.path().to_path_buf();
+    let mut setup = walk.setup.clone();
+    let lens = setup.camera.distortion;
+    setup.camera = reality_sim_core::camera::Camera::new([160, 120], [54.0, 54.0, 79.5, 59.5], lens).unwrap();
+    let (mut frames, mut groundtruth) = (Vec::new(), Vec::new());
+    for number in 0..60 {
+        // Places and headings that fill the field evenly (Roberts' sequence).
+        let part = |step: f64| (0.5 + f64::from(number) * step).fract();
+        let planar =
+            Pose2::new(5.0 * part(0.819_173) - 2.5, 3.4 * part(0.671_044) - 1.7, 6.283 * part(0.549_700));
+        let pose = CameraPose::new(planar, 0.5, 0.25, 0.0);
+        let image = Path::new("images").join(format!("{number:06}.png"));
+        let picture = RgbImage::from_fn(160, 120, |u, v| {
+            let pixel = glam::DVec2::new(f64::from(u), f64::from(v));
+            let ray = pose.rotation_world_from_camera() * setup.camera.unproject(pixel).unwrap();
+            let mut distance = f64::INFINITY;
+            for axis in 0..3 {
+                let wall = if ray[axis] < 0.0 { hull.min_in_world[axis] } else { hull.max_in_world[axis] };
+                distance = distance.min((wall - pose.position_in_world()[axis]) / ray[axis]);
+            }
+            let end = pose.position_in_world() + distance * ray;
+            Rgb([end.x, end.y, end.z + 0.5 * end.x].map(|at| (128.0 + 90.0 * (2.0 * at).sin()) as u8))
+        });
+        save_image(&folder.join(&image), &picture).unwrap();
+        frames.push(FrameRecord {
+            timestamp_s: f64::from(number),
+            image,
+            odometry: None,
+            pitch_rad: pose.pitch_rad,
+            roll_rad: 0.0,
+        });
+        groundtruth.push(Some(pose));
+    }
+    (pictures, Sequence { folder, setup, frames, groundtruth, ..walk.clone() })
+}
+
+#[test]
+fn a_database_without_images_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("empty.db");
+    drop(Database::create_or_open(&path).unwrap());
+    let error = Archive::open(&path, 0).unwrap_err();
+    assert!(matches!(error, SynthesisError::Empty { .. }), "{error}");
+}
+
+#[test]
+fn more_sources_than_can_be_mixed_are_cut_off() {
+    let (_folder, archive) = stored(&walk());
+    let archive = Arc::new(archive);
+    let config = SynthesisConfig { sources: 3 * MAX_SOURCES, ..SynthesisConfig::new(&archive) };
+    let camera = archive.setup().camera.clone();
+    let synthesizer = Synthesizer::with(archive, camera, Arc::new(reality_sim_core::warp::CpuWarper), config);
+    let (pose, _) = truth(&walk(), 25);
+    assert!(synthesizer.image_at(pose, &Blend).unwrap().used.len() <= MAX_SOURCES);
+}
