@@ -11,7 +11,7 @@ use crate::{
     preprocess::luma,
     sensor::{PoseError, Renderer},
     synthesis::{
-        METHODS,
+        METHODS, Method,
         quality::{Mask, psnr_db, ssim},
     },
 };
@@ -122,7 +122,7 @@ fn timed<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, f64), E> {
 
 /// The names of the methods, in the order in which they are shown.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    METHODS.into_iter().map(|method| method.name()).chain([SIMULATED])
+    METHODS.into_iter().map(Method::name).chain([SIMULATED])
 }
 
 impl MethodReport {

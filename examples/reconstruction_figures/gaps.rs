@@ -115,7 +115,7 @@ fn changes(pictures: &[Arc<RgbImage>]) -> Vec<f64> {
 
 /// Errors of the filter on pictures that stand for a part of a walk.
 fn tag(walk: &Sequence, first: usize, row: &Row, kind: ObservationKind) -> anyhow::Result<Vec<PoseError>> {
-    let start = walk.groundtruth[first].map(|pose| pose.planar());
+    let start = walk.groundtruth[first].map(reality_sim::CameraPose::planar);
     let mut tagger = Tagger::new(&walk.setup.camera, &walk.field, start, TagConfig::new(kind));
     let mut errors = Vec::new();
     for (offset, picture) in row.pictures.iter().enumerate() {

@@ -3,8 +3,6 @@
 //! Sixteen points at a time, in plain arrays that the compiler turns into vector instructions; multiplications and
 //! additions are never fused, so that every processor gives the same bits.
 
-#![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
-
 use crate::{
     camera::{KernelCamera, LANES, Lanes, Pixels, project_lanes},
     pose::CameraPose,

@@ -52,8 +52,8 @@ fn ray_block(camera: &Camera, block: usize, row: u32) -> RayBlock {
         if camera.check_inside(pixel).is_ok()
             && let Ok(ray) = camera.unproject(pixel)
         {
-            for (axis, value) in ray.to_array().into_iter().enumerate() {
-                rays[axis][lane] = value as f32;
+            for (axis, value) in rays.iter_mut().zip(ray.to_array()) {
+                axis[lane] = value as f32;
             }
         }
     }

@@ -1,4 +1,4 @@
-use std::sync::Arc;
+use std::{f64::consts::PI, sync::Arc};
 
 use glam::{DVec2, DVec3};
 use image::{Rgb, RgbImage};
@@ -26,7 +26,7 @@ fn opencv() -> Camera {
 }
 
 fn any_pose() -> impl Strategy<Value = CameraPose> {
-    (-2.5..2.5, -1.7..1.7, -3.14..3.14, 0.4..0.6, 0.3..0.6, -0.1..0.1).prop_map(
+    (-2.5..2.5, -1.7..1.7, -PI..PI, 0.4..0.6, 0.3..0.6, -0.1..0.1).prop_map(
         |(x, y, yaw, height, pitch, roll)| CameraPose::new(Pose2::new(x, y, yaw), height, pitch, roll),
     )
 }

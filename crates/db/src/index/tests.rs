@@ -109,7 +109,7 @@ proptest! {
     fn natural_weights_change_little_with_the_pose(x in -2.0..2.0, y in -1.5..1.5, yaw in -3.0..3.0) {
         let poses: Vec<CameraPose> = (0..4000).map(|i| {
             let [a, b, c] = [0.7548776662, 0.5698402910, 0.3819660113].map(|step| (f64::from(i) * step).fract());
-            CameraPose::new(Pose2::new(6.0 * a - 3.0, 4.0 * b - 2.0, 6.283 * c), 0.52, 0.42, 0.0)
+            CameraPose::new(Pose2::new(6.0 * a - 3.0, 4.0 * b - 2.0, std::f64::consts::TAU * c), 0.52, 0.42, 0.0)
         }).collect();
         let index = PoseIndex::new(metric(), poses);
         let pose = CameraPose::new(Pose2::new(x, y, yaw), 0.52, 0.42, 0.0);
