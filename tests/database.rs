@@ -326,7 +326,10 @@ fn recordings_that_cannot_be_stored_are_named_and_lose_nothing() {
 
     let poses = own.path().join("poses.tum");
     fs::write(&poses, "1.0 0 0 NaN 0 0 0 1\n").unwrap();
-    assert_fails(&["build", shown(&walk), "--out", shown(&out), "--poses", shown(&poses)], &["poses.tum, line 1"]);
+    assert_fails(
+        &["build", shown(&walk), "--out", shown(&out), "--poses", shown(&poses)],
+        &["poses.tum, line 1"],
+    );
     let elsewhere = [reality_sim::StampedPose { timestamp_s: 1e6, pose: Default::default() }];
     write_tum(&poses, &elsewhere).unwrap();
     assert_fails(&["build", shown(&walk), "--out", shown(&out), "--poses", shown(&poses)], &["poses.tum"]);
