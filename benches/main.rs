@@ -5,6 +5,9 @@ mod border;
 mod frame;
 #[cfg(feature = "gpu")]
 mod gpu;
+mod kd_tree;
+mod neighbours;
+mod poses;
 mod refinement;
 mod resampling;
 mod scaling;
@@ -28,7 +31,7 @@ fn main() {
         .measurement_time(Duration::from_secs(1))
         .without_plots()
         .configure_from_args();
-    let stages: [fn(&mut Criterion, &Scene); 10] = [
+    let stages: [fn(&mut Criterion, &Scene); 11] = [
         blur::bench,
         border::bench,
         white_lines::bench,
@@ -39,6 +42,7 @@ fn main() {
         smoothing::bench,
         search::bench,
         scaling::bench,
+        neighbours::bench,
     ];
     for stage in stages {
         stage(&mut criterion, &scene);
