@@ -20,8 +20,7 @@ impl Embedding {
     /// By how much the picture moves with every motion alone; forward and left have no place in it, so their mean.
     fn new(metric: &PixelMetric) -> Self {
         let matrix = metric.matrix();
-        let [_, _, px_per_rad, height, pitch, roll] =
-            std::array::from_fn(|axis| matrix[(axis, axis)].sqrt());
+        let [_, _, px_per_rad, height, pitch, roll] = std::array::from_fn(|axis| matrix[(axis, axis)].sqrt());
         let px_per_m = (0.5 * (matrix[(0, 0)] + matrix[(1, 1)])).sqrt();
         Self { px_per_m, px_per_rad, px_per_attitude: [height, pitch, roll] }
     }
