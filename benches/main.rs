@@ -2,6 +2,7 @@
 
 mod blur;
 mod border;
+mod database;
 mod frame;
 #[cfg(feature = "gpu")]
 mod gpu;
@@ -31,7 +32,7 @@ fn main() {
         .measurement_time(Duration::from_secs(1))
         .without_plots()
         .configure_from_args();
-    let stages: [fn(&mut Criterion, &Scene); 11] = [
+    let stages: [fn(&mut Criterion, &Scene); 12] = [
         blur::bench,
         border::bench,
         white_lines::bench,
@@ -43,6 +44,7 @@ fn main() {
         search::bench,
         scaling::bench,
         neighbours::bench,
+        database::bench,
     ];
     for stage in stages {
         stage(&mut criterion, &scene);
