@@ -2,9 +2,13 @@
 
 mod blur;
 mod border;
+mod database;
 mod frame;
 #[cfg(feature = "gpu")]
 mod gpu;
+mod kd_tree;
+mod neighbours;
+mod poses;
 mod refinement;
 mod resampling;
 mod scaling;
@@ -30,7 +34,7 @@ fn main() {
         .measurement_time(Duration::from_secs(1))
         .without_plots()
         .configure_from_args();
-    let stages: [fn(&mut Criterion, &Scene); 10] = [
+    let stages: [fn(&mut Criterion, &Scene); 12] = [
         blur::bench,
         border::bench,
         white_lines::bench,
@@ -41,6 +45,8 @@ fn main() {
         smoothing::bench,
         search::bench,
         scaling::bench,
+        neighbours::bench,
+        database::bench,
     ];
     for stage in stages {
         stage(&mut criterion, &scene);

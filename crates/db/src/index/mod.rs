@@ -1,16 +1,19 @@
-//! Which images were recorded near a pose: Delaunay triangulations of where they were taken, one for each sector of
-//! headings.
+//! Which images were recorded near a pose.
 //!
-//! Images of one sector at nearly the same place share a vertex, a *spot*; all of them are kept. What is near is
-//! measured by [`PixelMetric`]. Natural neighbours and their weights (Sibson, 1981) are those of the two
-//! sectors on both sides of the heading, mixed in proportion: the weights change smoothly with x, y and yaw.
+//! What is near is measured by [`PixelMetric`]. The nearest images are found by a tree. Natural neighbours and their
+//! weights (Sibson, 1981) are those of Delaunay triangulations of where the images were taken, one for each sector of
+//! headings; the two sectors on both sides of the heading are mixed in proportion, so that the weights change smoothly
+//! with x, y and yaw. Images of one sector at nearly the same place share a vertex, a *spot*; all of them are kept.
 
 mod nearest;
 mod sector;
 
 use reality_sim_core::pose::CameraPose;
 
-use self::sector::{SECTORS, Sector};
+use self::{
+    nearest::NearestTree,
+    sector::{SECTORS, Sector},
+};
 use crate::metric::PixelMetric;
 
 /// Images closer than this share a spot, pixels: no one sees the difference.
@@ -57,6 +60,7 @@ pub struct PoseIndex {
     metric: PixelMetric,
     poses: Vec<CameraPose>,
     sectors: Vec<Sector>,
+    tree: NearestTree,
 }
 
 impl PoseIndex {
@@ -64,7 +68,8 @@ impl PoseIndex {
     pub fn new(metric: PixelMetric, poses: Vec<CameraPose>) -> Self {
         let spot_m = metric.reach_m(SPOT_PX);
         let sectors = (0..SECTORS).map(|number| Sector::new(number, &poses, spot_m)).collect();
-        Self { metric, poses, sectors }
+        let tree = NearestTree::new(&metric, &poses);
+        Self { metric, poses, sectors, tree }
     }
 
     /// The poses of the images.
@@ -91,7 +96,7 @@ impl PoseIndex {
     /// The nearest images, nearest first, with equal weights: `count`, or all where there are fewer.
     pub fn nearest(&self, pose: CameraPose, count: usize) -> Result<Vec<Neighbour>, NoNeighbours> {
         self.check(pose)?;
-        let found = nearest::search(self, pose, count.max(1));
+        let found = self.tree.search(&self.metric, pose, count.max(1));
         let weight = 1.0 / found.len() as f64;
         Ok(found.into_iter().map(|(image, distance_px)| Neighbour { image, distance_px, weight }).collect())
     }
@@ -123,7 +128,7 @@ impl PoseIndex {
         if !pose.is_finite() {
             return Err(NoNeighbours::NotFinite);
         }
-        if self.sectors.iter().all(Sector::is_empty) { Err(NoNeighbours::NoImages) } else { Ok(()) }
+        if self.tree.is_empty() { Err(NoNeighbours::NoImages) } else { Ok(()) }
     }
 
     /// The sectors between whose middles a heading lies, with their shares: 1 together. An empty one leaves its share to the

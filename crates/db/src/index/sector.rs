@@ -1,6 +1,6 @@
 //! The images of one sector of headings, triangulated by where they were taken.
 
-use std::{collections::HashMap, f64::consts::TAU};
+use std::f64::consts::TAU;
 
 use reality_sim_core::pose::CameraPose;
 use spade::{
@@ -37,10 +37,6 @@ type Delaunay = DelaunayTriangulation<Spot, (), (), (), HierarchyHintGenerator<f
 pub(super) struct Sector {
     delaunay: Delaunay,
     items: Vec<ImageIndex>,
-    /// No image lies farther from its spot, metres.
-    pub(super) spot_m: f64,
-    /// Heading of the middle, radians.
-    pub(super) middle_rad: f64,
 }
 
 /// The two sectors between whose middles a heading lies, with their shares.
@@ -61,20 +57,20 @@ impl Sector {
     /// The images of a sector. Those in one cell of a grid with this diagonal, metres, share a spot.
     pub(super) fn new(number: usize, poses: &[CameraPose], spot_m: f64) -> Self {
         let cell_m = spot_m / std::f64::consts::SQRT_2;
-        let mut spots: HashMap<[i64; 2], Vec<ImageIndex>> = HashMap::new();
-        for (image, pose) in poses.iter().enumerate() {
-            if pose.is_finite() && of(pose.yaw_rad) == number {
+        let in_sector =
+            poses.iter().zip(0..).filter(|(pose, _)| pose.is_finite() && of(pose.yaw_rad) == number);
+        let mut spotted: Vec<Spotted> = in_sector
+            .map(|(pose, image)| {
                 let cell = [pose.x_m, pose.y_m].map(|metres| (metres / cell_m).floor() as i64);
-                spots.entry(cell).or_default().push(image as ImageIndex);
-            }
-        }
-        let mut spots: Vec<([i64; 2], Vec<ImageIndex>)> = spots.into_iter().collect();
-        spots.sort_unstable_by_key(|(cell, _)| *cell);
-        let (vertices, items) = vertices(&spots, poses);
+                Spotted { place_on_curve: place_on_curve(cell), cell, image }
+            })
+            .collect();
+        spotted.sort_unstable();
+        let vertices = vertices(&spotted, poses);
         // Cells keep places apart, and none is NaN: all that could be refused are coordinates beyond 10⁶⁰.
         let delaunay = Delaunay::bulk_load_stable(vertices).unwrap_or_default();
-        let middle_rad = TAU * number as f64 / SECTORS as f64;
-        Self { delaunay, items, spot_m, middle_rad }
+        let items = spotted.into_iter().map(|spotted| spotted.image).collect();
+        Self { delaunay, items }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -92,28 +88,6 @@ impl Sector {
         weights.into_iter().map(|(vertex, weight)| (self.images_at(vertex), weight)).collect()
     }
 
-    /// The spot nearest to a place, from which all others are reached.
-    pub(super) fn first(&self, pose: CameraPose) -> Option<FixedVertexHandle> {
-        self.delaunay.nearest_neighbor(Point2::new(pose.x_m, pose.y_m)).map(|vertex| vertex.fix())
-    }
-
-    /// The spots joined to one by an edge, with their distances from a place, metres.
-    pub(super) fn joined(
-        &self,
-        spot: FixedVertexHandle,
-        pose: CameraPose,
-    ) -> impl Iterator<Item = (FixedVertexHandle, f64)> {
-        self.delaunay.vertex(spot).out_edges().map(move |edge| {
-            let vertex = edge.to();
-            (vertex.fix(), distance_m(vertex.position(), pose))
-        })
-    }
-
-    /// Distance of a spot from a place, metres.
-    pub(super) fn distance_m(&self, spot: FixedVertexHandle, pose: CameraPose) -> f64 {
-        distance_m(self.delaunay.vertex(spot).position(), pose)
-    }
-
     /// The images at a spot.
     pub(super) fn images_at(&self, spot: FixedVertexHandle) -> &[ImageIndex] {
         let [first, end] = self.delaunay.vertex(spot).data().items;
@@ -125,22 +99,33 @@ impl Sector {
     }
 }
 
-fn distance_m(position: Point2<f64>, pose: CameraPose) -> f64 {
-    (position.x - pose.x_m).hypot(position.y - pose.y_m)
+/// An image and the cell of the grid that it lies in, in the order in which spots are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Spotted {
+    place_on_curve: u64,
+    cell: [i64; 2],
+    image: ImageIndex,
 }
 
-/// A vertex a spot, at the mean of its images' places, and all images in the order of the vertices.
-fn vertices(spots: &[([i64; 2], Vec<ImageIndex>)], poses: &[CameraPose]) -> (Vec<Spot>, Vec<ImageIndex>) {
-    let mut vertices = Vec::with_capacity(spots.len());
-    let mut items = Vec::new();
-    for (_, images) in spots {
-        let mean = |coordinate: fn(&CameraPose) -> f64| {
-            images.iter().map(|&image| coordinate(&poses[image as usize])).sum::<f64>() / images.len() as f64
+/// Where a cell lies on Morton's curve. Spots that are near are then stored near each other: a quarter off the time of
+/// natural neighbours among a million images, most of which is waiting for memory.
+fn place_on_curve(cell: [i64; 2]) -> u64 {
+    let [even, odd] =
+        cell.map(|number| (0..32).fold(0, |spread, bit| spread | ((number as u64 >> bit) & 1) << (2 * bit)));
+    even | odd << 1
+}
+
+/// A vertex a spot, at the mean of its images' places.
+fn vertices(spotted: &[Spotted], poses: &[CameraPose]) -> Vec<Spot> {
+    let mut first = 0;
+    let spots = spotted.chunk_by(|a, b| a.cell == b.cell).map(|images| {
+        let sum = |coordinate: fn(&CameraPose) -> f64| {
+            images.iter().map(|spotted| coordinate(&poses[spotted.image as usize])).sum::<f64>()
         };
-        let position = Point2::new(mean(|pose| pose.x_m), mean(|pose| pose.y_m));
-        let first = items.len() as u32;
-        items.extend_from_slice(images);
-        vertices.push(Spot { position, items: [first, items.len() as u32] });
-    }
-    (vertices, items)
+        let mean = |coordinate| sum(coordinate) / images.len() as f64;
+        let items = [first, first + images.len() as u32];
+        first = items[1];
+        Spot { position: Point2::new(mean(|pose| pose.x_m), mean(|pose| pose.y_m)), items }
+    });
+    spots.collect()
 }

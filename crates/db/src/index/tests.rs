@@ -1,9 +1,11 @@
+use std::f64::consts::{PI, TAU};
+
 use proptest::prelude::*;
 
 use reality_sim_core::{
     camera::{Camera, Distortion, OpencvFisheye},
     field::FieldDimensions,
-    pose::Pose2,
+    pose::{Pose2, wrap_angle},
 };
 
 use super::*;
@@ -72,6 +74,19 @@ proptest! {
         }
     }
 
+    /// Near and far, whatever the four motions besides are.
+    #[test]
+    fn no_distance_is_less_than_its_bound(a in any_pose(), b in any_pose(), share in -6.0..0.0_f64) {
+        let metric = metric();
+        let toward = |from: f64, to: f64| from + 10.0_f64.powf(share) * (to - from);
+        let near = CameraPose { x_m: toward(a.x_m, b.x_m), y_m: toward(a.y_m, b.y_m), yaw_rad: toward(a.yaw_rad, b.yaw_rad), ..b };
+        let apart_m = (near.x_m - a.x_m).hypot(near.y_m - a.y_m);
+        let turn_rad = wrap_angle(near.yaw_rad - a.yaw_rad).abs();
+        let least_px = metric.least_px(apart_m, turn_rad);
+        prop_assert!(metric.distance_px(a, near) >= least_px * (1.0 - 1e-9));
+        prop_assert!(least_px >= metric.least_distance_px(apart_m).max(metric.least_turn_px(turn_rad)));
+    }
+
     /// To first order: the motion is small, and the truth is the lens itself.
     #[test]
     fn the_distance_is_how_far_pixels_move(pose in any_pose(), motion in prop::array::uniform6(-1e-3..1e-3_f64)) {
@@ -109,7 +124,7 @@ proptest! {
     fn natural_weights_change_little_with_the_pose(x in -2.0..2.0, y in -1.5..1.5, yaw in -3.0..3.0) {
         let poses: Vec<CameraPose> = (0..4000).map(|i| {
             let [a, b, c] = [0.7548776662, 0.5698402910, 0.3819660113].map(|step| (f64::from(i) * step).fract());
-            CameraPose::new(Pose2::new(6.0 * a - 3.0, 4.0 * b - 2.0, std::f64::consts::TAU * c), 0.52, 0.42, 0.0)
+            CameraPose::new(Pose2::new(6.0 * a - 3.0, 4.0 * b - 2.0, TAU * c), 0.52, 0.42, 0.0)
         }).collect();
         let index = PoseIndex::new(metric(), poses);
         let pose = CameraPose::new(Pose2::new(x, y, yaw), 0.52, 0.42, 0.0);
@@ -122,6 +137,46 @@ proptest! {
         prop_assert!(at.distance(glam::DVec2::new(x, y)) < 0.01, "{at}");
         let moved = CameraPose { yaw_rad: yaw + 1e-3, x_m: x + 1e-3, ..pose };
         prop_assert!(mean(moved).distance(at) < 0.01);
+    }
+}
+
+/// Enough for a tree of many levels, many at one place and heading, and headings on both sides of where turns are counted from.
+#[test]
+fn among_many_images_the_nearest_are_those_that_looking_at_all_of_them_finds() {
+    let poses: Vec<CameraPose> = (0..5000)
+        .map(|i| {
+            let [x, y, yaw, height, pitch, roll] =
+                [0.754877, 0.569840, 0.430159, 0.324718, 0.245122, 0.185037]
+                    .map(|step| (f64::from(i) * step).fract() - 0.5);
+            let pose = CameraPose::new(
+                Pose2::new(7.4 * x, 5.4 * y, TAU * yaw),
+                0.52 + 0.04 * height,
+                0.42 + 0.08 * pitch,
+                0.06 * roll,
+            );
+            if i % 5 == 0 { CameraPose { x_m: 0.5, y_m: 0.25, yaw_rad: 0.0, ..pose } } else { pose }
+        })
+        .collect();
+    let metric = metric();
+    let index = PoseIndex::new(metric.clone(), poses.clone());
+    let corners = [[3.7, 2.7], [0.5, 0.25], [20.0, -3.0]];
+    for (place, yaw_rad) in corners
+        .into_iter()
+        .flat_map(|place| [0.0, 1e-3, -1e-3, PI - 1e-4, 1e-4 - PI].map(|yaw_rad| (place, yaw_rad)))
+    {
+        let pose = CameraPose::new(Pose2::new(place[0], place[1], yaw_rad), 0.53, 0.4, 0.01);
+        let mut all: Vec<f64> = poses.iter().map(|&other| metric.distance_px(other, pose)).collect();
+        all.sort_by(f64::total_cmp);
+        for count in [1, 6, 120] {
+            let found = index.nearest(pose, count).unwrap();
+            assert_eq!(found.len(), count);
+            for (neighbour, expected) in found.iter().zip(&all) {
+                assert!(
+                    (neighbour.distance_px - expected).abs() < 1e-9,
+                    "{pose:?}: {neighbour:?}, {expected}"
+                );
+            }
+        }
     }
 }
 

@@ -1,0 +1,74 @@
+//! What most would use in place of our index: a kd-tree over points whose Euclidean distances are nearly those of the
+//! metric. It proposes candidates, and the metric chooses among them.
+
+use kdtree::{KdTree, distance::squared_euclidean};
+use reality_sim::CameraPose;
+use reality_sim_db::metric::PixelMetric;
+
+/// Place, the heading as a place on a circle, height, pitch and roll, pixels.
+const AXES: usize = 7;
+
+/// Poses as points.
+#[derive(Debug, Clone, Copy)]
+struct Embedding {
+    px_per_m: f64,
+    px_per_rad: f64,
+    px_per_attitude: [f64; 3],
+}
+
+impl Embedding {
+    /// By how much the picture moves with every motion alone; forward and left have no place in it, so their mean.
+    fn new(metric: &PixelMetric) -> Self {
+        let matrix = metric.matrix();
+        let [_, _, px_per_rad, height, pitch, roll] = std::array::from_fn(|axis| matrix[(axis, axis)].sqrt());
+        let px_per_m = (0.5 * (matrix[(0, 0)] + matrix[(1, 1)])).sqrt();
+        Self { px_per_m, px_per_rad, px_per_attitude: [height, pitch, roll] }
+    }
+
+    fn point(self, pose: CameraPose) -> [f64; AXES] {
+        let (sin, cos) = pose.yaw_rad.sin_cos();
+        let [height, pitch, roll] = self.px_per_attitude;
+        [
+            self.px_per_m * pose.x_m,
+            self.px_per_m * pose.y_m,
+            self.px_per_rad * cos,
+            self.px_per_rad * sin,
+            height * pose.height_m,
+            pitch * pose.pitch_rad,
+            roll * pose.roll_rad,
+        ]
+    }
+}
+
+/// Finds images by pose, most of the time those that are nearest.
+pub struct KdIndex {
+    tree: KdTree<f64, u32, [f64; AXES]>,
+    embedding: Embedding,
+    metric: PixelMetric,
+    poses: Vec<CameraPose>,
+}
+
+impl KdIndex {
+    /// An index of images taken at these poses.
+    pub fn new(metric: PixelMetric, poses: Vec<CameraPose>) -> Self {
+        let embedding = Embedding::new(&metric);
+        let mut tree = KdTree::new(AXES);
+        for (image, &pose) in poses.iter().enumerate() {
+            tree.add(embedding.point(pose), image as u32).expect("finite numbers");
+        }
+        Self { tree, embedding, metric, poses }
+    }
+
+    /// The nearest images of so many candidates with their distances in pixels, nearest first.
+    pub fn nearest(&self, pose: CameraPose, count: usize, candidates: usize) -> Vec<(u32, f64)> {
+        let point = self.embedding.point(pose);
+        let found = self.tree.nearest(&point, candidates, &squared_euclidean).expect("finite numbers");
+        let mut found: Vec<(u32, f64)> = found
+            .into_iter()
+            .map(|(_, &image)| (image, self.metric.distance_px(self.poses[image as usize], pose)))
+            .collect();
+        found.sort_by(|a, b| a.1.total_cmp(&b.1));
+        found.truncate(count);
+        found
+    }
+}

@@ -1,0 +1,87 @@
+//! How much memory images take in the index of poses and in the kd-tree that the benchmarks compare it with, and how often
+//! the kd-tree finds what the index finds, the truly nearest image:
+//!
+//! `cargo run --release --example neighbours`
+//!
+//! Memory is what an allocator that counts has handed out: when an index is built, and at most until then.
+
+#[path = "../benches/kd_tree.rs"]
+mod kd_tree;
+#[path = "../benches/poses.rs"]
+mod poses;
+
+use std::{
+    alloc::{GlobalAlloc, Layout, System},
+    io::Write,
+    path::Path,
+    sync::atomic::{AtomicUsize, Ordering::Relaxed},
+};
+
+use anyhow::Context;
+use reality_sim::Sequence;
+use reality_sim_db::index::PoseIndex;
+
+use crate::{
+    kd_tree::KdIndex,
+    poses::{metric, random_poses},
+};
+
+const IMAGES: [usize; 3] = [300, 10_000, 1_000_000];
+const QUERIES: usize = 1000;
+const CANDIDATES: [usize; 3] = [1, 16, 64];
+
+/// The system's allocator, counting.
+struct Counting;
+
+static HELD_BYTES: AtomicUsize = AtomicUsize::new(0);
+static MOST_BYTES: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: all is left to the system's allocator; what is counted decides nothing.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let held = HELD_BYTES.fetch_add(layout.size(), Relaxed) + layout.size();
+        MOST_BYTES.fetch_max(held, Relaxed);
+        // SAFETY: the caller keeps the promises that the system's allocator asks for.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+        HELD_BYTES.fetch_sub(layout.size(), Relaxed);
+        // SAFETY: it was handed out by the system's allocator, with this layout.
+        unsafe { System.dealloc(place, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// What `make` returns, the bytes that it holds, and the most that were held while it was made.
+fn measured<T>(make: impl FnOnce() -> T) -> (T, usize, usize) {
+    let before = HELD_BYTES.load(Relaxed);
+    MOST_BYTES.store(before, Relaxed);
+    let made = make();
+    (made, HELD_BYTES.load(Relaxed) - before, MOST_BYTES.load(Relaxed) - before)
+}
+
+fn main() -> anyhow::Result<()> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/walk");
+    let metric = metric(&Sequence::open(&folder).context("the demonstration walk")?);
+    let queries = random_poses(QUERIES, 1);
+    let mut out = std::io::stdout();
+    for images in IMAGES {
+        let poses = random_poses(images, 0);
+        let (index, held, most) = measured(|| PoseIndex::new(metric.clone(), poses.clone()));
+        writeln!(out, "{images} images: index {} bytes each, while built {}", held / images, most / images)?;
+        let (tree, held, most) = measured(|| KdIndex::new(metric.clone(), poses.clone()));
+        writeln!(out, "  kd-tree {} bytes each, while built {}", held / images, most / images)?;
+        for candidates in CANDIDATES {
+            let mut same = 0;
+            for &pose in &queries {
+                let truth_px = index.nearest(pose, 1)?[0].distance_px;
+                same += usize::from(tree.nearest(pose, 1, candidates)[0].1 <= truth_px + 1e-9);
+            }
+            writeln!(out, "  the nearest among {candidates} candidates: {same} of {QUERIES}")?;
+        }
+    }
+    Ok(())
+}
