@@ -107,7 +107,7 @@ struct Spotted {
     image: ImageIndex,
 }
 
-/// Where a cell lies on Morton's curve. Spots that are near are then stored near each other: a quarter off the time of
+/// Where a cell lies on Morton's curve. Spots that are near are then stored near each other: a tenth off the time of
 /// natural neighbours among a million images, most of which is waiting for memory.
 fn place_on_curve(cell: [i64; 2]) -> u64 {
     let [even, odd] =
