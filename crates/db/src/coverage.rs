@@ -107,10 +107,10 @@ mod tests {
         let usual = CameraPose { height_m: 0.5, pitch_rad: 0.4, ..Default::default() };
         let pose = |x, y, yaw| usual.with_planar(Pose2::new(x, y, yaw));
         let poses = vec![
-            pose(1.0, 0.6, 0.1),
-            pose(1.0, 0.6, -0.1),
-            pose(-2.0, -1.1, 3.1),
-            pose(-2.0, -1.1, -3.1),
+            pose(1.05, 0.6, 0.1),
+            pose(1.05, 0.6, -0.1),
+            pose(-2.05, -1.1, 3.1),
+            pose(-2.05, -1.1, -3.1),
             pose(90.0, 0.0, 0.0),
         ];
         let index = PoseIndex::new(PixelMetric::new(&camera, usual, &field).unwrap(), poses);
@@ -122,9 +122,9 @@ mod tests {
             };
             *coverage.cells.iter().find(near).unwrap()
         };
-        assert_eq!(cell_at(1.0, 0.6).pictures[0], 2);
-        assert_eq!(cell_at(-2.0, -1.1).pictures[HEADINGS / 2], 2);
-        assert!(cell_at(1.0, 0.6).distance_px[0] < cell_at(1.0, 0.6).distance_px[4]);
+        assert_eq!(cell_at(1.05, 0.6).pictures[0], 2);
+        assert_eq!(cell_at(-2.05, -1.1).pictures[HEADINGS / 2], 2);
+        assert!(cell_at(1.05, 0.6).distance_px[0] < cell_at(1.05, 0.6).distance_px[4]);
         assert!(coverage.share_within(1e9) == 1.0 && coverage.share_within(0.0) == 0.0);
     }
 }
