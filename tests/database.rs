@@ -51,7 +51,7 @@ fn part_of_walk(folder: &Path, name: &str, frames: std::ops::Range<usize>) -> Pa
     let mut walk = Sequence::open(Path::new(WALK)).unwrap();
     walk.frames = walk.frames[frames.clone()].to_vec();
     walk.groundtruth = walk.groundtruth[frames].to_vec();
-    walk.start = walk.groundtruth[0].map(|pose| pose.planar());
+    walk.start = walk.groundtruth[0].map(reality_sim::CameraPose::planar);
     walk.name = name.to_owned();
     let part = folder.join(name);
     for frame in 0..walk.frames.len() {

@@ -233,8 +233,11 @@ fn painted(walk: &Sequence, hull: &Hull) -> (TempDir, Sequence) {
     for number in 0..60 {
         // Places and headings that fill the field evenly (Roberts' sequence).
         let part = |step: f64| (0.5 + f64::from(number) * step).fract();
-        let planar =
-            Pose2::new(5.0 * part(0.819_173) - 2.5, 3.4 * part(0.671_044) - 1.7, 6.283 * part(0.549_700));
+        let planar = Pose2::new(
+            5.0 * part(0.819_173) - 2.5,
+            3.4 * part(0.671_044) - 1.7,
+            std::f64::consts::TAU * part(0.549_7),
+        );
         let pose = CameraPose::new(planar, 0.5, 0.25, 0.0);
         let image = Path::new("images").join(format!("{number:06}.png"));
         let picture = RgbImage::from_fn(160, 120, |u, v| {

@@ -130,10 +130,12 @@ fn blend_row(
     colors: &mut [[u8; 3]],
     origins: &mut [Origin],
 ) {
+    let mut opinions = [Opinion { color: [[0.0; LANES]; 3], weight: [0.0; LANES] }; MAX_SOURCES];
+    let opinions = &mut opinions[..sources.len()];
     for ((rays, colors), origins) in rays.iter().zip(colors.chunks_mut(LANES)).zip(origins.chunks_mut(LANES))
     {
         let points = hull_points(target.hull, &target.placement, rays);
-        let mixed = mix(target, sources, weights, &points);
+        let mixed = mix(target, sources, weights, &points, opinions);
         for (lane, (color, origin)) in colors.iter_mut().zip(origins).enumerate() {
             *color = mixed.color.map(|channel| (channel[lane] + 0.5) as u8);
             *origin = Origin { source: mixed.source[lane], trust: (255.0 * mixed.trust[lane] + 0.5) as u8 };
@@ -155,16 +157,22 @@ struct Opinion {
     weight: Lanes,
 }
 
+/// `opinions` is room to work in, one a source: clearing it for every block takes time.
 #[inline(always)]
-fn mix(target: &Target, sources: &[Source], weights: &BlendWeights, points: &HullPoints) -> Mixed {
-    let mut opinions = [Opinion { color: [[0.0; LANES]; 3], weight: [0.0; LANES] }; MAX_SOURCES];
+fn mix(
+    target: &Target,
+    sources: &[Source],
+    weights: &BlendWeights,
+    points: &HullPoints,
+    opinions: &mut [Opinion],
+) -> Mixed {
     for (opinion, source) in opinions.iter_mut().zip(sources) {
+        opinion.weight = [0.0; LANES];
         if let Some(pixels) = see(source.camera, &source.placement, points) {
             opinion.color = gained(sample(source.picture, &pixels), source.gain);
             opinion.weight = source_weight(target, source, weights, points, &pixels);
         }
     }
-    let opinions = &mut opinions[..sources.len()];
     let best: Lanes = std::array::from_fn(|i| opinions.iter().map(|o| o.weight[i]).fold(0.0, f32::max));
     let before: Lanes = std::array::from_fn(|i| opinions.iter().map(|o| o.weight[i]).sum());
     let mean = agreed(opinions, weights.disagreement);

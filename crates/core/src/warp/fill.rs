@@ -3,6 +3,11 @@
 //! The pull-push method (Gortler et al., 1996): the picture is halved again and again, means taken over the known pixels
 //! only, until all are known; on the way back every unknown pixel takes the colour of the coarser picture.
 
+use rayon::prelude::*;
+
+/// Work enough for a task of its own.
+const PIXELS_A_TASK: usize = 16384;
+
 /// Colours with weights, 0 for unknown.
 struct Level {
     width: usize,
@@ -12,81 +17,101 @@ struct Level {
 }
 
 /// Fills the pixels that are not known. Nothing happens where none is known at all.
-pub(crate) fn fill(colors: &mut [[u8; 3]], width: usize, is_known: impl Fn(usize) -> bool) {
-    let known = |index: usize| f32::from(u8::from(is_known(index)));
+pub(crate) fn fill(colors: &mut [[u8; 3]], width: usize, is_known: impl Fn(usize) -> bool + Sync) {
     let count = (0..colors.len()).filter(|&index| is_known(index)).count();
     if count == 0 || count == colors.len() {
         return;
     }
-    let pixels = colors.iter().enumerate();
-    let pixels = pixels.map(|(index, color)| {
-        let weight = known(index);
-        let [red, green, blue] = color.map(|value| weight * f32::from(value));
-        [red, green, blue, weight]
-    });
-    let mut levels = vec![Level { width, height: colors.len() / width, pixels: pixels.collect() }];
-    while let Some(finest) = levels.last().filter(|level| level.pixels.iter().any(|pixel| pixel[3] == 0.0)) {
-        levels.push(halved(finest));
-    }
-    let mut coarse = levels.pop();
-    while let Some(mut fine) = levels.pop() {
-        if let Some(coarse) = &coarse {
-            take_unknown(&mut fine, coarse);
-        }
-        coarse = Some(fine);
-    }
-    for (index, (color, pixel)) in
-        colors.iter_mut().zip(coarse.iter().flat_map(|level| &level.pixels)).enumerate()
-    {
-        if !is_known(index) {
-            *color = [0, 1, 2].map(|channel| (pixel[channel] / pixel[3] + 0.5) as u8);
-        }
-    }
-}
-
-/// Sums over two by two pixels, their weight at most 1.
-fn halved(fine: &Level) -> Level {
-    let (width, height) = (fine.width.div_ceil(2), fine.height.div_ceil(2));
-    let mut pixels = vec![[0.0_f32; 4]; width * height];
-    for (v, row) in fine.pixels.chunks(fine.width).enumerate() {
-        for (u, pixel) in row.iter().enumerate() {
-            let sum = &mut pixels[(v / 2) * width + u / 2];
-            for channel in 0..4 {
-                sum[channel] += pixel[channel];
+    let filled = half_size(colors, width, &is_known).filled();
+    let rows = colors.par_chunks_mut(width).enumerate().with_min_len(PIXELS_A_TASK.div_ceil(width));
+    rows.for_each(|(v, row)| {
+        for (u, color) in row.iter_mut().enumerate().filter(|(u, _)| !is_known(v * width + u)) {
+            if let Some(pixel) = filled.bilinear(u, v) {
+                *color = [0, 1, 2].map(|channel| (pixel[channel] + 0.5) as u8);
             }
         }
-    }
-    for pixel in &mut pixels {
-        let scale = 1.0 / pixel[3].max(1.0);
-        *pixel = pixel.map(|value| value * scale);
-    }
-    Level { width, height, pixels }
+    });
+}
+
+/// A picture at half its size. It is never held in numbers of four bytes at its full size: memory costs most of the time.
+fn half_size(colors: &[[u8; 3]], width: usize, is_known: &(impl Fn(usize) -> bool + Sync)) -> Level {
+    let height = colors.len() / width;
+    Level::by_rows(width.div_ceil(2), height.div_ceil(2), |v, sums| {
+        for row in [2 * v, 2 * v + 1].into_iter().filter(|row| *row < height) {
+            for u in (0..width).filter(|u| is_known(row * width + u)) {
+                let [red, green, blue] = colors[row * width + u].map(f32::from);
+                add(&mut sums[u / 2], [red, green, blue, 1.0]);
+            }
+        }
+    })
+}
+
+/// A level at half its size.
+fn halved(fine: &Level) -> Level {
+    Level::by_rows(fine.width.div_ceil(2), fine.height.div_ceil(2), |v, sums| {
+        for row in fine.pixels.chunks(fine.width).skip(2 * v).take(2) {
+            row.iter().enumerate().for_each(|(u, pixel)| add(&mut sums[u / 2], *pixel));
+        }
+    })
+}
+
+fn add(sum: &mut [f32; 4], pixel: [f32; 4]) {
+    sum.iter_mut().zip(pixel).for_each(|(sum, value)| *sum += value);
 }
 
 /// Unknown pixels take the bilinear colour of the next coarser level.
 fn take_unknown(fine: &mut Level, coarse: &Level) {
-    let at = |u: isize, v: isize| {
-        let u = u.clamp(0, coarse.width as isize - 1) as usize;
-        let v = v.clamp(0, coarse.height as isize - 1) as usize;
-        coarse.pixels[v * coarse.width + u]
-    };
-    for v in 0..fine.height {
-        for u in 0..fine.width {
-            let pixel = &mut fine.pixels[v * fine.width + u];
-            if pixel[3] > 0.0 {
-                continue;
-            }
-            // The middle of a coarse pixel lies between two fine ones: three quarters of its own, one of the next.
-            let (cu, cv) = ((u / 2) as isize, (v / 2) as isize);
-            let (nu, nv) = (cu + if u % 2 == 0 { -1 } else { 1 }, cv + if v % 2 == 0 { -1 } else { 1 });
-            let taps = [(at(cu, cv), 9.0), (at(nu, cv), 3.0), (at(cu, nv), 3.0), (at(nu, nv), 1.0)];
-            let total: f32 = taps.iter().map(|(tap, share)| share * tap[3]).sum();
-            if total > 0.0 {
-                let mean = |channel: usize| {
-                    taps.iter().map(|(tap, share)| share * tap[channel]).sum::<f32>() / total
-                };
-                *pixel = [mean(0), mean(1), mean(2), 1.0];
-            }
+    let width = fine.width;
+    let rows = fine.pixels.par_chunks_mut(width).enumerate().with_min_len(PIXELS_A_TASK.div_ceil(width));
+    rows.for_each(|(v, row)| {
+        for (u, pixel) in row.iter_mut().enumerate().filter(|(_, pixel)| pixel[3] == 0.0) {
+            *pixel = coarse.bilinear(u, v).unwrap_or(*pixel);
         }
+    });
+}
+
+impl Level {
+    /// A level whose rows are sums of colours with their weights, which then become at most 1.
+    fn by_rows(width: usize, height: usize, sum_up: impl Fn(usize, &mut [[f32; 4]]) + Sync) -> Self {
+        let mut pixels = vec![[0.0_f32; 4]; width * height];
+        let rows = pixels.par_chunks_mut(width).enumerate().with_min_len(PIXELS_A_TASK.div_ceil(width));
+        rows.for_each(|(v, sums)| {
+            sum_up(v, sums);
+            for sum in sums {
+                let scale = 1.0 / sum[3].max(1.0);
+                *sum = sum.map(|value| value * scale);
+            }
+        });
+        Self { width, height, pixels }
+    }
+
+    /// The same level with no pixel unknown, where any is known.
+    fn filled(mut self) -> Self {
+        if self.pixels.iter().any(|pixel| pixel[3] == 0.0) && self.pixels.len() > 1 {
+            let coarse = halved(&self).filled();
+            take_unknown(&mut self, &coarse);
+        }
+        self
+    }
+
+    /// The colour at a pixel of the next finer level, where anything around it is known.
+    fn bilinear(&self, u: usize, v: usize) -> Option<[f32; 4]> {
+        let at = |u: isize, v: isize| {
+            let u = u.clamp(0, self.width as isize - 1) as usize;
+            let v = v.clamp(0, self.height as isize - 1) as usize;
+            self.pixels[v * self.width + u]
+        };
+        // The middle of a coarse pixel lies between two fine ones: three quarters of its own, one of the next.
+        let beside = |fine: usize| (fine / 2) as isize + if fine.is_multiple_of(2) { -1 } else { 1 };
+        let (own_u, own_v) = ((u / 2) as isize, (v / 2) as isize);
+        let taps = [
+            (at(own_u, own_v), 9.0),
+            (at(beside(u), own_v), 3.0),
+            (at(own_u, beside(v)), 3.0),
+            (at(beside(u), beside(v)), 1.0),
+        ];
+        let total: f32 = taps.iter().map(|(tap, share)| share * tap[3]).sum();
+        let mean = |channel: usize| taps.iter().map(|(tap, share)| share * tap[channel]).sum::<f32>() / total;
+        (total > 0.0).then(|| [mean(0), mean(1), mean(2), 1.0])
     }
 }

@@ -97,6 +97,9 @@ pub(crate) fn hull_points(hull: &Hull, from: &Placement, rays: &RayBlock) -> Hul
     }
     for screen in &hull.screens {
         let x = screen.x_m as f32 - from.position_in_world[0];
+        if !direction[0].iter().any(|d| d * x > 0.0) {
+            continue;
+        }
         let screen = Edges::new(screen);
         for i in 0..LANES {
             let to_screen = x / direction[0][i];
@@ -145,8 +148,15 @@ pub(crate) fn unhidden(hull: &Hull, from: &Placement, points: &HullPoints) -> La
     const MOST_OBLIQUE: f32 = 4.0;
     let [x, y, z] = from.position_in_world;
     let mut unhidden = [1.0_f32; LANES];
+    // NaN is left out of both.
+    let least_x = points.place[0].iter().fold(x, |least, place| least.min(*place));
+    let most_x = points.place[0].iter().fold(x, |most, place| most.max(*place));
     for screen in &hull.screens {
         let to_screen = screen.x_m as f32 - x;
+        // Most screens stand behind the camera, or behind all of the points.
+        if !(least_x..=most_x).contains(&(screen.x_m as f32)) {
+            continue;
+        }
         let screen = Edges::new(screen);
         for i in 0..LANES {
             let (dx, dy) = (points.place[0][i] - x, points.place[1][i] - y);

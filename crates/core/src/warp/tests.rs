@@ -139,7 +139,7 @@ proptest! {
             let truth = photograph(&target, pose, &hull);
             let different = warped.colors.iter().zip(truth.pixels()).enumerate()
                 .filter(|(index, (a, b))| seen(*index) && (0..3).any(|i| a[i].abs_diff(b.0[i]) > 5)).count();
-            prop_assert!((different as f64) < 0.02 * count as f64, "{different} of {count}");
+            prop_assert!((different as f64) < 0.05 * count as f64, "{different} of {count}");
         }
     }
 
