@@ -6,6 +6,7 @@ mod database;
 mod frame;
 #[cfg(feature = "gpu")]
 mod gpu;
+mod image_at;
 mod kd_tree;
 mod neighbours;
 mod poses;
@@ -34,7 +35,7 @@ fn main() {
         .measurement_time(Duration::from_secs(1))
         .without_plots()
         .configure_from_args();
-    let stages: [fn(&mut Criterion, &Scene); 12] = [
+    let stages: [fn(&mut Criterion, &Scene); 13] = [
         blur::bench,
         border::bench,
         white_lines::bench,
@@ -47,6 +48,7 @@ fn main() {
         scaling::bench,
         neighbours::bench,
         database::bench,
+        image_at::bench,
     ];
     for stage in stages {
         stage(&mut criterion, &scene);

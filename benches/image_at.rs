@@ -1,0 +1,68 @@
+//! A whole picture at a pose, as a simulator asks for it: neighbours found and chosen, brightness matched, drawn, filled.
+//! Their pictures are decoded before. Elements are pictures.
+
+use std::{cell::LazyCell, hint::black_box, sync::Arc};
+
+use criterion::{Criterion, SamplingMode, Throughput};
+use reality_sim::{
+    Archive, CameraPose, Sequence, Synthesizer,
+    db::{Database, PoseEstimate, PoseSource},
+    synthesis::{Blend, Method, Nearest, Plane, Quadratic, SynthesisConfig},
+    warp::CpuWarper,
+};
+use tempfile::TempDir;
+
+use crate::scene::Scene;
+
+/// The pictures in between are in the database, these are not.
+const LEFT_OUT: usize = 5;
+
+/// By every method, `blend` from four and from six pictures.
+pub fn bench(criterion: &mut Criterion, scene: &Scene) {
+    let walk = Sequence::open(&scene.walk.folder).expect("the demonstration walk is part of the repository");
+    let poses: Vec<CameraPose> = walk.groundtruth.iter().step_by(LEFT_OUT).copied().flatten().collect();
+    let stored = LazyCell::new(|| store(&walk));
+    let methods: [(&str, &dyn Method, usize); 5] = [
+        ("nearest", &Nearest, 1),
+        ("quadratic", &Quadratic, 1),
+        ("plane", &Plane, 1),
+        ("blend4", &Blend, 4),
+        ("blend6", &Blend, 6),
+    ];
+    let mut group = criterion.benchmark_group("image_at");
+    group.sampling_mode(SamplingMode::Flat);
+    group.throughput(Throughput::Elements(1));
+    for (name, method, sources) in methods {
+        let synthesizer = LazyCell::new(|| {
+            let archive = stored.1.clone();
+            let config = SynthesisConfig { sources, ..SynthesisConfig::new(&archive) };
+            let camera = archive.setup().camera.clone();
+            let synthesizer = Synthesizer::with(archive, camera, Arc::new(CpuWarper), config);
+            poses.iter().for_each(|&pose| drop(synthesizer.image_at(pose, method)));
+            synthesizer
+        });
+        let mut turn = poses.iter().cycle().copied();
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                let pose = black_box(turn.next().unwrap_or_default());
+                synthesizer.image_at(pose, method).expect("a pose beside the walk")
+            });
+        });
+    }
+    group.finish();
+}
+
+/// The walk without every fifth picture.
+fn store(walk: &Sequence) -> (TempDir, Arc<Archive>) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("walk.db");
+    let estimate = |(frame, pose): (usize, &Option<CameraPose>)| {
+        let pose = pose.filter(|_| frame % LEFT_OUT != 0);
+        pose.map(|pose| PoseEstimate { pose, covariance: None })
+    };
+    let poses: Vec<_> = walk.groundtruth.iter().enumerate().map(estimate).collect();
+    let mut database = Database::create_or_open(&path).expect("a database");
+    database.ingest(walk, &poses, &PoseSource::GroundTruth, |_| ()).expect("pictures of the walk");
+    let archive = Archive::open(&path, 1 << 30).expect("a database");
+    (folder, Arc::new(archive))
+}
