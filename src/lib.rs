@@ -1,10 +1,42 @@
 //! Reality Sim: what does the camera see at this pose? Pictures that a robot records while it walks over a soccer field
-//! are tagged with the pose of the camera, to about a centimetre, by a particle filter.
+//! are tagged with the pose of the camera, to about a centimetre, by a particle filter, and stored by pose; where none was
+//! recorded, one is reconstructed from its neighbours.
 //!
 //! This is the library's face. Camera models, fields, recordings and the filter are those of `reality_sim_core`, under
-//! their own names; [`evaluation`] measures poses against a ground truth, [`overlay`] draws them into pictures.
+//! their own names; [`db`] is the database, [`synthesis`] gives pictures from it, [`sensor`] draws them from the field's
+//! model. [`evaluation`] measures poses against a ground truth, [`probing`] pictures; [`overlay`], [`montage`] and
+//! [`coverage_chart`] draw.
 //!
 //! Metres, radians and seconds everywhere; the unit is part of the name. The frames are those of [`pose`].
+//!
+//! A recording becomes a database, and a simulator asks it for pictures:
+//!
+//! ```
+//! use std::{path::Path, sync::Arc};
+//!
+//! use reality_sim::{Archive, Pose2, Sequence, Synthesizer, synthesis::Blend};
+//! use reality_sim::db::{Database, PoseEstimate, PoseSource};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let folder = tempfile::tempdir()?;
+//! # let file = folder.path().join("walk.db");
+//! # let file = file.as_path();
+//! let walk = Sequence::open(Path::new("assets/walk"))?;
+//! let known = |pose: &Option<_>| pose.map(|pose| PoseEstimate { pose, covariance: None });
+//! let poses: Vec<_> = walk.groundtruth.iter().map(known).collect();
+//! Database::create_or_open(file)?.ingest(&walk, &poses, &PoseSource::GroundTruth, |_| ())?;
+//!
+//! let archive = Arc::new(Archive::open(file, 256 << 20)?);
+//! let usual = archive.usual_pose();
+//! let simulator = Synthesizer::new(archive);
+//! let seen = simulator.image_at(usual.with_planar(Pose2::new(-2.3, 0.2, 1.6)), &Blend)?;
+//! assert_eq!(seen.picture.dimensions(), (640, 480));
+//! assert!(seen.covered() > 0.9);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! A recording without poses is tagged:
 //!
 //! ```
 //! use std::path::Path;

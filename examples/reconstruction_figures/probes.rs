@@ -4,12 +4,14 @@ use std::{collections::BTreeMap, fmt::Write, path::Path};
 
 use image::RgbImage;
 use reality_sim::{
-    Sequence,
+    Sequence, Synthesizer,
+    coverage_chart::coverage_svg,
+    db::coverage::Coverage,
     evaluation::percentile,
     montage::grid,
     probing::{Judged, MethodReport, judge, names},
     sensor::{Renderer, SceneColors},
-    sequence::save_image,
+    sequence::{save_image, write_atomically},
     synthesis::Blend,
 };
 
@@ -36,10 +38,20 @@ pub fn write(walk: &Sequence, probes: &Sequence, text: &mut String) -> anyhow::R
         }
         judged.push(probe);
     }
+    coverage(walk, &synthesizer)?;
     table(&judged, &mut displacements, text)?;
     judged.sort_by(|a, b| a.distance_px.partial_cmp(&b.distance_px).unwrap_or(std::cmp::Ordering::Equal));
     pictures(&judged, text)?;
     provenance(&synthesizer, probes, &judged, text)
+}
+
+/// Where the walk was recorded, and how far the next picture is.
+fn coverage(walk: &Sequence, synthesizer: &Synthesizer) -> anyhow::Result<()> {
+    let archive = synthesizer.archive();
+    let coverage = Coverage::new(archive.index(), archive.field(), archive.usual_pose(), 0.25);
+    let title = format!("{}: {} pictures", walk.name, archive.images().len());
+    let svg = coverage_svg(&coverage, archive.field(), &title);
+    Ok(write_atomically(&Path::new(IMAGES).join("coverage.svg"), svg.as_bytes())?)
 }
 
 fn table(
@@ -107,7 +119,7 @@ fn pictures(judged: &[Judged], text: &mut String) -> anyhow::Result<()> {
 
 /// Where the pixels of one picture came from.
 fn provenance(
-    synthesizer: &reality_sim::Synthesizer,
+    synthesizer: &Synthesizer,
     probes: &Sequence,
     judged: &[Judged],
     text: &mut String,
