@@ -14,7 +14,7 @@ use reality_sim::{
     db::{Database, PoseEstimate, PoseSource},
     pose::Motion2,
     sequence::save_image,
-    synthesis::Blend,
+    synthesis::Auto,
 };
 
 const STEPS: usize = 24;
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let simulator = Synthesizer::new(archive);
     let mut robot = Pose2::new(x_m, y_m, yaw_rad);
     for step in 0..STEPS {
-        let seen = simulator.image_at(usual.with_planar(robot), &Blend)?;
+        let seen = simulator.image_at(usual.with_planar(robot), &Auto)?;
         let line_m = line_to_the_left(&seen.picture, simulator.camera(), usual);
         let turn_rad = line_m.map_or(0.0, |left_m| left_m.atan2(AHEAD_M).clamp(-0.15, 0.15));
         println!(

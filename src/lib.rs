@@ -14,7 +14,7 @@
 //! ```
 //! use std::{path::Path, sync::Arc};
 //!
-//! use reality_sim::{Archive, Pose2, Sequence, Synthesizer, synthesis::Blend};
+//! use reality_sim::{Archive, Pose2, Sequence, Synthesizer, synthesis::Auto};
 //! use reality_sim::db::{Database, PoseEstimate, PoseSource};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -29,7 +29,7 @@
 //! let archive = Arc::new(Archive::open(file, 256 << 20)?);
 //! let usual = archive.usual_pose();
 //! let simulator = Synthesizer::new(archive);
-//! let seen = simulator.image_at(usual.with_planar(Pose2::new(-2.3, 0.2, 1.6)), &Blend)?;
+//! let seen = simulator.image_at(usual.with_planar(Pose2::new(-2.3, 0.2, 1.6)), &Auto)?;
 //! assert_eq!(seen.picture.dimensions(), (640, 480));
 //! assert!(seen.covered() > 0.9);
 //! # Ok(())

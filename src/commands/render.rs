@@ -12,7 +12,7 @@ use reality_sim::{
     montage::strip,
     sensor::{Renderer, SceneColors},
     sequence::{read_camera, read_tum, save_image},
-    synthesis::{Blend, Method, Nearest, Plane, Quadratic},
+    synthesis::{Auto, Blend, Method, Nearest, Plane, Quadratic},
 };
 
 use super::{
@@ -36,7 +36,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "pose", required_unless_present = "pose")]
     path: Option<PathBuf>,
     /// The way to the picture
-    #[arg(long, value_enum, default_value = "blend")]
+    #[arg(long, value_enum, default_value = "auto")]
     method: MethodName,
     /// The picture, PNG or JPEG; with --path the folder of the pictures
     #[arg(long, value_name = "FILE")]
@@ -63,6 +63,8 @@ pub struct RenderArgs {
 /// The ways to a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum MethodName {
+    /// The picture recorded at the pose where there is one, else as blend
+    Auto,
     /// The nearest picture as it is
     Nearest,
     /// The paper's Eq. 4: a polynomial of second order from the nearest picture
@@ -174,6 +176,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     }
     let synthesizer = args.synthesis.synthesizer(archive.clone(), camera.map(|setup| setup.camera))?;
     let painter = match args.method {
+        MethodName::Auto => Painter::Recorded(&synthesizer, &Auto),
         MethodName::Nearest => Painter::Recorded(&synthesizer, &Nearest),
         MethodName::Quadratic => Painter::Recorded(&synthesizer, &Quadratic),
         MethodName::Plane => Painter::Recorded(&synthesizer, &Plane),
@@ -251,6 +254,7 @@ fn at_pose(
         if let Some(file) = &args.trust {
             save_image(file, &DynamicImage::from(reconstruction.trust_picture()).into_rgb8())?;
         }
+        report.method = reconstruction.method;
         report.covered = Some(reconstruction.covered());
         report.used = used(archive, &reconstruction)?;
     }
@@ -310,6 +314,7 @@ fn is_in_strip(index: usize, count: usize) -> bool {
 impl MethodName {
     fn name(self) -> &'static str {
         match self {
+            Self::Auto => Auto.name(),
             Self::Nearest => Nearest.name(),
             Self::Quadratic => Quadratic.name(),
             Self::Plane => Plane.name(),

@@ -8,8 +8,10 @@
 //! | [`Quadratic`] | the paper's Eq. 4: a polynomial of second order from the nearest picture's pixels to the target's |
 //! | [`Plane`] | one picture, exactly, through the ground plane and both lenses; goals and hall as in [`reality_sim_core::warp::Hull`] |
 //! | [`Blend`] | several, each as by `Plane`, weighed pixel by pixel |
+//! | [`Auto`] | the recorded picture where there is one at the pose, else `Blend` |
 
 mod archive;
+mod auto;
 mod cache;
 mod error;
 mod gain;
@@ -25,9 +27,10 @@ mod synthesizer;
 
 pub use self::{
     archive::Archive,
+    auto::Auto,
     error::SynthesisError,
     hall::measure_hall,
-    method::{METHODS, Method, method},
+    method::{METHODS, Method},
     nearest::Nearest,
     plane::{Blend, Plane},
     quadratic::Quadratic,

@@ -13,10 +13,5 @@ pub trait Method: Send + Sync {
     fn reconstruct(&self, from: &Synthesizer, pose: CameraPose) -> Result<Reconstruction, SynthesisError>;
 }
 
-/// All methods.
+/// The methods that are told apart; [`crate::Auto`] chooses among them.
 pub const METHODS: [&dyn Method; 4] = [&Nearest, &Quadratic, &Plane, &Blend];
-
-/// The method of this name.
-pub fn method(name: &str) -> Option<&'static dyn Method> {
-    METHODS.into_iter().find(|method| method.name() == name)
-}

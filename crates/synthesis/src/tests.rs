@@ -76,6 +76,24 @@ fn at_a_recorded_pose_the_nearest_picture_is_the_one_recorded() {
 }
 
 #[test]
+fn the_recorded_picture_is_given_where_there_is_one_and_a_reconstruction_elsewhere() {
+    let walk = walk();
+    let (_folder, synthesizer) = without_some_frames();
+    let (pose, recorded) = truth(&walk, 7);
+    assert_eq!(synthesizer.image_at(pose, &Auto).unwrap().picture, recorded);
+    let beside = CameraPose { yaw_rad: pose.yaw_rad + 0.02, ..pose };
+    let made = synthesizer.image_at(beside, &Auto).unwrap();
+    assert_eq!(made, synthesizer.image_at(beside, &Blend).unwrap());
+    // Another lens saw something else.
+    let archive = synthesizer.archive().clone();
+    let mut camera = synthesizer.camera().clone();
+    camera.fx = 200.0;
+    let config = SynthesisConfig::new(&archive);
+    let other = Synthesizer::with(archive, camera, Arc::new(reality_sim_core::warp::CpuWarper), config);
+    assert_eq!(other.image_at(pose, &Auto).unwrap().method, "blend");
+}
+
+#[test]
 fn the_maps_of_origin_and_trust_agree_with_what_was_used() {
     let (_folder, synthesizer) = without_some_frames();
     let (pose, _) = truth(&walk(), 25);
