@@ -234,6 +234,7 @@ fn reconstructions_are_nearer_to_the_truth_than_the_nearest_picture() {
     assert_eq!(fs::read_dir(&pictures).unwrap().count(), 20);
 }
 
+#[cfg(feature = "gpu")]
 #[test]
 fn drawing_on_the_graphics_device_gives_the_same_picture() {
     let own = tempfile::tempdir().unwrap();
@@ -302,12 +303,18 @@ fn outputs_without_a_place_and_inputs_in_the_way_are_refused() {
     );
     assert_fails(&["build", WALK, "--out", shown(own.path())], &["is a folder"]);
     let copy = copy_of_database(own.path());
-    assert_fails(&["render", shown(&copy), "--pose", "-2,1,1.5", "--out", shown(&copy)], &["is an input"]);
-    assert_fails(&["info", shown(&copy), "--coverage", shown(&copy)], &["is an input"]);
+    let svg = own.path().join("copy.svg");
+    fs::copy(&copy, &svg).unwrap();
+    assert_fails(&["info", shown(&svg), "--coverage", shown(&svg)], &["is an input"]);
     let csv = probes.join("frames.csv");
     assert_fails(&["evaluate", shown(database), shown(probes), "--details", shown(&csv)], &["is an input"]);
-    let text = own.path().join("out.txt");
-    assert_fails(&["render", shown(database), "--pose", "-2,1,1.5", "--out", shown(&text)], &["out.txt"]);
+    let [text, same] = ["out.txt", "same.png"].map(|name| own.path().join(name));
+    let render = ["render", shown(database), "--pose", "-2,1,1.5", "--out"];
+    assert_fails(&[&render[..], &[shown(&text)]].concat(), &["out.txt", ".png"]);
+    assert_fails(&[&render[..], &[shown(&same), "--trust", shown(&same)]].concat(), &["two outputs"]);
+    assert!(!same.exists());
+    let chart = own.path().join("coverage.png");
+    assert_fails(&["info", shown(&copy), "--coverage", shown(&chart)], &["coverage.png", ".svg"]);
     assert_fails(&["evaluate", shown(database), shown(own.path())], &["sequence.toml"]);
 }
 
@@ -338,6 +345,7 @@ fn recordings_that_cannot_be_stored_are_named_and_lose_nothing() {
 
 #[test]
 fn a_build_that_was_killed_goes_on_where_it_was() {
+    const FRAMES: usize = 2000;
     let own = tempfile::tempdir().unwrap();
     let out = own.path().join("out.db");
     // Enough pictures for several transactions.
@@ -347,7 +355,7 @@ fn a_build_that_was_killed_goes_on_where_it_was() {
     let (frame, pose) = (walk.frames[0].clone(), walk.groundtruth[0]);
     walk.frames.clear();
     walk.groundtruth.clear();
-    for number in 0..400 {
+    for number in 0..FRAMES {
         let image = PathBuf::from(format!("{number:06}.jpg"));
         let source = folder.join("000000.jpg");
         if number == 0 {
@@ -356,7 +364,7 @@ fn a_build_that_was_killed_goes_on_where_it_was() {
             fs::hard_link(&source, folder.join(&image)).unwrap();
         }
         walk.frames.push(reality_sim::sequence::FrameRecord {
-            timestamp_s: f64::from(number),
+            timestamp_s: number as f64,
             image,
             ..frame.clone()
         });
@@ -369,7 +377,7 @@ fn a_build_that_was_killed_goes_on_where_it_was() {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    // Killed once something was committed, or done by then: both must end in 400 pictures.
+    // Killed once something was committed.
     while child.try_wait().unwrap().is_none() {
         if Database::open(&out).and_then(|database| database.images()).is_ok_and(|images| !images.is_empty())
         {
@@ -378,15 +386,142 @@ fn a_build_that_was_killed_goes_on_where_it_was() {
         }
     }
     let committed = Database::open(&out).unwrap().images().unwrap().len();
-    assert!(committed > 0);
+    assert!((1..FRAMES).contains(&committed), "{committed}");
     let report = json(&["build", shown(&folder), "--out", shown(&out), "--no-hall"]);
     assert_eq!(report["sequences"][0]["already_there"], committed);
-    assert_eq!(report["images"], 400);
+    assert_eq!(report["images"], FRAMES);
+}
+
+#[test]
+fn poses_that_no_camera_can_have_are_refused_before_anything_is_stored() {
+    let own = tempfile::tempdir().unwrap();
+    let walk = part_of_walk(own.path(), "walk", 0..4);
+    let out = own.path().join("out.db");
+    for absurd in ["0 0 -0.5", "1e6 0 0.5", "1e200 0 0.5"] {
+        let rows: Vec<String> = fs::read_to_string(walk.join("groundtruth.tum"))
+            .unwrap()
+            .lines()
+            .filter(|line| !line.starts_with('#'))
+            .map(|line| {
+                let fields: Vec<&str> = line.split(' ').collect();
+                format!("{} {absurd} {}\n", fields[0], fields[4..].join(" "))
+            })
+            .collect();
+        let poses = own.path().join("poses.tum");
+        fs::write(&poses, rows.concat()).unwrap();
+        assert_fails(
+            &["build", shown(&walk), "--out", shown(&out), "--poses", shown(&poses)],
+            &["frame 0", "above the ground"],
+        );
+    }
+    let missing = own.path().join("missing.tum");
+    let untouched = own.path().join("untouched.db");
+    assert_fails(
+        &["build", shown(&walk), "--out", shown(&untouched), "--poses", shown(&missing)],
+        &["missing.tum"],
+    );
+    assert!(!untouched.exists());
+}
+
+/// One picture, and a robot that stood still and turned: no triangulation, and pictures all the same.
+#[test]
+fn the_smallest_databases_give_pictures() {
+    let own = tempfile::tempdir().unwrap();
+    let one = part_of_walk(own.path(), "one", 0..1);
+    let mut still = Sequence::open(&part_of_walk(own.path(), "still", 0..12)).unwrap();
+    for (frame, pose) in still.groundtruth.iter_mut().enumerate() {
+        *pose = pose.map(|pose| {
+            let yaw_rad = 0.5 * frame as f64;
+            pose.with_planar(reality_sim::Pose2::new(0.1, 0.2, yaw_rad))
+        });
+    }
+    still.write(&still.folder).unwrap();
+    let at = Sequence::open(&one).unwrap().groundtruth[0].unwrap();
+    for (sequence, pose) in
+        [(one, format!("{},{},0.6", at.x_m, at.y_m)), (still.folder, "0.1,0.2,0.7".to_owned())]
+    {
+        let database = sequence.with_extension("db");
+        let report = json(&["build", shown(&sequence), "--out", shown(&database)]);
+        assert!(report.get("hall").is_none(), "one place does not tell where walls are: {report}");
+        for method in ["nearest", "plane", "blend", "auto"] {
+            let out = own.path().join("out.png");
+            json(&[
+                "render",
+                shown(&database),
+                "--pose",
+                &pose,
+                "--method",
+                method,
+                "--out",
+                shown(&out),
+                "--best-effort",
+            ]);
+        }
+        json(&["info", shown(&database)]);
+    }
+}
+
+#[test]
+fn a_picture_is_black_where_the_lens_leaves_it_black_and_that_does_not_count() {
+    let own = tempfile::tempdir().unwrap();
+    let walk = part_of_walk(own.path(), "walk", 0..20);
+    let file = walk.join("camera.toml");
+    let camera = fs::read_to_string(&file).unwrap();
+    let circle = "image_circle = { cx = 319.5, cy = 239.5, radius = 185.0 }\n";
+    fs::write(&file, format!("{circle}{camera}")).unwrap();
+    let database = own.path().join("walk.db");
+    json(&["build", shown(&walk), "--out", shown(&database)]);
+    for method in ["quadratic", "plane", "blend"] {
+        let out = own.path().join("out.png");
+        let report = json(&[
+            "render",
+            shown(&database),
+            "--pose=-1.8,0.35,2.1",
+            "--method",
+            method,
+            "--out",
+            shown(&out),
+            "--best-effort",
+        ]);
+        let picture = image::open(&out).unwrap().into_rgb8();
+        for corner in [(2, 2), (637, 2), (2, 477), (637, 477), (319, 40)] {
+            assert_eq!(picture.get_pixel(corner.0, corner.1).0, [0; 3], "{method} {corner:?}");
+        }
+        assert!(report["covered"].as_f64().unwrap() > 0.6, "{method} {report}");
+    }
+}
+
+#[test]
+fn another_lens_is_drawn_and_another_size_has_no_nearest_picture() {
+    let own = tempfile::tempdir().unwrap();
+    let (_, database, _) = demonstration();
+    let (camera, out) = (own.path().join("camera.toml"), own.path().join("out.png"));
+    let lens = "model = 'PINHOLE'\nwidth = 200\nheight = 120\nfx = 120.0\nfy = 120.0\ncx = 99.5\ncy = 59.5\ndistortion = []\n";
+    fs::write(&camera, format!("{lens}[mount]\nheight_m = 0.5\n")).unwrap();
+    let render = |method: &'static str| {
+        [
+            "render",
+            shown(database),
+            "--pose",
+            "-2.05,0.9,1.6",
+            "--method",
+            method,
+            "--camera",
+            shown(&camera),
+            "--out",
+            shown(&out),
+        ]
+    };
+    for method in ["plane", "blend", "auto", "simulated"] {
+        json(&render(method));
+        assert_eq!(image::open(&out).unwrap().into_rgb8().dimensions(), (200, 120), "{method}");
+    }
+    assert_fails(&render("nearest"), &["200 x 120"]);
 }
 
 #[test]
 fn wrong_usage_exits_with_2() {
-    let (_, database, _) = demonstration();
+    let (folder, database, _) = demonstration();
     let database = shown(database);
     for arguments in [
         &["build", "--out", "x.db"][..],
@@ -414,7 +549,11 @@ fn wrong_usage_exits_with_2() {
         &["evaluate", database],
         &["info"],
     ] {
-        let output = program(arguments);
+        let output = Command::new(env!("CARGO_BIN_EXE_reality-sim"))
+            .current_dir(folder)
+            .args(arguments)
+            .output()
+            .unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", text(&output.stderr));
     }
 }

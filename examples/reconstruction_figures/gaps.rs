@@ -2,7 +2,7 @@
 
 use std::{fmt::Write, path::Path, sync::Arc};
 
-use image::RgbImage;
+use image::{RgbImage, imageops::thumbnail};
 use reality_sim::{
     ObservationKind, Sequence, TagConfig, Tagger,
     evaluation::{ErrorStatistics, PoseError},
@@ -17,6 +17,8 @@ use crate::{IMAGES, synthesizer};
 /// Parts, and pictures in each.
 const PARTS: usize = 5;
 const PICTURES: usize = 20;
+/// Side of the squares in which pictures are compared, pixels.
+const SQUARE_PX: u32 = 4;
 /// Pictures of a path in its strip.
 const SHOWN: usize = 8;
 
@@ -30,8 +32,8 @@ struct Row {
 #[derive(Default)]
 struct Sums {
     name: &'static str,
-    /// Mean change from picture to picture, grey levels, beyond that of the true pictures, one a step.
-    excess: Vec<f64>,
+    /// How differently from the true pictures they change from one to the next, grey levels, one a step.
+    wrong_change: Vec<f64>,
     gauss: Vec<PoseError>,
     contrast: Vec<PoseError>,
 }
@@ -46,11 +48,12 @@ pub fn write(walk: &Sequence, text: &mut String) -> anyhow::Result<()> {
             if sums.len() <= number {
                 sums.push(Sums { name: row.name, ..Default::default() });
             }
-            let excess = changes(&row.pictures)
-                .into_iter()
+            let wrong = changes(&row.pictures)
+                .iter()
                 .zip(&truth)
-                .map(|(change, truth)| (change - truth).max(0.0));
-            sums[number].excess.extend(excess);
+                .map(|(change, truth)| difference(change, truth))
+                .collect::<Vec<_>>();
+            sums[number].wrong_change.extend(wrong);
             sums[number].gauss.extend(tag(walk, first, row, ObservationKind::Gauss)?);
             sums[number].contrast.extend(tag(walk, first, row, ObservationKind::Contrast)?);
         }
@@ -61,17 +64,19 @@ pub fn write(walk: &Sequence, text: &mut String) -> anyhow::Result<()> {
     writeln!(
         text,
         "\n## Along a path\n\nOf `{}`, {PARTS} times {PICTURES} pictures in a row are left out and reconstructed from all others. \
-         Change: by how much two pictures in a row differ beyond what the true ones do, mean grey levels. Error: of the \
+         Wrong change: mean difference, grey levels, between how a picture differs from the one before and how the true \
+         ones do, in squares of 4 × 4 pixels, over which noise is averaged out: 0 for a path as smooth as the true one, the \
+         change of the truth itself for a picture that stands still. Error: of the \
          poses that the particle filter (800 particles, seed 0, from the true pose of the part's first picture) finds \
-         in these pictures.\n\n| pictures | change | mean error, `gauss` | mean error, `contrast` |\n|---|---|---|---|",
+         in these pictures.\n\n| pictures | wrong change | mean error, `gauss` | mean error, `contrast` |\n|---|---|---|---|",
         walk.name
     )?;
-    for Sums { name, excess, gauss, contrast } in &sums {
+    for Sums { name, wrong_change, gauss, contrast } in &sums {
         let cm = |errors: &[PoseError]| {
             ErrorStatistics::new(errors)
                 .map_or("–".to_owned(), |error| format!("{:.2} cm", 100.0 * error.mean_m))
         };
-        let change = excess.iter().sum::<f64>() / excess.len().max(1) as f64;
+        let change = wrong_change.iter().sum::<f64>() / wrong_change.len().max(1) as f64;
         writeln!(text, "| {name} | {change:.2} | {} | {} |", cm(gauss), cm(contrast))?;
     }
     text.push_str(
@@ -104,13 +109,18 @@ fn rows(walk: &Sequence, first: usize) -> anyhow::Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// Mean absolute difference of each picture from the one before, grey levels.
-fn changes(pictures: &[Arc<RgbImage>]) -> Vec<f64> {
-    let change = |pair: &[Arc<RgbImage>]| {
-        let differences = pair[0].iter().zip(pair[1].iter()).map(|(&a, &b)| f64::from(a.abs_diff(b)));
-        differences.sum::<f64>() / pair[0].len() as f64
+/// How each picture differs from the one before, in squares of pixels.
+fn changes(pictures: &[Arc<RgbImage>]) -> Vec<Vec<f64>> {
+    let small = |picture: &Arc<RgbImage>| {
+        let (width, height) = (picture.width() / SQUARE_PX, picture.height() / SQUARE_PX);
+        thumbnail(&**picture, width, height).iter().map(|&value| f64::from(value)).collect::<Vec<f64>>()
     };
-    pictures.windows(2).map(change).collect()
+    let small: Vec<Vec<f64>> = pictures.iter().map(small).collect();
+    small.windows(2).map(|pair| pair[1].iter().zip(&pair[0]).map(|(b, a)| b - a).collect()).collect()
+}
+
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum::<f64>() / a.len().max(1) as f64
 }
 
 /// Errors of the filter on pictures that stand for a part of a walk.

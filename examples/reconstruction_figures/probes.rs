@@ -15,7 +15,7 @@ use reality_sim::{
     synthesis::Blend,
 };
 
-use crate::{IMAGES, lines::displacements_px, synthesizer};
+use crate::{IMAGES, lines::Lines, synthesizer};
 
 /// Probes that are shown: from near to far.
 const SHOWN: usize = 5;
@@ -27,19 +27,18 @@ pub fn write(walk: &Sequence, probes: &Sequence, text: &mut String) -> anyhow::R
     let renderer = Renderer::new(&probes.setup, &walk.field, SceneColors::new(&probes.setup, &walk.field));
     let camera = &probes.setup.camera;
     let mut judged: Vec<Judged> = Vec::new();
-    let mut displacements: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    let mut lines: BTreeMap<&str, Lines> = BTreeMap::new();
     for (frame, pose) in probes.groundtruth.iter().enumerate() {
         let Some(pose) = *pose else { continue };
         let probe = judge(&synthesizer, &renderer, frame, pose, probes.load_image(frame)?)?;
-        let lines = |picture: &RgbImage| displacements_px(picture, camera, &walk.field, pose);
-        displacements.entry("true picture").or_default().extend(lines(&probe.truth));
+        lines.entry("true picture").or_default().add(&probe.truth, camera, &walk.field, pose);
         for (name, outcome) in &probe.outcomes {
-            displacements.entry(name).or_default().extend(lines(&outcome.picture));
+            lines.entry(name).or_default().add(&outcome.picture, camera, &walk.field, pose);
         }
         judged.push(probe);
     }
     coverage(walk, &synthesizer)?;
-    table(&judged, &mut displacements, text)?;
+    table(&judged, lines, text)?;
     judged.sort_by(|a, b| a.distance_px.partial_cmp(&b.distance_px).unwrap_or(std::cmp::Ordering::Equal));
     pictures(&judged, text)?;
     provenance(&synthesizer, probes, &judged, text)
@@ -54,23 +53,20 @@ fn coverage(walk: &Sequence, synthesizer: &Synthesizer) -> anyhow::Result<()> {
     Ok(write_atomically(&Path::new(IMAGES).join("coverage.svg"), svg.as_bytes())?)
 }
 
-fn table(
-    judged: &[Judged],
-    displacements: &mut BTreeMap<&str, Vec<f64>>,
-    text: &mut String,
-) -> anyhow::Result<()> {
+fn table(judged: &[Judged], mut lines: BTreeMap<&str, Lines>, text: &mut String) -> anyhow::Result<()> {
     text.push_str(
         "\nMeans over all probes; lines: median of how far a line lies from where the true pose puts it, and the 95th \
-         percentile, of lines found within 8 px; time: median of one picture with decoded neighbours.\n\n\
-         | method | PSNR of the field | PSNR | SSIM | lines | answered | time |\n|---|---|---|---|---|---|---|\n",
+         percentile, of lines found within 8 px, and the share found; time: median of one picture with decoded neighbours.\n\n\
+         | method | PSNR of the field | PSNR | SSIM | lines | lines found | answered | time |\n|---|---|---|---|---|---|---|---|\n",
     );
-    for values in displacements.values_mut() {
-        values.sort_by(f64::total_cmp);
-    }
+    lines.values_mut().for_each(|lines| lines.displacements_px.sort_by(f64::total_cmp));
     let lines = |name: &str| -> String {
-        let values = displacements.get(name).map(Vec::as_slice).unwrap_or_default();
-        let at = |share: f64| percentile(values, share).map_or("–".to_owned(), |px| format!("{px:.2}"));
-        format!("{} px, {} px", at(0.5), at(0.95))
+        let Some(Lines { displacements_px, projected }) = lines.get(name) else { return "–".to_owned() };
+        let at = |share: f64| {
+            percentile(displacements_px, share).map_or("–".to_owned(), |px| format!("{px:.2}"))
+        };
+        let found = 100.0 * displacements_px.len() as f64 / (*projected).max(1) as f64;
+        format!("{} px, {} px | {found:.0} %", at(0.5), at(0.95))
     };
     writeln!(text, "| true picture | | | | {} | | |", lines("true picture"))?;
     for name in names() {

@@ -11,21 +11,19 @@ use serde::Serialize;
 use serde_json::json;
 
 use reality_sim::{
-    Archive, Sequence, TagConfig, Tagger,
+    Archive, Sequence, TagConfig, TaggedFrame, Tagger,
     db::{Database, IngestReport, PoseEstimate, PoseSource},
     observation::ObservationKind,
     sequence::{match_poses, read_tum},
     synthesis::measure_hall,
     tag::{smooth_sequence, tag_sequence},
+    warp::Hall,
 };
 
 use super::{
     device::BackendArgs,
     output::{check_output_file, frame_progress, print, print_json},
 };
-
-/// Decoded pictures that the measuring of the hall may hold, bytes.
-const HALL_CACHE_BYTES: usize = 512 << 20;
 
 /// Options of `build`.
 #[derive(Debug, Args)]
@@ -64,9 +62,20 @@ struct Report {
     sequences: Vec<SequenceReport>,
     /// In the database now.
     images: usize,
-    /// Walls towards −x, −y, +x, +y, then the ceiling, metres from the field's centre.
+    /// Where it was measured now.
     #[serde(skip_serializing_if = "Option::is_none")]
-    hall_m: Option<[f64; 5]>,
+    hall: Option<HallReport>,
+}
+
+/// Walls, ceiling and goals, from the field's centre.
+#[derive(Serialize)]
+struct HallReport {
+    min_x_m: f64,
+    min_y_m: f64,
+    max_x_m: f64,
+    max_y_m: f64,
+    ceiling_m: f64,
+    goal_depth_m: f64,
 }
 
 #[derive(Serialize)]
@@ -100,28 +109,36 @@ pub fn run(args: &BuildArgs) -> anyhow::Result<()> {
         args.sequences.iter().map(|folder| Sequence::open(folder)).collect::<Result<_, _>>()?;
     let inputs: Vec<PathBuf> = sequences.iter().flat_map(|sequence| sequence.files.clone()).collect();
     check_output_file(&args.out, &inputs)?;
+    if args.out.exists() {
+        // Before the filter works for an hour: is it one?
+        drop(Database::create_or_open(&args.out)?);
+    }
+    // All poses are known before a database is made.
+    let poses: Vec<Poses> =
+        sequences.iter().map(|sequence| poses(args, sequence)).collect::<Result<_, _>>()?;
     let mut database = Database::create_or_open(&args.out)?;
     let mut reports = Vec::new();
-    for sequence in &sequences {
-        reports.push(add(args, sequence, &mut database)?);
+    for (sequence, poses) in sequences.iter().zip(&poses) {
+        reports.push(add(sequence, poses, &mut database)?);
     }
     let images = database.images()?.len();
-    let hall_m = if args.no_hall || images == 0 { None } else { store_hall(&args.out, &mut database)? };
-    let report = Report { database: args.out.display().to_string(), sequences: reports, images, hall_m };
+    let is_new = reports.iter().any(|report| report.added > 0) || database.halls()?.is_empty();
+    let hall = if args.no_hall || !is_new { None } else { store_hall(&args.out, &mut database)? };
+    let report = Report { database: args.out.display().to_string(), sequences: reports, images, hall };
     if args.json { print_json(&report) } else { print(&report.text()) }
 }
 
-fn add(args: &BuildArgs, sequence: &Sequence, database: &mut Database) -> anyhow::Result<SequenceReport> {
-    let (poses, source) = poses(args, sequence)?;
-    if poses.iter().all(Option::is_none) {
-        bail!(
-            "{}: the filter is sure of no picture's pose: give the poses with --poses, or take them all with --unsure",
-            sequence.folder.display()
-        );
-    }
+/// One pose a frame, where it has one, and where they are from.
+struct Poses {
+    estimates: Vec<Option<PoseEstimate>>,
+    source: PoseSource,
+}
+
+fn add(sequence: &Sequence, poses: &Poses, database: &mut Database) -> anyhow::Result<SequenceReport> {
+    let Poses { estimates, source } = poses;
     let progress = frame_progress(sequence.frames.len())?;
     let start = Instant::now();
-    let ingested = database.ingest(sequence, &poses, &source, |done| progress.set_position(done as u64));
+    let ingested = database.ingest(sequence, estimates, source, |done| progress.set_position(done as u64));
     progress.finish_and_clear();
     let IngestReport { added, already_there, without_pose } = ingested?;
     let images_per_second = added as f64 / start.elapsed().as_secs_f64();
@@ -129,8 +146,7 @@ fn add(args: &BuildArgs, sequence: &Sequence, database: &mut Database) -> anyhow
     Ok(SequenceReport { name, poses: source.kind(), added, already_there, without_pose, images_per_second })
 }
 
-/// One pose a frame, where it has one, and where they are from.
-fn poses(args: &BuildArgs, sequence: &Sequence) -> anyhow::Result<(Vec<Option<PoseEstimate>>, PoseSource)> {
+fn poses(args: &BuildArgs, sequence: &Sequence) -> anyhow::Result<Poses> {
     let known = |pose| PoseEstimate { pose, covariance: None };
     if let Some(file) = &args.poses {
         let poses = match_poses(file, read_tum(file)?, &sequence.frames)?;
@@ -138,20 +154,19 @@ fn poses(args: &BuildArgs, sequence: &Sequence) -> anyhow::Result<(Vec<Option<Po
             bail!("{}: holds no poses: make it with `tag --out`", file.display());
         }
         let name = file.display().to_string();
-        return Ok((poses.into_iter().map(|pose| pose.map(known)).collect(), PoseSource::File { name }));
+        let estimates = poses.into_iter().map(|pose| pose.map(known)).collect();
+        return Ok(Poses { estimates, source: PoseSource::File { name } });
     }
     let truth = &sequence.groundtruth;
     if !args.tag && truth.iter().any(Option::is_some) {
-        return Ok((truth.iter().map(|pose| pose.map(known)).collect(), PoseSource::GroundTruth));
+        let estimates = truth.iter().map(|pose| pose.map(known)).collect();
+        return Ok(Poses { estimates, source: PoseSource::GroundTruth });
     }
     tagged_poses(args, sequence)
 }
 
 /// Poses by the filter, of the whole recording together.
-fn tagged_poses(
-    args: &BuildArgs,
-    sequence: &Sequence,
-) -> anyhow::Result<(Vec<Option<PoseEstimate>>, PoseSource)> {
+fn tagged_poses(args: &BuildArgs, sequence: &Sequence) -> anyhow::Result<Poses> {
     let mut config = TagConfig::new(ObservationKind::Contrast);
     config.filter.seed = args.seed;
     let device = args.backend.device()?;
@@ -173,8 +188,14 @@ fn tagged_poses(
             PoseEstimate { pose: tagged[index].pose, covariance: tagged[index].fit.map(|fit| fit.covariance) }
         }
     };
-    let poses =
-        tagged.iter().enumerate().map(|(index, frame)| (frame.sure || args.unsure).then(|| estimate(index)));
+    let taken = |(index, frame): (usize, &TaggedFrame)| (frame.sure || args.unsure).then(|| estimate(index));
+    let estimates: Vec<_> = tagged.iter().enumerate().map(taken).collect();
+    if estimates.iter().all(Option::is_none) {
+        bail!(
+            "{}: the filter is sure of no picture's pose: give the poses with --poses, or take them all with --unsure",
+            sequence.folder.display()
+        );
+    }
     let settings = json!({
         "program": concat!("reality-sim ", env!("CARGO_PKG_VERSION")),
         "observation": config.observation.kind,
@@ -185,15 +206,23 @@ fn tagged_poses(
         "backend": device.name,
         "smoothed": smoothed.is_some(),
     });
-    Ok((poses.collect(), PoseSource::Filter { settings: settings.to_string() }))
+    Ok(Poses { estimates, source: PoseSource::Filter { settings: settings.to_string() } })
 }
 
 /// Measures the hall around the field that most images show, and keeps it.
-fn store_hall(path: &Path, database: &mut Database) -> anyhow::Result<Option<[f64; 5]>> {
-    let archive = Archive::open(path, HALL_CACHE_BYTES)?;
+fn store_hall(path: &Path, database: &mut Database) -> anyhow::Result<Option<HallReport>> {
+    let archive = Archive::open(path, 0)?;
     let Some(hall) = measure_hall(&archive)? else { return Ok(None) };
     database.set_hall(archive.images()[0].field_id, &hall)?;
-    Ok(Some([hall.min_m.x, hall.min_m.y, hall.max_m.x, hall.max_m.y, hall.ceiling_m]))
+    let Hall { min_m, max_m, ceiling_m, goal_depth_m } = hall;
+    Ok(Some(HallReport {
+        min_x_m: min_m.x,
+        min_y_m: min_m.y,
+        max_x_m: max_m.x,
+        max_y_m: max_m.y,
+        ceiling_m,
+        goal_depth_m,
+    }))
 }
 
 impl Report {
@@ -214,10 +243,10 @@ impl Report {
                 lines.push(("", format!("{without_pose} left out: no pose, or not sure")));
             }
         }
-        if let Some([left, back, right, front, ceiling]) = self.hall_m {
+        if let Some(HallReport { min_x_m, min_y_m, max_x_m, max_y_m, ceiling_m, .. }) = &self.hall {
             lines.push((
                 "hall",
-                format!("x {left:.1} to {right:.1} m, y {back:.1} to {front:.1} m, ceiling {ceiling:.1} m"),
+                format!("x {min_x_m:.1} to {max_x_m:.1} m, y {min_y_m:.1} to {max_y_m:.1} m, ceiling {ceiling_m:.1} m"),
             ));
         }
         lines.push(("database", format!("{}, {} pictures", self.database, self.images)));

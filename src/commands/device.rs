@@ -10,7 +10,7 @@ use reality_sim::backend::{Backend, CpuBackend};
 /// Where to compute.
 #[derive(Debug, Args)]
 pub struct BackendArgs {
-    /// Where the particles are weighed: auto takes a graphics card where there is one
+    /// Where to compute: auto takes a graphics card where there is one
     #[arg(long, value_enum, default_value = "auto")]
     backend: Choice,
     /// The graphics adapter whose name contains this; `reality-sim doctor` lists them

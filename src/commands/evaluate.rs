@@ -16,7 +16,7 @@ use reality_sim::{
 };
 
 use super::{
-    output::{check_output_file, create_output_folder, frame_progress, print, print_json},
+    output::{check_distinct, check_output_file, create_output_folder, frame_progress, print, print_json},
     picture_at::SynthesisArgs,
 };
 
@@ -44,7 +44,9 @@ pub struct EvaluateArgs {
 struct Report {
     database: String,
     probes: usize,
-    /// Images in the database.
+    /// Of them at the very pose of a recorded image: their figures mean nothing.
+    probes_in_database: usize,
+    /// Images of the field that they are made from.
     images: usize,
     /// By method.
     methods: BTreeMap<&'static str, MethodReport>,
@@ -64,6 +66,7 @@ pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
     if probes.groundtruth.iter().all(Option::is_none) {
         bail!("{}: has no ground truth: the poses of probes must be known", args.probes.display());
     }
+    check_poses(args, &probes)?;
     check_outputs(args, &probes)?;
     let synthesizer = args.synthesis.synthesizer(archive.clone(), Some(probes.setup.camera.clone()))?;
     let renderer =
@@ -91,10 +94,23 @@ pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
     if args.json { print_json(&report) } else { print(&report.text()) }
 }
 
+/// No camera was where some ground truths say it was.
+fn check_poses(args: &EvaluateArgs, probes: &Sequence) -> anyhow::Result<()> {
+    let is_impossible = |pose: &Option<CameraPose>| pose.is_some_and(|pose| !pose.is_possible());
+    match probes.groundtruth.iter().position(is_impossible) {
+        Some(frame) => bail!(
+            "{}: the ground truth of frame {frame} is none that a camera can have (above the ground, within 200 m): correct it, or leave it out",
+            args.probes.display()
+        ),
+        None => Ok(()),
+    }
+}
+
 fn check_outputs(args: &EvaluateArgs, probes: &Sequence) -> anyhow::Result<()> {
     let mut inputs = probes.files.clone();
     inputs.extend(probes.frames.iter().map(|frame| probes.folder.join(&frame.image)));
     inputs.push(args.database.clone());
+    check_distinct(&[&args.details, &args.pictures].into_iter().flatten().collect::<Vec<_>>())?;
     args.details.as_ref().map_or(Ok(()), |file| check_output_file(file, &inputs))?;
     args.pictures.as_ref().map_or(Ok(()), |folder| create_output_folder(folder, &inputs))
 }
@@ -139,6 +155,10 @@ impl Report {
         Self {
             database: args.database.display().to_string(),
             probes: judged.len(),
+            probes_in_database: judged
+                .iter()
+                .filter(|probe| probe.distance_px.is_some_and(|px| px < 1e-3))
+                .count(),
             images: archive.images().len(),
             methods: names().map(|name| (name, MethodReport::new(name, judged))).collect(),
         }
@@ -146,6 +166,14 @@ impl Report {
 
     fn text(&self) -> String {
         let mut text = format!("{} probes, {} images in {}\n\n", self.probes, self.images, self.database);
+        if self.probes_in_database > 0 {
+            // Writing into a string cannot fail.
+            let _ = writeln!(
+                text,
+                "{} probes are in the database: leave them out of it\n",
+                self.probes_in_database
+            );
+        }
         text.push_str("method      PSNR of the field    PSNR    SSIM       time  answered\n");
         let shown = |value: Option<f64>, digits: usize| {
             value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))

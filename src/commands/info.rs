@@ -2,6 +2,7 @@
 
 use std::{collections::BTreeMap, fs, path::PathBuf};
 
+use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
 
@@ -42,7 +43,7 @@ struct Report {
     images: usize,
     sequences: Vec<SequenceReport>,
     cameras: Vec<CameraReport>,
-    fields: Vec<String>,
+    fields: Vec<FieldReport>,
     pose_sources: Vec<PoseSourceReport>,
     /// Where there are images.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -62,6 +63,13 @@ struct CameraReport {
     model: &'static str,
     width: u32,
     height: u32,
+    images: usize,
+}
+
+/// Pictures are given of the field that most images show.
+#[derive(Serialize)]
+struct FieldReport {
+    name: String,
     images: usize,
 }
 
@@ -90,6 +98,9 @@ struct CoverageReport {
 /// Runs the command.
 pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
     if let Some(file) = &args.coverage {
+        if file.extension().is_none_or(|ending| ending != "svg") {
+            bail!("{}: the chart is an SVG file: give a name that ends in .svg", file.display());
+        }
         check_output_file(file, std::slice::from_ref(&args.database))?;
     }
     let database = Database::open(&args.database)?;
@@ -98,12 +109,14 @@ pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
         Ok(archive) => {
             Some((Coverage::new(archive.index(), archive.field(), archive.usual_pose(), CELL_M), archive))
         }
-        Err(SynthesisError::Empty { .. }) if args.coverage.is_none() => None,
+        Err(SynthesisError::Empty { .. } | SynthesisError::BlindCamera { .. }) if args.coverage.is_none() => {
+            None
+        }
         Err(error) => return Err(error.into()),
     };
     if let (Some(file), Some((coverage, archive))) = (&args.coverage, &coverage) {
         let name = args.database.file_name().unwrap_or_default().to_string_lossy();
-        let title = format!("{name}: {} pictures", images.len());
+        let title = format!("{name}: {} pictures", archive.images().len());
         write_atomically(file, coverage_svg(coverage, archive.field(), &title).as_bytes())?;
     }
     let report = Report::new(args, &database, &images, coverage.as_ref().map(|(coverage, _)| coverage))?;
@@ -137,7 +150,14 @@ impl Report {
                     images: count(&|image| image.camera_id == *id),
                 })
                 .collect(),
-            fields: database.fields()?.into_values().map(|field| field.name).collect(),
+            fields: database
+                .fields()?
+                .into_iter()
+                .map(|(id, field)| FieldReport {
+                    name: field.name,
+                    images: count(&|image| image.field_id == id),
+                })
+                .collect(),
             pose_sources: pose_sources
                 .iter()
                 .map(|(id, source)| PoseSourceReport {
@@ -168,7 +188,9 @@ impl Report {
         for CameraReport { model, width, height, images } in &self.cameras {
             lines.push(("camera", format!("{model}, {width} × {height}: {images} pictures")));
         }
-        lines.extend(self.fields.iter().map(|name| ("field", name.clone())));
+        let field =
+            |FieldReport { name, images }: &FieldReport| ("field", format!("{name}: {images} pictures"));
+        lines.extend(self.fields.iter().map(field));
         for PoseSourceReport { kind, description, images } in &self.pose_sources {
             let gap = if description.is_empty() { "" } else { ", " };
             lines.push(("poses", format!("{kind}{gap}{description}: {images} pictures")));

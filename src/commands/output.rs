@@ -43,6 +43,28 @@ pub fn create_output_folder(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<(
     Ok(())
 }
 
+/// Checks, as [`check_output_file`], a file that a picture will be written to: its name says in which format.
+pub fn check_output_picture(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<()> {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    if !["png", "jpg", "jpeg"].contains(&ending.as_str()) {
+        bail!(
+            "{}: is not the name of a PNG or JPEG picture: give one that ends in .png or .jpg",
+            path.display()
+        );
+    }
+    check_output_file(path, inputs)
+}
+
+/// Refuses two outputs of one name.
+pub fn check_distinct(outputs: &[&PathBuf]) -> anyhow::Result<()> {
+    for (index, output) in outputs.iter().enumerate() {
+        if outputs[..index].contains(output) {
+            bail!("{}: is given for two outputs: give each a name of its own", output.display());
+        }
+    }
+    Ok(())
+}
+
 /// Prints one JSON object on standard output.
 pub fn print_json(report: &impl Serialize) -> anyhow::Result<()> {
     print(&format!("{}\n", serde_json::to_string_pretty(report)?))

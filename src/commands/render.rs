@@ -1,8 +1,11 @@
 //! `reality-sim render`: the picture at a pose, or those along a path.
 
-use std::{path::PathBuf, time::Instant};
+use std::{
+    path::{Path, PathBuf},
+    time::Instant,
+};
 
-use anyhow::bail;
+use anyhow::{Context, bail};
 use clap::{Args, ValueEnum};
 use image::{DynamicImage, RgbImage};
 use serde::Serialize;
@@ -16,7 +19,7 @@ use reality_sim::{
 };
 
 use super::{
-    output::{check_output_file, create_output_folder, frame_progress, print, print_json},
+    output::{check_distinct, check_output_picture, create_output_folder, frame_progress, print, print_json},
     picture_at::SynthesisArgs,
 };
 
@@ -106,7 +109,7 @@ fn wanted_pose(text: &str) -> Result<WantedPose, String> {
 struct Report {
     method: &'static str,
     pictures: usize,
-    /// Median of one picture, its neighbours decoded, writing excluded.
+    /// Of one picture with its neighbours decoded; along a path the median, decoding included. Writing is not.
     milliseconds: f64,
     /// Share of the pixels that some recorded picture shows: the mean over the pictures.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -131,24 +134,42 @@ enum Painter<'a> {
     Simulated(Box<Renderer>),
 }
 
-/// A picture, with where it came from where it was recorded.
+/// A picture.
 struct Painted {
-    picture: RgbImage,
-    reconstruction: Option<Reconstruction>,
+    work: Work,
     milliseconds: f64,
+}
+
+/// With where it came from, or without.
+enum Work {
+    Reconstructed(Reconstruction),
+    Drawn(RgbImage),
+}
+
+impl Work {
+    fn picture(&self) -> &RgbImage {
+        match self {
+            Self::Reconstructed(reconstruction) => &reconstruction.picture,
+            Self::Drawn(picture) => picture,
+        }
+    }
+
+    fn covered(&self) -> Option<f64> {
+        match self {
+            Self::Reconstructed(reconstruction) => Some(reconstruction.covered()),
+            Self::Drawn(_) => None,
+        }
+    }
 }
 
 impl Painter<'_> {
     fn paint(&self, pose: CameraPose) -> anyhow::Result<Painted> {
         let start = Instant::now();
-        let (picture, reconstruction) = match self {
-            Self::Recorded(synthesizer, method) => {
-                let reconstruction = synthesizer.image_at(pose, *method)?;
-                (reconstruction.picture.clone(), Some(reconstruction))
-            }
-            Self::Simulated(renderer) => (renderer.draw(pose)?, None),
+        let work = match self {
+            Self::Recorded(synthesizer, method) => Work::Reconstructed(synthesizer.image_at(pose, *method)?),
+            Self::Simulated(renderer) => Work::Drawn(renderer.draw(pose)?),
         };
-        Ok(Painted { picture, reconstruction, milliseconds: 1e3 * start.elapsed().as_secs_f64() })
+        Ok(Painted { work, milliseconds: 1e3 * start.elapsed().as_secs_f64() })
     }
 }
 
@@ -187,7 +208,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
         }
     };
     let report = match &args.path {
-        Some(_) => along_path(args, &painter, &poses)?,
+        Some(path) => along_path(args, path, &painter, &poses)?,
         None => at_pose(args, &painter, &archive, poses[0])?,
     };
     if args.json { print_json(&report) } else { print(&report.text()) }
@@ -219,14 +240,19 @@ fn check_outputs(args: &RenderArgs) -> anyhow::Result<()> {
         .flatten()
         .cloned()
         .collect();
+    let beside = [&args.origins, &args.trust, &args.strip].into_iter().flatten();
+    check_distinct(&std::iter::once(&args.out).chain(beside.clone()).collect::<Vec<_>>())?;
+    beside.clone().try_for_each(|output| check_output_picture(output, &inputs))?;
     match args.path {
-        Some(_) => create_output_folder(&args.out, &inputs)?,
-        None => check_output_file(&args.out, &inputs)?,
+        Some(_) => {
+            create_output_folder(&args.out, &inputs)?;
+            let inside = args.strip.as_ref().filter(|strip| strip.parent() == Some(&args.out));
+            inside.map_or(Ok(()), |strip| {
+                bail!("{}: lies among the pictures of the path: give another folder", strip.display())
+            })
+        }
+        None => check_output_picture(&args.out, &inputs),
     }
-    [&args.origins, &args.trust, &args.strip]
-        .into_iter()
-        .flatten()
-        .try_for_each(|output| check_output_file(output, &inputs))
 }
 
 fn at_pose(
@@ -237,8 +263,8 @@ fn at_pose(
 ) -> anyhow::Result<Report> {
     painter.paint(pose)?;
     // Once more, for the time that it takes when the neighbours are decoded.
-    let Painted { picture, reconstruction, milliseconds } = painter.paint(pose)?;
-    save_image(&args.out, &picture)?;
+    let Painted { work, milliseconds } = painter.paint(pose)?;
+    save_image(&args.out, work.picture())?;
     let mut report = Report {
         method: args.method.name(),
         pictures: 1,
@@ -247,7 +273,7 @@ fn at_pose(
         used: Vec::new(),
         out: args.out.display().to_string(),
     };
-    if let Some(reconstruction) = reconstruction {
+    if let Work::Reconstructed(reconstruction) = work {
         if let Some(file) = &args.origins {
             save_image(file, &reconstruction.origin_picture())?;
         }
@@ -275,18 +301,25 @@ fn used(archive: &Archive, reconstruction: &Reconstruction) -> anyhow::Result<Ve
     Ok(reconstruction.used.iter().map(report).collect())
 }
 
-fn along_path(args: &RenderArgs, painter: &Painter, poses: &[CameraPose]) -> anyhow::Result<Report> {
+fn along_path(
+    args: &RenderArgs,
+    path: &Path,
+    painter: &Painter,
+    poses: &[CameraPose],
+) -> anyhow::Result<Report> {
     let progress = frame_progress(poses.len())?;
     let mut times = Vec::new();
     let mut covered = Vec::new();
     let mut shown = Vec::new();
     for (index, &pose) in poses.iter().enumerate() {
-        let painted = painter.paint(pose).inspect_err(|_| progress.finish_and_clear())?;
-        save_image(&args.out.join(format!("{index:06}.png")), &painted.picture)?;
-        times.push(painted.milliseconds);
-        covered.extend(painted.reconstruction.as_ref().map(Reconstruction::covered));
+        let painted = painter.paint(pose).inspect_err(|_| progress.finish_and_clear());
+        let Painted { work, milliseconds } =
+            painted.with_context(|| format!("{}, pose {}", path.display(), index + 1))?;
+        save_image(&args.out.join(format!("{index:06}.png")), work.picture())?;
+        times.push(milliseconds);
+        covered.extend(work.covered());
         if is_in_strip(index, poses.len()) {
-            shown.push(painted.picture);
+            shown.push(work.picture().clone());
         }
         progress.inc(1);
     }

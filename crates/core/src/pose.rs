@@ -11,6 +11,9 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
+/// No camera is farther from the centre of the field that it looks at, metres: the largest field is 200 m long.
+pub const FARTHEST_M: f64 = 200.0;
+
 /// An angle in radians, wrapped to (−π, π].
 pub fn wrap_angle(angle_rad: f64) -> f64 {
     let wrapped = (angle_rad + PI).rem_euclid(TAU) - PI;
@@ -174,6 +177,12 @@ impl CameraPose {
     /// The rotation as a unit quaternion, world from camera, as TUM files store it.
     pub fn quaternion_world_from_camera(self) -> DQuat {
         DQuat::from_mat3(&self.rotation_world_from_camera())
+    }
+
+    /// Whether a camera above a field can be there: finite, above the ground, and no farther than [`FARTHEST_M`] from
+    /// the field's centre.
+    pub fn is_possible(self) -> bool {
+        self.is_finite() && self.height_m > 0.0 && self.position_in_world().length() <= FARTHEST_M
     }
 
     /// True where every coordinate is a finite number.

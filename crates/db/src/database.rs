@@ -128,6 +128,10 @@ impl Database {
         if !self.is_writer {
             return Err(fail(DbFault::OpenedForReading));
         }
+        if self.fields()?.get(&field_id).is_none_or(|field| !hall.holds(field)) {
+            let problem = "it does not hold its field";
+            return Err(fail(DbFault::BadRow { table: "hall", id: field_id, problem }));
+        }
         let Hall { min_m, max_m, ceiling_m, goal_depth_m } = *hall;
         let values = params![field_id, min_m.x, min_m.y, max_m.x, max_m.y, ceiling_m, goal_depth_m];
         let connection = self.connection.lock().unwrap_or_else(PoisonError::into_inner);

@@ -143,11 +143,11 @@ pub enum DbFault {
         /// Frames of the sequence.
         expected: usize,
     },
-    /// A pose or covariance with NaN or infinity.
+    /// A pose that no camera can have, see [`reality_sim_core::pose::CameraPose::is_possible`], or a covariance with NaN or infinity.
     #[error(
-        "the pose given for frame {frame_index} is not made of finite numbers: correct it, or leave it out"
+        "the pose given for frame {frame_index} is none that a camera can have (finite numbers, above the ground, within 200 m): correct it, or leave it out"
     )]
-    PoseNotFinite {
+    PoseImpossible {
         /// Of the frame, from 0.
         frame_index: usize,
     },

@@ -75,8 +75,8 @@ fn check_poses(sequence: &Sequence, poses: &[Option<PoseEstimate>]) -> Result<()
     if found != expected {
         return Err(DbFault::PoseCount { found, expected });
     }
-    let is_bad = |estimate: &Option<PoseEstimate>| estimate.is_some_and(|estimate| !estimate.is_finite());
-    poses.iter().position(is_bad).map_or(Ok(()), |frame_index| Err(DbFault::PoseNotFinite { frame_index }))
+    let is_bad = |estimate: &Option<PoseEstimate>| estimate.is_some_and(|estimate| !estimate.is_possible());
+    poses.iter().position(is_bad).map_or(Ok(()), |frame_index| Err(DbFault::PoseImpossible { frame_index }))
 }
 
 /// What is added, and the texts it shares.

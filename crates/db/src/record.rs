@@ -17,10 +17,10 @@ pub struct PoseEstimate {
 }
 
 impl PoseEstimate {
-    /// Whether no number is NaN or infinite.
-    pub(crate) fn is_finite(&self) -> bool {
+    /// Whether a camera can be there, and no number of the covariance is NaN or infinite.
+    pub(crate) fn is_possible(&self) -> bool {
         let covariance = self.covariance.iter().flat_map(Matrix6::iter);
-        self.pose.is_finite() && covariance.copied().all(f64::is_finite)
+        self.pose.is_possible() && covariance.copied().all(f64::is_finite)
     }
 }
 
@@ -123,8 +123,8 @@ impl ImageRecord {
     /// What is wrong with its numbers, if anything.
     pub(crate) fn problem(&self) -> Option<&'static str> {
         let estimate = PoseEstimate { pose: self.pose, covariance: self.covariance };
-        if !estimate.is_finite() {
-            Some("its pose is not made of finite numbers")
+        if !estimate.is_possible() {
+            Some("no camera can have its pose")
         } else if !self.timestamp_s.is_finite() {
             Some("its time is not a finite number")
         } else {

@@ -91,7 +91,7 @@ impl GpuWarper {
         let color = |[word, _]: &WarpedWords| [*word as u8, (word >> 8) as u8, (word >> 16) as u8];
         let warped =
             Warped { colors: words.iter().map(color).collect(), origins: words.iter().map(origin).collect() };
-        Ok(warped.filled(target.rays.width as usize))
+        Ok(warped.filled(target.rays))
     }
 
     fn words(

@@ -54,7 +54,7 @@ pub fn compare_warps(context: &Arc<GpuContext>, scenes: u64) -> Result<WarpCompa
     let mut comparison = WarpComparison::default();
     for seed in 0..scenes {
         let scene = Scene::new(seed, &cameras);
-        let hull = Hull::new(&Hall::usual(&field), &field).holding(scene.pose, 0.3);
+        let hull = Hull::new(&Hall::usual(&field), &field).holding(scene.pose);
         let target =
             Target { rays: &tables[scene.camera], placement: Placement::new(scene.pose), hull: &hull };
         let sources: Vec<Source> =

@@ -18,9 +18,6 @@ use reality_sim_db::{
 
 use crate::{SynthesisError, cache::PictureCache};
 
-/// Room around every camera inside the hull, metres.
-const ROOM_M: f64 = 0.3;
-
 /// Recorded images by pose. Threads share one.
 #[derive(Debug)]
 pub struct Archive {
@@ -57,7 +54,7 @@ impl Archive {
             .ok_or_else(|| SynthesisError::BlindCamera { database: path.display().to_string() })?;
         let hall = database.halls()?.remove(&field_id).unwrap_or_else(|| Hall::usual(&field));
         let hull = Hull::new(&hall, &field);
-        let hull = poses.iter().fold(hull, |hull, pose| hull.holding(*pose, ROOM_M));
+        let hull = poses.iter().fold(hull, |hull, pose| hull.holding(*pose));
         let index = PoseIndex::new(metric, poses);
         let cache = PictureCache::new(cache_bytes);
         Ok(Self { database, images, cameras, setup, field, hull, index, cache })
@@ -139,7 +136,8 @@ impl Archive {
 fn most_common(ids: impl Iterator<Item = i64>) -> Option<i64> {
     let mut counts: BTreeMap<i64, usize> = BTreeMap::new();
     ids.for_each(|id| *counts.entry(id).or_default() += 1);
-    counts.into_iter().max_by_key(|(_, count)| *count).map(|(id, _)| id)
+    // Of equals the first one.
+    counts.into_iter().max_by_key(|(id, count)| (*count, std::cmp::Reverse(*id))).map(|(id, _)| id)
 }
 
 fn usual_pose(poses: &[CameraPose]) -> CameraPose {

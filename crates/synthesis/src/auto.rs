@@ -17,9 +17,11 @@ impl Method for Auto {
     }
 
     fn reconstruct(&self, from: &Synthesizer, pose: CameraPose) -> Result<Reconstruction, SynthesisError> {
-        let nearest = from.nearest(pose, 1)?[0];
-        let is_recorded =
-            nearest.distance_px <= RECORDED_PX && from.archive().camera_of(nearest.image) == from.camera();
+        let is_like = |image| from.archive().camera_of(image) == from.camera();
+        let near = from.nearest(pose, from.config().candidates)?;
+        let mut recorded = near.iter().take_while(|neighbour| neighbour.distance_px <= RECORDED_PX);
+        // The nearest of the size is then the nearest of the lens, or as near to half a pixel.
+        let is_recorded = recorded.any(|neighbour| is_like(neighbour.image));
         if is_recorded { Nearest.reconstruct(from, pose) } else { Blend.reconstruct(from, pose) }
     }
 }

@@ -1,6 +1,9 @@
 //! Why there is no picture at a pose.
 
-use reality_sim_core::{backend::BackendError, pose::CameraPose};
+use reality_sim_core::{
+    backend::BackendError,
+    pose::{CameraPose, FARTHEST_M},
+};
 use reality_sim_db::{DbError, index::NoNeighbours};
 
 /// A picture that cannot be given.
@@ -16,7 +19,9 @@ pub enum SynthesisError {
         database: String,
     },
     /// The camera that took most images cannot be used to measure distances.
-    #[error("{database}: the camera sees too little of the field for distances between poses")]
+    #[error(
+        "{database}: the camera sees too little of the field for distances between poses: give another camera to the recording, and build the database anew"
+    )]
     BlindCamera {
         /// Its file.
         database: String,
@@ -42,23 +47,30 @@ pub enum SynthesisError {
         /// Share of the pixels, 0 to 1.
         needed: f64,
     },
-    /// The pose is one that no camera above the carpet can have.
-    #[error("{}: the camera must be above the ground, and within {limit_m:.0} m of the field's centre", shown(.pose))]
+    /// The pose is one that no camera above the field can have.
+    #[error(
+        "{}: a camera is above the ground and within {FARTHEST_M:.0} m of the field's centre: give another pose",
+        shown(.pose)
+    )]
     ImpossiblePose {
         /// The pose asked for.
         pose: CameraPose,
-        /// Metres.
-        limit_m: f64,
     },
-    /// Too little of the ground is seen both from the pose and in the neighbour.
-    #[error("{}: the nearest picture shares {found} points of the ground with this pose, {needed} are needed: use another method", shown(.pose))]
+    /// No image near the pose has the size of the camera wanted.
+    #[error("{}: no picture near it has {width} x {height} pixels: use `plane` or `blend`", shown(.pose))]
+    OtherSize {
+        /// The pose asked for.
+        pose: CameraPose,
+        /// Pixels.
+        width: u32,
+        /// Pixels.
+        height: u32,
+    },
+    /// The points of the ground that both see do not determine a polynomial.
+    #[error("{}: the nearest picture and this pose have too few points of the ground in common: use `plane` or `blend`", shown(.pose))]
     TooFewPoints {
         /// The pose asked for.
         pose: CameraPose,
-        /// Points found.
-        found: usize,
-        /// Points needed.
-        needed: usize,
     },
     /// The device that draws has failed.
     #[error(transparent)]
@@ -68,10 +80,19 @@ pub enum SynthesisError {
 impl SynthesisError {
     /// Whether there is no picture because too little was recorded near the pose: nothing is broken.
     pub fn is_refusal(&self) -> bool {
-        matches!(self, Self::NoNeighbours { .. } | Self::TooLittleSeen { .. } | Self::TooFewPoints { .. })
+        matches!(
+            self,
+            Self::NoNeighbours { .. }
+                | Self::TooLittleSeen { .. }
+                | Self::TooFewPoints { .. }
+                | Self::OtherSize { .. }
+        )
     }
 }
 
+/// Large numbers in few digits.
 fn shown(pose: &CameraPose) -> String {
-    format!("pose {:.2} m, {:.2} m, {:.2} rad", pose.x_m, pose.y_m, pose.yaw_rad)
+    let number = |value: f64| if value.abs() < 1e6 { format!("{value:.2}") } else { format!("{value:.1e}") };
+    let [x, y, yaw, height] = [pose.x_m, pose.y_m, pose.yaw_rad, pose.height_m].map(number);
+    format!("pose {x} m, {y} m, {yaw} rad, height {height} m")
 }

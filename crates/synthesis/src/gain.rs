@@ -1,7 +1,8 @@
 //! Brightness of neighbours brought together: exposure and white balance differ from picture to picture.
 //!
 //! For every pair of neighbours and every channel, the median of the ratios of their colours at the places that both see;
-//! from these, by least squares, a factor for each neighbour. Their geometric mean is 1.
+//! from these, by least squares, a factor for each neighbour. Their geometric mean is 1 but for
+//! those that are cut off.
 
 use nalgebra::{DMatrix, DVector};
 use reality_sim_core::warp::{Source, Target, glimpses};

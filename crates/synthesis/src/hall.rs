@@ -4,22 +4,33 @@
 //! [`Hull`]. One measure after the other is moved to where the mean difference, cut off so that what stands in
 //! front does not decide, is least (coordinate descent), first in coarse steps, then in finer ones.
 
+use std::sync::Arc;
+
+use image::imageops::{FilterType, resize};
 use rayon::prelude::*;
-use reality_sim_core::warp::{BlendWeights, Hall, Hull, Placement, RayTable, Source, Target, glimpses};
-use reality_sim_db::index::ImageIndex;
+use reality_sim_core::{
+    camera::{Camera, ImageCircle, KernelCamera},
+    warp::{BlendWeights, Hall, Hull, Picture, Placement, RayTable, Source, Target, glimpses},
+};
 
 use crate::{Archive, SynthesisError, select::select};
 
-/// Pictures that are compared with others.
-const TARGETS: usize = 60;
+/// Pictures of the recording that are looked at.
+const VIEWS: usize = 120;
+/// Of these, every so many-th is compared with others.
+const TARGET_STEP: usize = 2;
 /// Pictures that each is compared with.
 const PARTNERS: usize = 3;
 /// Partners stand at least this far away, metres: from one place all distances look alike.
 const BASELINE_M: f64 = 0.5;
+/// Pictures are looked at no wider than this, pixels: noise and memory shrink.
+const WIDTH: u32 = 320;
 /// Differences of colour are cut off here, grey levels.
 const CUT: f32 = 40.0;
-/// With fewer pictures nothing is measured.
-const LEAST_IMAGES: usize = 12;
+/// With fewer places compared nothing is measured.
+const LEAST_PLACES: f32 = 1000.0;
+/// A measure is left as it usually is unless moving it back makes pictures differ by so much more, grey levels.
+const EVIDENCE: f32 = 0.05;
 /// From the coarsest step to the finest, metres.
 const STEPS_M: [f64; 5] = [0.8, 0.4, 0.2, 0.1, 0.05];
 /// Rounds over all measures for each step, at most.
@@ -29,121 +40,176 @@ const LEAST_M: f64 = 0.1;
 /// No wall stands farther from the carpet, and no ceiling hangs higher, metres.
 const MOST_M: f64 = 12.0;
 
-/// Measures the hall around an archive's field. `None` where there are too few pictures to tell.
+/// Measures the hall around an archive's field. `None` where the pictures do not tell: too few, or all from one place.
 pub fn measure_hall(archive: &Archive) -> Result<Option<Hall>, SynthesisError> {
-    if archive.images().len() < LEAST_IMAGES {
+    let usual = Hall::usual(archive.field());
+    let views = Views::new(archive, &usual)?;
+    if views.difference(&usual).places < LEAST_PLACES {
         return Ok(None);
     }
-    let usual = Hall::usual(archive.field());
-    let views = views(archive, &Hull::new(&usual, archive.field()))?;
-    let rays = RayTable::new(&archive.setup().camera);
-    let difference = |hall: &Hall| difference(archive, &rays, &views, &Hull::new(hall, archive.field()));
-    let mut best = usual;
-    let mut least = difference(&best);
-    for step_m in STEPS_M {
-        for _ in 0..ROUNDS {
-            let before = best;
-            for measure in 0..MEASURES {
-                for signed_m in [step_m, -step_m] {
-                    descend(archive, measure, signed_m, &difference, &mut best, &mut least);
-                }
-            }
-            if best == before {
-                break;
-            }
+    let mut best = views.descend(usual);
+    for measure in MEASURES {
+        let (mut without, mut usual) = (best, usual);
+        *measure(&mut without) = *measure(&mut usual);
+        if views.difference(&without).mean < views.difference(&best).mean + EVIDENCE {
+            best = without;
         }
     }
     Ok(Some(best))
 }
 
 /// Walls towards −x, −y, +x, +y, ceiling, goals.
-const MEASURES: usize = 6;
+const MEASURES: [fn(&mut Hall) -> &mut f64; 6] = [
+    |hall| &mut hall.min_m.x,
+    |hall| &mut hall.min_m.y,
+    |hall| &mut hall.max_m.x,
+    |hall| &mut hall.max_m.y,
+    |hall| &mut hall.ceiling_m,
+    |hall| &mut hall.goal_depth_m,
+];
 
-/// Goes on in one direction while the difference falls.
-fn descend(
-    archive: &Archive,
-    measure: usize,
-    step_m: f64,
-    difference: &impl Fn(&Hall) -> f32,
-    best: &mut Hall,
-    least: &mut f32,
-) {
-    while let Some(hall) = moved(archive, best, measure, step_m) {
-        let found = difference(&hall);
-        if found >= *least {
-            break;
-        }
-        (*best, *least) = (hall, found);
-    }
-}
-
-/// One measure larger by this, where that is a plausible hall.
-fn moved(archive: &Archive, hall: &Hall, measure: usize, step_m: f64) -> Option<Hall> {
-    let carpet = archive.field().carpet_half_extent_m();
-    let mut moved = *hall;
-    let (value, range) = match measure {
-        0 => (&mut moved.min_m.x, -carpet.x - MOST_M..=-carpet.x - LEAST_M),
-        1 => (&mut moved.min_m.y, -carpet.y - MOST_M..=-carpet.y - LEAST_M),
-        2 => (&mut moved.max_m.x, carpet.x + LEAST_M..=carpet.x + MOST_M),
-        3 => (&mut moved.max_m.y, carpet.y + LEAST_M..=carpet.y + MOST_M),
-        4 => (&mut moved.ceiling_m, archive.usual_pose().height_m + 1.0..=MOST_M),
-        _ => (&mut moved.goal_depth_m, LEAST_M..=archive.field().border_strip_m.max(2.0 * LEAST_M)),
-    };
-    *value += step_m;
-    range.contains(value).then_some(moved)
-}
-
-/// A picture, and those it is compared with.
+/// A small picture and how it was taken.
 struct View {
-    image: ImageIndex,
-    partners: Vec<ImageIndex>,
+    camera: KernelCamera,
+    rays: RayTable,
+    placement: Placement,
+    picture: Arc<Picture>,
 }
 
-/// Pictures spread over the recording, each with partners that see much of the same from elsewhere.
-fn views(archive: &Archive, hull: &Hull) -> Result<Vec<View>, SynthesisError> {
-    let count = archive.images().len();
-    let spread =
-        |wanted: usize| (0..count.min(wanted)).map(move |i| (i * count / count.min(wanted)) as ImageIndex);
-    let rays = RayTable::new(&archive.setup().camera);
-    let poses = archive.index().poses();
-    let nothing = Archive::no_picture();
-    let view = |image: ImageIndex| {
-        let pose = poses[image as usize];
-        let target = Target { rays: &rays, placement: Placement::new(pose), hull };
-        let is_apart = |other: &ImageIndex| {
-            poses[*other as usize].position_in_world().distance(pose.position_in_world()) > BASELINE_M
-        };
-        let others: Vec<ImageIndex> = spread(2 * TARGETS).filter(is_apart).collect();
-        let sources: Vec<Source> = others.iter().map(|&other| archive.source(other, &nothing)).collect();
-        let chosen = select(&target, &sources, &BlendWeights::default(), PARTNERS);
-        View { image, partners: chosen.into_iter().map(|index| others[index]).collect() }
-    };
-    let views: Vec<View> = spread(TARGETS).map(view).collect();
-    for view in &views {
-        archive.pictures(&view.partners)?;
-        archive.picture(view.image)?;
+impl View {
+    fn source(&self) -> Source<'_> {
+        Source { camera: &self.camera, placement: self.placement, picture: &self.picture, gain: [1.0; 3] }
     }
-    Ok(views)
 }
 
-/// Mean difference between the colours of pictures and of their partners, grey levels.
-fn difference(archive: &Archive, rays: &RayTable, views: &[View], hull: &Hull) -> f32 {
-    let sums = views.par_iter().map(|view| {
-        let placement = Placement::new(archive.index().poses()[view.image as usize]);
-        let target = Target { rays, placement, hull };
-        let colors = |image: ImageIndex| {
-            // Decoded before; a picture that cannot be read any more says nothing.
-            let picture = archive.picture(image).unwrap_or_else(|_| Archive::no_picture());
-            glimpses(&target, &archive.source(image, &picture))
+/// How much pictures differ.
+struct Difference {
+    /// Grey levels.
+    mean: f32,
+    /// That were compared.
+    places: f32,
+}
+
+/// Pictures spread over a recording, and which are compared.
+struct Views<'a> {
+    archive: &'a Archive,
+    views: Vec<View>,
+    /// A picture, and one that sees much of the same from elsewhere.
+    pairs: Vec<[usize; 2]>,
+}
+
+impl<'a> Views<'a> {
+    fn new(archive: &'a Archive, usual: &Hall) -> Result<Self, SynthesisError> {
+        let (count, wanted) = (archive.images().len(), archive.images().len().min(VIEWS));
+        let chosen = (0..wanted).into_par_iter().with_max_len(1).map(|i| view(archive, i * count / wanted));
+        let views: Vec<View> = chosen.collect::<Result<_, _>>()?;
+        let hull = Hull::new(usual, archive.field());
+        let targets = (0..views.len()).step_by(TARGET_STEP);
+        let pairs = targets.flat_map(|target| partners(&views, target, &hull)).collect();
+        Ok(Self { archive, views, pairs })
+    }
+
+    /// Mean difference between the colours of pictures and of their partners.
+    fn difference(&self, hall: &Hall) -> Difference {
+        let hull = Hull::new(hall, self.archive.field());
+        let sums = self.pairs.par_iter().map(|&[target, partner]| {
+            let [own, other] = [target, partner].map(|index| &self.views[index]);
+            let target = Target { rays: &own.rays, placement: own.placement, hull: &hull };
+            let colors = glimpses(&target, &own.source()).into_iter().zip(glimpses(&target, &other.source()));
+            let differences = colors.filter_map(|(a, b)| Some(color_difference(a?, b?)));
+            differences.fold([0.0, 0.0], |sum, difference| [sum[0] + difference, sum[1] + 1.0])
+        });
+        let [sum, places] = sums.reduce(|| [0.0, 0.0], |a, b| [a[0] + b[0], a[1] + b[1]]);
+        Difference { mean: sum / f32::max(places, 1.0), places }
+    }
+
+    /// The hall on which the pictures agree best, from this one on.
+    fn descend(&self, mut best: Hall) -> Hall {
+        let mut least = self.difference(&best).mean;
+        for step_m in STEPS_M {
+            for _ in 0..ROUNDS {
+                let before = best;
+                for (measure, signed_m) in (0..MEASURES.len()).flat_map(|m| [(m, step_m), (m, -step_m)]) {
+                    while let Some(hall) = self.moved(&best, measure, signed_m)
+                        && let found = self.difference(&hall).mean
+                        && found < least
+                    {
+                        (best, least) = (hall, found);
+                    }
+                }
+                if best == before {
+                    break;
+                }
+            }
+        }
+        best
+    }
+
+    /// One measure larger by this, where that is a plausible hall.
+    fn moved(&self, hall: &Hall, measure: usize, step_m: f64) -> Option<Hall> {
+        let carpet = self.archive.field().carpet_half_extent_m();
+        let range = match measure {
+            0 => -carpet.x - MOST_M..=-carpet.x - LEAST_M,
+            1 => -carpet.y - MOST_M..=-carpet.y - LEAST_M,
+            2 => carpet.x + LEAST_M..=carpet.x + MOST_M,
+            3 => carpet.y + LEAST_M..=carpet.y + MOST_M,
+            4 => self.archive.usual_pose().height_m + 1.0..=MOST_M,
+            _ => LEAST_M..=self.archive.field().border_strip_m.max(2.0 * LEAST_M),
         };
-        let own = colors(view.image);
-        let others = view.partners.iter().flat_map(|&partner| own.iter().copied().zip(colors(partner)));
-        others
-            .filter_map(|(a, b)| Some(color_difference(a?, b?)))
-            .fold([0.0, 0.0], |sum, d| [sum[0] + d, sum[1] + 1.0])
+        let mut moved = *hall;
+        *MEASURES[measure](&mut moved) += step_m;
+        range.contains(MEASURES[measure](&mut moved)).then_some(moved)
+    }
+}
+
+/// An image, small. It does not stay in the archive's cache.
+fn view(archive: &Archive, image: usize) -> Result<View, SynthesisError> {
+    let record = &archive.images()[image];
+    let picture = archive.database().picture(record.id)?;
+    let camera = archive.camera_of(image as u32);
+    let shrink = f64::from(camera.width.div_ceil(WIDTH));
+    let [width, height] =
+        [camera.width, camera.height].map(|size| (f64::from(size) / shrink).round().max(1.0) as u32);
+    let small = smaller(camera, [width, height]);
+    let picture = if shrink > 1.0 { resize(&picture, width, height, FilterType::Triangle) } else { picture };
+    Ok(View {
+        camera: KernelCamera::new(&small),
+        rays: RayTable::new(&small),
+        placement: Placement::new(record.pose),
+        picture: Arc::new(Picture::from(&picture)),
+    })
+}
+
+/// The same camera with fewer pixels.
+fn smaller(camera: &Camera, size: [u32; 2]) -> Camera {
+    let [across, down] =
+        [f64::from(size[0]) / f64::from(camera.width), f64::from(size[1]) / f64::from(camera.height)];
+    // Pixels' centres are whole numbers: the picture begins half a pixel before the first one.
+    let centre = [(camera.cx + 0.5) * across - 0.5, (camera.cy + 0.5) * down - 0.5];
+    let intrinsics = [camera.fx * across, camera.fy * down, centre[0], centre[1]];
+    let circle = camera.image_circle.map(|circle| ImageCircle {
+        cx: (circle.cx + 0.5) * across - 0.5,
+        cy: (circle.cy + 0.5) * down - 0.5,
+        radius: circle.radius * across.min(down),
     });
-    let [sum, count] = sums.reduce(|| [0.0, 0.0], |a, b| [a[0] + b[0], a[1] + b[1]]);
-    sum / f32::max(count, 1.0)
+    // A camera that was valid stays so when it shrinks.
+    let small = Camera::new(size, intrinsics, camera.distortion).unwrap_or_else(|_| camera.clone());
+    small.with_image_circle(circle)
+}
+
+/// Pairs of a picture with those that see much of the same from elsewhere.
+fn partners(views: &[View], target: usize, hull: &Hull) -> Vec<[usize; 2]> {
+    let own = &views[target];
+    let distance_m = |other: &View| {
+        let [a, b] = [own, other].map(|view| glam::Vec3::from_array(view.placement.position_in_world));
+        f64::from(a.distance(b))
+    };
+    let others: Vec<usize> =
+        (0..views.len()).filter(|&other| distance_m(&views[other]) > BASELINE_M).collect();
+    let sources: Vec<Source> = others.iter().map(|&other| views[other].source()).collect();
+    let wanted = Target { rays: &own.rays, placement: own.placement, hull };
+    let chosen = select(&wanted, &sources, &BlendWeights::default(), PARTNERS);
+    chosen.into_iter().map(|index| [target, others[index]]).collect()
 }
 
 fn color_difference(a: [f32; 3], b: [f32; 3]) -> f32 {

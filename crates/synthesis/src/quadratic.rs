@@ -33,7 +33,7 @@ impl Method for Quadratic {
 
     fn reconstruct(&self, from: &Synthesizer, pose: CameraPose) -> Result<Reconstruction, SynthesisError> {
         let archive = from.archive();
-        let nearest = from.nearest(pose, 1)?[0];
+        let nearest = from.nearest_of_size(pose)?;
         let record = &archive.images()[nearest.image as usize];
         let picture = archive.picture(nearest.image)?;
         let pairs = ground_pairs(
@@ -41,18 +41,19 @@ impl Method for Quadratic {
             (from.camera(), pose),
             archive.field(),
         );
-        let few = SynthesisError::TooFewPoints { pose, found: pairs.len(), needed: LEAST_POINTS };
         let reversed: Vec<[DVec2; 2]> = pairs.iter().map(|&[source, target]| [target, source]).collect();
         let (Some(forward), Some(reverse)) = (Polynomial::fit(&pairs), Polynomial::fit(&reversed)) else {
-            return Err(few);
+            return Err(SynthesisError::TooFewPoints { pose });
         };
-        let (colors, origins) = moved(&picture, from.camera(), &forward, &reverse);
+        let cameras = [archive.camera_of(nearest.image), from.camera()];
+        let (colors, origins) = moved(&picture, cameras, &forward, &reverse);
         let picture: RgbImage = picture_of(from.camera(), colors);
         Ok(Reconstruction::new(
             picture,
             self.name(),
             std::iter::once((nearest.image, nearest.distance_px)),
             origins,
+            from.rays(),
         ))
     }
 }
@@ -121,7 +122,7 @@ fn terms(at: DVec2) -> [f64; 6] {
 /// The picture moved by the forward model, with gaps filled by the reverse one; black where neither leads.
 fn moved(
     picture: &Picture,
-    camera: &Camera,
+    [source, camera]: [&Camera; 2],
     forward: &Polynomial,
     reverse: &Polynomial,
 ) -> (Vec<[u8; 3]>, Vec<Origin>) {
@@ -137,8 +138,12 @@ fn moved(
     };
     for v in 0..picture.height {
         for u in 0..picture.width {
-            let target = forward.at(DVec2::new(f64::from(u), f64::from(v)));
-            if let Some((column, row)) = pixel_at(target, width, height) {
+            let pixel = DVec2::new(f64::from(u), f64::from(v));
+            if source.check_inside(pixel).is_err() {
+                continue;
+            }
+            let target = forward.at(pixel);
+            if let Some((column, row)) = pixel_at(target, camera) {
                 let index = (row * width + column) as usize;
                 (colors[index], origins[index]) = (color(u, v), FORWARD);
             }
@@ -146,20 +151,19 @@ fn moved(
     }
     for index in (0..count).filter(|&index| origins[index].source == Origin::NOWHERE).collect::<Vec<_>>() {
         let (u, v) = (index as u32 % width, index as u32 / width);
-        let source = reverse.at(DVec2::new(f64::from(u), f64::from(v)));
-        if let Some((column, row)) = pixel_at(source, picture.width, picture.height) {
+        let place = reverse.at(DVec2::new(f64::from(u), f64::from(v)));
+        if let Some((column, row)) = pixel_at(place, source) {
             (colors[index], origins[index]) = (color(column, row), REVERSE);
         }
     }
     (colors, origins)
 }
 
-/// The pixel nearest to a place, where it lies in the picture.
-fn pixel_at(place: DVec2, width: u32, height: u32) -> Option<(u32, u32)> {
+/// The pixel nearest to a place, where the camera sees something there.
+fn pixel_at(place: DVec2, camera: &Camera) -> Option<(u32, u32)> {
     let rounded = place.round();
-    let is_inside =
-        rounded.cmpge(DVec2::ZERO).all() && rounded.x < f64::from(width) && rounded.y < f64::from(height);
-    is_inside.then_some((rounded.x as u32, rounded.y as u32))
+    camera.check_inside(rounded).ok()?;
+    Some((rounded.x as u32, rounded.y as u32))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A picture at a pose, with where it came from.
 
 use image::{GrayImage, Luma, Rgb, RgbImage};
-use reality_sim_core::warp::Origin;
+use reality_sim_core::warp::{Origin, RayTable};
 use reality_sim_db::index::ImageIndex;
 
 /// A recorded image that a reconstruction was made from.
@@ -11,7 +11,7 @@ pub struct Used {
     pub image: ImageIndex,
     /// How far the picture moves from it to the pose asked for, root mean square pixels.
     pub distance_px: f64,
-    /// The share of all pixels that came from it more than from any other.
+    /// The share of the pixels that came from it more than from any other.
     pub share: f64,
 }
 
@@ -33,11 +33,14 @@ impl Reconstruction {
         picture: RgbImage,
         method: &'static str,
         images: impl Iterator<Item = (ImageIndex, f64)>,
-        origins: Vec<Origin>,
+        mut origins: Vec<Origin>,
+        rays: &RayTable,
     ) -> Self {
+        rays.mark_outside(&mut origins);
+        let seen = origins.iter().filter(|origin| origin.source != Origin::OUTSIDE).count();
         let mut counts = [0_usize; 256];
         origins.iter().for_each(|origin| counts[usize::from(origin.source)] += 1);
-        let share = |source: usize| counts[source] as f64 / origins.len().max(1) as f64;
+        let share = |source: usize| counts[source] as f64 / seen.max(1) as f64;
         let used = images.enumerate().map(|(source, (image, distance_px))| Used {
             image,
             distance_px,
@@ -46,10 +49,12 @@ impl Reconstruction {
         Self { picture, method, used: used.collect(), origins }
     }
 
-    /// The share of the pixels that some recorded image shows; the others are smoothly filled or black.
+    /// The share of the pixels that some recorded image shows; the others are smoothly filled or black. Pixels where the
+    /// camera sees nothing do not count.
     pub fn covered(&self) -> f64 {
-        let seen = self.origins.iter().filter(|origin| origin.source != Origin::NOWHERE).count();
-        seen as f64 / self.origins.len().max(1) as f64
+        let count = |of: fn(&Origin) -> bool| self.origins.iter().filter(|&origin| of(origin)).count() as f64;
+        let outside = count(|origin| origin.source == Origin::OUTSIDE);
+        count(|origin| origin.is_recorded()) / (self.origins.len() as f64 - outside).max(1.0)
     }
 
     /// How far each pixel can be trusted: white fully, black not at all.

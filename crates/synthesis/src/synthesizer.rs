@@ -12,12 +12,6 @@ use reality_sim_db::index::{ImageIndex, Neighbour};
 
 use crate::{Archive, Method, Reconstruction, SynthesisError, gain::gains, select::select};
 
-/// No field is larger, metres from its centre.
-const LIMIT_M: f64 = 200.0;
-
-/// Room around the camera inside the hull, metres.
-const ROOM_M: f64 = 0.3;
-
 /// How pictures are made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SynthesisConfig {
@@ -84,6 +78,11 @@ impl Synthesizer {
         &self.camera
     }
 
+    /// Its pixels' rays.
+    pub(crate) fn rays(&self) -> &RayTable {
+        &self.rays
+    }
+
     /// The settings.
     pub fn config(&self) -> &SynthesisConfig {
         &self.config
@@ -91,9 +90,8 @@ impl Synthesizer {
 
     /// The picture at a pose.
     pub fn image_at(&self, pose: CameraPose, method: &dyn Method) -> Result<Reconstruction, SynthesisError> {
-        let is_possible = pose.position_in_world().length() < LIMIT_M && pose.height_m > 0.0;
-        if pose.is_finite() && !is_possible {
-            return Err(SynthesisError::ImpossiblePose { pose, limit_m: LIMIT_M });
+        if pose.is_finite() && !pose.is_possible() {
+            return Err(SynthesisError::ImpossiblePose { pose });
         }
         self.archive
             .index()
@@ -102,11 +100,15 @@ impl Synthesizer {
         method.reconstruct(self, pose)
     }
 
-    /// Decodes the pictures that a picture at this pose is made from, so that it is drawn without delay later.
+    /// Decodes the pictures that a picture at this pose is made from, by whichever method, so that it is drawn without
+    /// delay later.
     pub fn prepare(&self, pose: CameraPose) -> Result<(), SynthesisError> {
-        let hull = self.archive.hull().holding(pose, ROOM_M);
+        let hull = self.archive.hull().holding(pose);
         let images = self.chosen(&self.target(pose, &hull), pose, self.config.sources)?;
-        let images: Vec<ImageIndex> = images.iter().map(|neighbour| neighbour.image).collect();
+        let mut images: Vec<ImageIndex> = images.iter().map(|neighbour| neighbour.image).collect();
+        images.extend(self.nearest_of_size(pose).ok().map(|nearest| nearest.image));
+        images.sort_unstable();
+        images.dedup();
         self.archive.pictures(&images).map(drop)
     }
 
@@ -116,6 +118,16 @@ impl Synthesizer {
         found.map_err(|reason| SynthesisError::NoNeighbours { pose, reason })
     }
 
+    /// The nearest image in the size of the camera whose pictures are drawn; its lens may be another.
+    pub(crate) fn nearest_of_size(&self, pose: CameraPose) -> Result<Neighbour, SynthesisError> {
+        let size = |camera: &Camera| [camera.width, camera.height];
+        let is_of_size =
+            |neighbour: &Neighbour| size(self.archive.camera_of(neighbour.image)) == size(&self.camera);
+        let found = self.nearest(pose, self.config.candidates)?.into_iter().find(is_of_size);
+        let [width, height] = size(&self.camera);
+        found.ok_or(SynthesisError::OtherSize { pose, width, height })
+    }
+
     /// The picture drawn from so many neighbours through ground, goals and hull.
     pub(crate) fn warped(
         &self,
@@ -123,7 +135,7 @@ impl Synthesizer {
         pose: CameraPose,
         count: usize,
     ) -> Result<Reconstruction, SynthesisError> {
-        let hull = self.archive.hull().holding(pose, ROOM_M);
+        let hull = self.archive.hull().holding(pose);
         let target = self.target(pose, &hull);
         let chosen = self.chosen(&target, pose, count)?;
         let images: Vec<ImageIndex> = chosen.iter().map(|neighbour| neighbour.image).collect();
@@ -140,7 +152,7 @@ impl Synthesizer {
         let warped = self.warper.blend(&target, &sources, &self.config.weights)?;
         let picture = picture_of(&self.camera, warped.colors);
         let images = chosen.iter().map(|neighbour| (neighbour.image, neighbour.distance_px));
-        let reconstruction = Reconstruction::new(picture, method, images, warped.origins);
+        let reconstruction = Reconstruction::new(picture, method, images, warped.origins, &self.rays);
         let (covered, needed) = (reconstruction.covered(), self.config.least_covered);
         if covered < needed {
             return Err(SynthesisError::TooLittleSeen { pose, covered, needed });
@@ -170,7 +182,7 @@ impl Synthesizer {
         let nothing = Archive::no_picture();
         let sources: Vec<Source> =
             candidates.iter().map(|candidate| self.archive.source(candidate.image, &nothing)).collect();
-        let chosen = select(target, &sources, &self.config.weights, count.min(MAX_SOURCES));
+        let chosen = select(target, &sources, &self.config.weights, count.clamp(1, MAX_SOURCES));
         Ok(chosen.into_iter().map(|index| candidates[index]).collect())
     }
 }

@@ -77,6 +77,14 @@ pub struct Origin {
 impl Origin {
     /// No source saw this: the colour is that of the surroundings.
     pub const NOWHERE: u8 = u8::MAX;
+
+    /// The camera sees nothing there, outside its image circle say: the colour is black.
+    pub const OUTSIDE: u8 = u8::MAX - 1;
+
+    /// Whether some source saw this.
+    pub fn is_recorded(self) -> bool {
+        self.source < Self::OUTSIDE
+    }
 }
 
 /// The camera and the pose at which a picture is wanted, and what stands for the world.
@@ -100,10 +108,16 @@ pub struct Warped {
 }
 
 impl Warped {
-    /// The same picture of so many columns, with pixels that no source saw coloured as their surroundings are: the last
-    /// step of [`blend`], on all devices.
-    pub fn filled(mut self, width: usize) -> Self {
-        fill(&mut self.colors, width, |index| self.origins[index].source != Origin::NOWHERE);
+    /// The same picture, black where the camera sees nothing, and with pixels that no source saw coloured as their
+    /// surroundings are: the last step of [`blend`], on all devices.
+    pub fn filled(mut self, rays: &RayTable) -> Self {
+        rays.mark_outside(&mut self.origins);
+        for (color, _) in
+            self.colors.iter_mut().zip(&self.origins).filter(|(_, o)| o.source == Origin::OUTSIDE)
+        {
+            *color = [0; 3];
+        }
+        fill(&mut self.colors, rays.width as usize, |index| self.origins[index].source);
         self
     }
 }
@@ -118,7 +132,7 @@ pub fn blend(target: &Target, sources: &[Source], weights: &BlendWeights) -> War
     rows.with_min_len(8).for_each(|(row, (colors, origins))| {
         blend_row(target, sources, weights, target.rays.row(row), colors, origins);
     });
-    Warped { colors, origins }.filled(width)
+    Warped { colors, origins }.filled(target.rays)
 }
 
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]

@@ -5,6 +5,8 @@
 
 use rayon::prelude::*;
 
+use super::Origin;
+
 /// Work enough for a task of its own.
 const PIXELS_A_TASK: usize = 16384;
 
@@ -16,16 +18,17 @@ struct Level {
     pixels: Vec<[f32; 4]>,
 }
 
-/// Fills the pixels that are not known. Nothing happens where none is known at all.
-pub(crate) fn fill(colors: &mut [[u8; 3]], width: usize, is_known: impl Fn(usize) -> bool + Sync) {
-    let count = (0..colors.len()).filter(|&index| is_known(index)).count();
-    if count == 0 || count == colors.len() {
+/// Fills the pixels whose source is [`Origin::NOWHERE`]. Nothing happens where none was recorded at all.
+pub(crate) fn fill(colors: &mut [[u8; 3]], width: usize, source: impl Fn(usize) -> u8 + Sync) {
+    let is_unknown = |index: usize| source(index) == Origin::NOWHERE;
+    let is_known = |index: usize| source(index) < Origin::OUTSIDE;
+    if !(0..colors.len()).any(is_unknown) || !(0..colors.len()).any(is_known) {
         return;
     }
     let filled = half_size(colors, width, &is_known).filled();
     let rows = colors.par_chunks_mut(width).enumerate().with_min_len(PIXELS_A_TASK.div_ceil(width));
     rows.for_each(|(v, row)| {
-        for (u, color) in row.iter_mut().enumerate().filter(|(u, _)| !is_known(v * width + u)) {
+        for (u, color) in row.iter_mut().enumerate().filter(|(u, _)| is_unknown(v * width + u)) {
             if let Some(pixel) = filled.bilinear(u, v) {
                 *color = [0, 1, 2].map(|channel| (pixel[channel] + 0.5) as u8);
             }

@@ -14,6 +14,10 @@ const USUAL_WALLS_M: f64 = 1.5;
 /// The ceiling hangs this high until more is known, metres.
 const USUAL_CEILING_M: f64 = 3.0;
 
+/// No hall is larger, metres from the field's centre.
+const LARGEST_M: f64 = 1000.0;
+/// Room around a camera inside the hull, metres.
+const ROOM_M: f64 = 0.3;
 /// Nets and backs of goals stand this far behind the posts, metres.
 const USUAL_GOAL_DEPTH_M: f64 = 0.5;
 
@@ -61,7 +65,8 @@ impl Hall {
         is_finite
             && self.min_m.cmplt(-half).all()
             && self.max_m.cmpgt(half).all()
-            && sizes.iter().all(|&size| size > 0.0)
+            && self.max_m.max(-self.min_m).max_element() <= LARGEST_M
+            && sizes.iter().all(|&size| size > 0.0 && size <= LARGEST_M)
     }
 }
 
@@ -86,9 +91,9 @@ impl Hull {
         }
     }
 
-    /// The same hull, grown where it must be to hold a camera with this much room around it, metres.
-    pub fn holding(mut self, pose: CameraPose, room_m: f64) -> Self {
-        let room = DVec3::splat(room_m);
+    /// The same hull, grown where it must be to hold a camera with some room around it.
+    pub fn holding(mut self, pose: CameraPose) -> Self {
+        let room = DVec3::splat(ROOM_M);
         self.min_in_world = self.min_in_world.min(pose.position_in_world() - room).with_z(0.0);
         self.max_in_world = self.max_in_world.max(pose.position_in_world() + room);
         self

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use rayon::prelude::*;
 
+use super::Origin;
 use crate::camera::{Camera, LANES, Lanes};
 
 /// Unit directions of sixteen neighbouring pixels of a row in the camera's axes; NaN where a pixel sees nothing.
@@ -37,6 +38,17 @@ impl RayTable {
     /// share them.
     pub fn blocks(&self) -> &Arc<Vec<[Lanes; 3]>> {
         &self.blocks
+    }
+
+    /// Marks pixels, row by row, that see nothing: where the lens leaves the picture black.
+    pub fn mark_outside(&self, origins: &mut [Origin]) {
+        for (row, origins) in origins.chunks_mut(self.width as usize).enumerate() {
+            for (block, origins) in self.row(row).iter().zip(origins.chunks_mut(LANES)) {
+                for (_, origin) in block[0].iter().zip(origins).filter(|(ray, _)| ray.is_nan()) {
+                    *origin = Origin { source: Origin::OUTSIDE, trust: 0 };
+                }
+            }
+        }
     }
 
     /// The directions of a row, sixteen pixels a block; the last block is filled up with NaN.

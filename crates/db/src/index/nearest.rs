@@ -137,24 +137,25 @@ impl Search<'_> {
             halves.swap(0, 1);
         }
         for (bound_px, half, images) in halves {
-            if bound_px < self.limit_px() {
+            if self.may_take(bound_px) {
                 self.enter(half, images);
             }
         }
     }
 
-    fn limit_px(&self) -> f64 {
-        if self.found.len() < self.count { f64::INFINITY } else { self.found[self.count - 1].1 }
+    /// Whether an image this far away, pixels, is one of the nearest so far: while there are too few, any is.
+    fn may_take(&self, distance_px: f64) -> bool {
+        self.found.get(self.count - 1).is_none_or(|(_, last_px)| distance_px < *last_px)
     }
 
     fn offer(&mut self, (pose, image): (CameraPose, ImageIndex)) {
         let away_m = DVec2::new(pose.x_m - self.pose.x_m, pose.y_m - self.pose.y_m);
         let turn_rad = shorter_turn(pose.yaw_rad - self.pose.yaw_rad).abs();
-        if self.metric.least_px(away_m.length(), turn_rad) >= self.limit_px() {
+        if !self.may_take(self.metric.least_px(away_m.length(), turn_rad)) {
             return;
         }
         let distance_px = self.metric.distance_px(pose, self.pose);
-        if distance_px < self.limit_px() {
+        if self.may_take(distance_px) {
             let place = self.found.partition_point(|(_, other_px)| *other_px <= distance_px);
             self.found.insert(place, (image, distance_px));
             self.found.truncate(self.count);

@@ -67,7 +67,7 @@ impl Sector {
             .collect();
         spotted.sort_unstable();
         let vertices = vertices(&spotted, poses);
-        // Cells keep places apart, and none is NaN: all that could be refused are coordinates beyond 10⁶⁰.
+        // Cells keep places apart, and none is NaN: all that could be refused are coordinates beyond 10⁶⁰, and below 10⁻⁴³ but not 0.
         let delaunay = Delaunay::bulk_load_stable(vertices).unwrap_or_default();
         let items = spotted.into_iter().map(|spotted| spotted.image).collect();
         Self { delaunay, items }
@@ -81,7 +81,10 @@ impl Sector {
     pub(super) fn natural_spots(&self, pose: CameraPose) -> Vec<(&[ImageIndex], f64)> {
         let place = Point2::new(pose.x_m, pose.y_m);
         let mut weights = Vec::new();
-        self.delaunay.natural_neighbor().get_weights(place, &mut weights);
+        // With a single vertex there is no edge to begin with, and spade needs one.
+        if self.delaunay.num_vertices() > 1 {
+            self.delaunay.natural_neighbor().get_weights(place, &mut weights);
+        }
         if weights.is_empty() {
             weights.extend(self.delaunay.nearest_neighbor(place).map(|vertex| (vertex.fix(), 1.0)));
         }

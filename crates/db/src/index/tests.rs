@@ -70,6 +70,8 @@ proptest! {
     fn every_image_is_found_at_its_own_pose(poses in any_recording()) {
         let index = PoseIndex::new(metric(), poses.clone());
         for pose in poses {
+            let turned = CameraPose { yaw_rad: pose.yaw_rad + 0.3, ..pose };
+            prop_assert!(index.natural(pose).is_ok() && index.natural(turned).is_ok());
             prop_assert!(index.nearest(pose, 1).unwrap()[0].distance_px < 1e-6);
         }
     }
@@ -178,6 +180,15 @@ fn among_many_images_the_nearest_are_those_that_looking_at_all_of_them_finds() {
             }
         }
     }
+}
+
+#[test]
+fn images_at_absurd_distances_are_found_all_the_same() {
+    let pose = CameraPose { height_m: 0.52, pitch_rad: 0.42, ..Default::default() };
+    let far = CameraPose { x_m: 1e200, ..pose };
+    let index = PoseIndex::new(metric(), vec![far; 3]);
+    assert_eq!(index.nearest(pose, 2).unwrap().len(), 2);
+    assert!(index.natural(pose).is_ok());
 }
 
 #[test]

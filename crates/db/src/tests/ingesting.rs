@@ -190,10 +190,10 @@ fn poses_that_are_no_numbers_or_too_few_are_refused() {
     ingest(&[], "0 poses");
     let mut bad = good.clone();
     bad[7].as_mut().unwrap().pose.roll_rad = f64::NAN;
-    ingest(&bad, "frame 7 is not made of finite numbers");
+    ingest(&bad, "frame 7 is none that a camera can have");
     let mut bad = good;
     bad[8].as_mut().unwrap().covariance.as_mut().unwrap()[(5, 2)] = f64::INFINITY;
-    ingest(&bad, "frame 8 is not made of finite numbers");
+    ingest(&bad, "frame 8 is none that a camera can have");
     assert!(Database::open(&path).unwrap().images().unwrap().is_empty());
 }
 

@@ -87,7 +87,7 @@ fn nonsense_in_a_row_is_an_error_that_names_the_row() {
     let (folder, path) = database_of(&short_walk(3));
     let fresh = folder.path().join("fresh.db");
     for (sql, part) in [
-        ("UPDATE images SET yaw_rad = 9e999 WHERE id = 2", "image 2: its pose is not"),
+        ("UPDATE images SET yaw_rad = 9e999 WHERE id = 2", "image 2: no camera can have its pose"),
         ("UPDATE images SET timestamp_s = -9e999 WHERE id = 2", "image 2: its time is not"),
         ("UPDATE images SET covariance = x'000000' WHERE id = 2", "covariance"),
         ("UPDATE images SET frame_index = -1 WHERE id = 2", "-1"),
@@ -108,7 +108,11 @@ fn nonsense_in_a_row_is_an_error_that_names_the_row() {
         &fresh,
         "UPDATE images SET covariance = CAST(zeroblob(280) || x'000000000000f07f' AS BLOB) WHERE id = 2",
     );
-    assert_message(&Database::open(&fresh).unwrap().images().unwrap_err(), &fresh, &["image 2: its pose"]);
+    assert_message(
+        &Database::open(&fresh).unwrap().images().unwrap_err(),
+        &fresh,
+        &["image 2: no camera can have its pose"],
+    );
 }
 
 #[test]
