@@ -58,7 +58,7 @@ fn store(walk: &Sequence) -> (TempDir, Arc<Archive>) {
     let path = folder.path().join("walk.db");
     let estimate = |(frame, pose): (usize, &Option<CameraPose>)| {
         let pose = pose.filter(|_| frame % LEFT_OUT != 0);
-        pose.map(|pose| PoseEstimate { pose, covariance: None })
+        pose.map(PoseEstimate::from)
     };
     let poses: Vec<_> = walk.groundtruth.iter().enumerate().map(estimate).collect();
     let mut database = Database::create_or_open(&path).expect("a database");

@@ -22,8 +22,7 @@
 //! # let file = folder.path().join("walk.db");
 //! # let file = file.as_path();
 //! let walk = Sequence::open(Path::new("assets/walk"))?;
-//! let known = |pose: &Option<_>| pose.map(|pose| PoseEstimate { pose, covariance: None });
-//! let poses: Vec<_> = walk.groundtruth.iter().map(known).collect();
+//! let poses: Vec<_> = walk.groundtruth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
 //! Database::create_or_open(file)?.ingest(&walk, &poses, &PoseSource::GroundTruth, |_| ())?;
 //!
 //! let archive = Arc::new(Archive::open(file, 256 << 20)?);

@@ -14,7 +14,7 @@ use std::{fs, path::Path, sync::Arc};
 
 use anyhow::{Context, bail};
 use reality_sim::{
-    Archive, CameraPose, Sequence, Synthesizer,
+    Archive, Sequence, Synthesizer,
     db::{Database, PoseEstimate, PoseSource},
     synthesis::measure_hall,
 };
@@ -46,8 +46,7 @@ fn synthesizer(sequence: &Sequence) -> anyhow::Result<(tempfile::TempDir, Synthe
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("walk.db");
     let mut database = Database::create_or_open(&path)?;
-    let known = |pose: &Option<CameraPose>| pose.map(|pose| PoseEstimate { pose, covariance: None });
-    let poses: Vec<Option<PoseEstimate>> = sequence.groundtruth.iter().map(known).collect();
+    let poses: Vec<_> = sequence.groundtruth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
     database.ingest(sequence, &poses, &PoseSource::GroundTruth, |_| ())?;
     let archive = Archive::open(&path, 1 << 30)?;
     if let Some(hall) = measure_hall(&archive)? {

@@ -147,19 +147,18 @@ fn add(sequence: &Sequence, poses: &Poses, database: &mut Database) -> anyhow::R
 }
 
 fn poses(args: &BuildArgs, sequence: &Sequence) -> anyhow::Result<Poses> {
-    let known = |pose| PoseEstimate { pose, covariance: None };
     if let Some(file) = &args.poses {
         let poses = match_poses(file, read_tum(file)?, &sequence.frames)?;
         if poses.iter().all(Option::is_none) {
             bail!("{}: holds no poses: make it with `tag --out`", file.display());
         }
         let name = file.display().to_string();
-        let estimates = poses.into_iter().map(|pose| pose.map(known)).collect();
+        let estimates = poses.into_iter().map(|pose| pose.map(PoseEstimate::from)).collect();
         return Ok(Poses { estimates, source: PoseSource::File { name } });
     }
     let truth = &sequence.groundtruth;
     if !args.tag && truth.iter().any(Option::is_some) {
-        let estimates = truth.iter().map(|pose| pose.map(known)).collect();
+        let estimates = truth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
         return Ok(Poses { estimates, source: PoseSource::GroundTruth });
     }
     tagged_poses(args, sequence)

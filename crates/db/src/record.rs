@@ -16,6 +16,13 @@ pub struct PoseEstimate {
     pub covariance: Option<Matrix6<f64>>,
 }
 
+impl From<CameraPose> for PoseEstimate {
+    /// A pose of which it is not known how well it is known.
+    fn from(pose: CameraPose) -> Self {
+        Self { pose, covariance: None }
+    }
+}
+
 impl PoseEstimate {
     /// Whether a camera can be there, and no number of the covariance is NaN or infinite.
     pub(crate) fn is_possible(&self) -> bool {

@@ -101,6 +101,10 @@ impl Archive {
     }
 
     /// A decoded picture.
+    ///
+    /// # Panics
+    ///
+    /// Where there is no such image: indices come from [`Archive::index`].
     pub fn picture(&self, image: ImageIndex) -> Result<Arc<Picture>, SynthesisError> {
         let decode = || Ok(Picture::from(&self.database.picture(self.images[image as usize].id)?));
         self.cache.get(image, decode)
@@ -112,6 +116,10 @@ impl Archive {
     }
 
     /// The camera that took an image.
+    ///
+    /// # Panics
+    ///
+    /// As [`Archive::picture`].
     pub fn camera_of(&self, image: ImageIndex) -> &Camera {
         &self.cameras[&self.images[image as usize].camera_id].0
     }

@@ -25,11 +25,8 @@ fn walk() -> Sequence {
 fn stored(sequence: &Sequence) -> (TempDir, Archive) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("walk.db");
-    let poses: Vec<Option<PoseEstimate>> = sequence
-        .groundtruth
-        .iter()
-        .map(|pose| pose.map(|pose| PoseEstimate { pose, covariance: None }))
-        .collect();
+    let poses: Vec<Option<PoseEstimate>> =
+        sequence.groundtruth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
     let mut database = Database::create_or_open(&path).unwrap();
     database.ingest(sequence, &poses, &PoseSource::GroundTruth, |_| ()).unwrap();
     let archive = Archive::open(&path, 64 << 20).unwrap();
