@@ -68,7 +68,7 @@ pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
     }
     check_poses(args, &probes)?;
     check_outputs(args, &probes)?;
-    let synthesizer = args.synthesis.synthesizer(archive.clone(), Some(probes.setup.camera.clone()))?;
+    let synthesizer = args.synthesis.synthesizer(archive.clone(), probes.setup.camera.clone())?;
     let renderer =
         Renderer::new(&probes.setup, archive.field(), SceneColors::new(&probes.setup, archive.field()));
     let with_truth =

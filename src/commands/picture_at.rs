@@ -30,14 +30,13 @@ impl SynthesisArgs {
         Ok(Arc::new(Archive::open(database, (self.cache as usize) << 20)?))
     }
 
-    /// Pictures of a camera, or of the one that took most of the archive's.
-    pub fn synthesizer(&self, archive: Arc<Archive>, camera: Option<Camera>) -> anyhow::Result<Synthesizer> {
+    /// What gives pictures of a camera.
+    pub fn synthesizer(&self, archive: Arc<Archive>, camera: Camera) -> anyhow::Result<Synthesizer> {
         let mut config = SynthesisConfig::new(&archive);
         config.sources = usize::from(self.neighbours);
         if self.best_effort {
             config = config.best_effort();
         }
-        let camera = camera.unwrap_or_else(|| archive.setup().camera.clone());
         let warper = self.backend.device()?.backend.warper()?;
         Ok(Synthesizer::with(archive, camera, warper, config))
     }

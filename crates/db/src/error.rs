@@ -62,7 +62,7 @@ pub enum DbFault {
     },
     /// The program is newer than the file, which was opened for reading.
     #[error(
-        "is of the old schema version {found}: open it once for writing, which brings it to version {known}"
+        "is of the old schema version {found}: open it once for writing, as `build` does, which brings it to version {known}"
     )]
     Older {
         /// Of the file.

@@ -1,0 +1,133 @@
+//! `reality-sim render`: the picture at a pose, or those along a path.
+
+mod options;
+mod painter;
+mod report;
+
+use std::path::Path;
+
+use anyhow::Context;
+use image::DynamicImage;
+
+use reality_sim::{
+    Archive, CameraPose,
+    montage::strip,
+    sequence::{read_camera, save_image},
+};
+
+pub use self::options::RenderArgs;
+use self::{
+    painter::{Painted, Painter, Work},
+    report::{Report, used},
+};
+use super::output::{frame_progress, print, print_json};
+
+/// Pictures of a path in its strip.
+const STRIP_PICTURES: usize = 8;
+
+/// Runs the command.
+pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
+    let archive = args.synthesis.archive(&args.database)?;
+    let poses = args.poses(&archive)?;
+    args.check_outputs()?;
+    let mut setup = archive.setup().clone();
+    if let Some(file) = &args.camera {
+        setup.camera = read_camera(file)?.camera;
+    }
+    let synthesizer = args.synthesis.synthesizer(archive.clone(), setup.camera.clone())?;
+    let painter = Painter::new(args.method, &synthesizer, &setup);
+    let report = match &args.path {
+        Some(path) => along_path(args, path, &painter, &poses)?,
+        None => at_pose(args, &painter, &archive, poses[0])?,
+    };
+    if args.json { print_json(&report) } else { print(&report.text()) }
+}
+
+fn at_pose(
+    args: &RenderArgs,
+    painter: &Painter,
+    archive: &Archive,
+    pose: CameraPose,
+) -> anyhow::Result<Report> {
+    painter.paint(pose)?;
+    // Once more, for the time that it takes when the neighbours are decoded.
+    let Painted { work, milliseconds } = painter.paint(pose)?;
+    save_image(&args.out, work.picture())?;
+    let mut report = Report {
+        method: painter.name(),
+        pictures: 1,
+        milliseconds,
+        covered: None,
+        used: Vec::new(),
+        out: args.out.display().to_string(),
+    };
+    if let Work::Reconstructed(reconstruction) = work {
+        if let Some(file) = &args.origins {
+            save_image(file, &reconstruction.origin_picture())?;
+        }
+        if let Some(file) = &args.trust {
+            save_image(file, &DynamicImage::from(reconstruction.trust_picture()).into_rgb8())?;
+        }
+        report.method = reconstruction.method;
+        report.covered = Some(reconstruction.covered());
+        report.used = used(archive, &reconstruction)?;
+    }
+    Ok(report)
+}
+
+fn along_path(
+    args: &RenderArgs,
+    path: &Path,
+    painter: &Painter,
+    poses: &[CameraPose],
+) -> anyhow::Result<Report> {
+    let progress = frame_progress(poses.len())?;
+    let mut times = Vec::new();
+    let mut covered = Vec::new();
+    let mut shown = Vec::new();
+    for (index, &pose) in poses.iter().enumerate() {
+        let painted = painter.paint(pose).inspect_err(|_| progress.finish_and_clear());
+        let Painted { work, milliseconds } =
+            painted.with_context(|| format!("{}, pose {}", path.display(), index + 1))?;
+        save_image(&args.out.join(format!("{index:06}.png")), work.picture())?;
+        times.push(milliseconds);
+        covered.extend(work.covered());
+        if is_in_strip(index, poses.len()) {
+            shown.push(work.picture().clone());
+        }
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    if let Some(file) = &args.strip {
+        save_image(file, &strip(&shown))?;
+    }
+    times.sort_by(f64::total_cmp);
+    Ok(Report {
+        method: painter.name(),
+        pictures: poses.len(),
+        milliseconds: times[times.len() / 2],
+        covered: (!covered.is_empty()).then(|| covered.iter().sum::<f64>() / covered.len() as f64),
+        used: Vec::new(),
+        out: args.out.display().to_string(),
+    })
+}
+
+/// Whether a picture is one of those evenly spread over the path.
+fn is_in_strip(index: usize, count: usize) -> bool {
+    let shown = count.min(STRIP_PICTURES);
+    (0..shown).any(|i| i * (count - 1) / (shown - 1).max(1) == index)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_strip_shows_first_and_last_and_no_more_than_fit() {
+        for count in 1..40 {
+            let shown: Vec<usize> = (0..count).filter(|&index| is_in_strip(index, count)).collect();
+            assert_eq!(shown.len(), count.min(STRIP_PICTURES));
+            assert_eq!((shown[0], shown[shown.len() - 1]), (0, count - 1));
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! The options of `render`, and what they ask for.
+
+use std::path::PathBuf;
+
+use anyhow::bail;
+use clap::{Args, ValueEnum};
+
+use reality_sim::{Archive, CameraPose, Pose2, sequence::read_tum};
+
+use crate::commands::{
+    output::{check_distinct, check_output_picture, create_output_folder},
+    picture_at::SynthesisArgs,
+};
+
+/// Options of `render`.
+#[derive(Debug, Args)]
+pub struct RenderArgs {
+    /// The database, as `build` makes it
+    pub database: PathBuf,
+    /// The camera's pose: metres, metres, radians, metres, radians, radians [default of the last three: as the camera
+    /// usually has them in the database]
+    #[arg(long, value_name = "X,Y,YAW[,HEIGHT,PITCH,ROLL]", value_parser = wanted_pose, allow_hyphen_values = true)]
+    pub pose: Option<WantedPose>,
+    /// All poses of a TUM file: --out is then a folder
+    #[arg(long, value_name = "FILE", conflicts_with = "pose", required_unless_present = "pose")]
+    pub path: Option<PathBuf>,
+    /// The way to the picture
+    #[arg(long, value_enum, default_value = "auto")]
+    pub method: MethodName,
+    /// The picture, PNG or JPEG; with --path the folder of the pictures
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Where the picture came from: a colour for each picture used, the brighter the more it can be trusted
+    #[arg(long, value_name = "FILE", requires = "pose")]
+    pub origins: Option<PathBuf>,
+    /// How far each pixel can be trusted: white fully, black not at all
+    #[arg(long, value_name = "FILE", requires = "pose")]
+    pub trust: Option<PathBuf>,
+    /// Some pictures of the path side by side
+    #[arg(long, value_name = "FILE", requires = "path")]
+    pub strip: Option<PathBuf>,
+    /// Draw as this camera sees, not as the one that took the pictures
+    #[arg(long, value_name = "FILE")]
+    pub camera: Option<PathBuf>,
+    #[command(flatten)]
+    pub synthesis: SynthesisArgs,
+    /// Print one JSON object on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// The ways to a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MethodName {
+    /// The picture recorded at the pose where there is one, else as blend
+    Auto,
+    /// The nearest picture as it is
+    Nearest,
+    /// The paper's Eq. 4: a polynomial of second order from the nearest picture
+    Quadratic,
+    /// One picture, through the ground plane and both lenses
+    Plane,
+    /// Several pictures, mixed pixel by pixel
+    Blend,
+    /// No picture: the model of the field, drawn
+    Simulated,
+}
+
+/// A pose, of which the last three numbers may be left open.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WantedPose {
+    planar: Pose2,
+    attitude: Option<[f64; 3]>,
+}
+
+fn wanted_pose(text: &str) -> Result<WantedPose, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    let numbers = numbers.ok().filter(|numbers| numbers.iter().all(|number| number.is_finite()));
+    match numbers.as_deref() {
+        Some(&[x_m, y_m, yaw_rad]) => {
+            Ok(WantedPose { planar: Pose2::new(x_m, y_m, yaw_rad), attitude: None })
+        }
+        Some(&[x_m, y_m, yaw_rad, height_m, pitch_rad, roll_rad]) => Ok(WantedPose {
+            planar: Pose2::new(x_m, y_m, yaw_rad),
+            attitude: Some([height_m, pitch_rad, roll_rad]),
+        }),
+        _ => {
+            Err("give three or six finite numbers: metres, metres, radians, metres, radians, radians"
+                .to_owned())
+        }
+    }
+}
+
+impl RenderArgs {
+    /// Refuses options that contradict each other.
+    pub fn check_usage(&self) -> Result<(), String> {
+        let wants_origins = self.origins.is_some() || self.trust.is_some();
+        if self.method == MethodName::Simulated && wants_origins {
+            return Err("--origins, --trust: a simulated picture comes from no recorded one: leave them out"
+                .to_owned());
+        }
+        self.synthesis.backend.check_usage()
+    }
+
+    /// The poses asked for; what a pose leaves open is as usual in the archive.
+    pub fn poses(&self, archive: &Archive) -> anyhow::Result<Vec<CameraPose>> {
+        let usual = archive.usual_pose();
+        match (&self.pose, &self.path) {
+            (Some(WantedPose { planar, attitude }), _) => {
+                let [height_m, pitch_rad, roll_rad] =
+                    attitude.unwrap_or([usual.height_m, usual.pitch_rad, usual.roll_rad]);
+                Ok(vec![CameraPose::new(*planar, height_m, pitch_rad, roll_rad)])
+            }
+            (None, Some(file)) => {
+                let poses: Vec<CameraPose> = read_tum(file)?.iter().map(|stamped| stamped.pose).collect();
+                if poses.is_empty() {
+                    bail!("{}: holds no poses: give a TUM file with one pose a line", file.display());
+                }
+                Ok(poses)
+            }
+            // The options require one of the two.
+            (None, None) => bail!("give --pose or --path"),
+        }
+    }
+
+    /// Whoever waited for a thousand pictures must not learn then that one of them has no place.
+    pub fn check_outputs(&self) -> anyhow::Result<()> {
+        let inputs: Vec<PathBuf> = [Some(&self.database), self.path.as_ref(), self.camera.as_ref()]
+            .into_iter()
+            .flatten()
+            .cloned()
+            .collect();
+        let beside = [&self.origins, &self.trust, &self.strip].into_iter().flatten();
+        check_distinct(&std::iter::once(&self.out).chain(beside.clone()).collect::<Vec<_>>())?;
+        beside.clone().try_for_each(|output| check_output_picture(output, &inputs))?;
+        match self.path {
+            Some(_) => {
+                create_output_folder(&self.out, &inputs)?;
+                let inside = self.strip.as_ref().filter(|strip| strip.parent() == Some(&self.out));
+                inside.map_or(Ok(()), |strip| {
+                    bail!("{}: lies among the pictures of the path: give another folder", strip.display())
+                })
+            }
+            None => check_output_picture(&self.out, &inputs),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pose_is_three_or_six_finite_numbers() {
+        let planar = Pose2::new(-1.0, 0.5, 2.0);
+        assert_eq!(wanted_pose("-1, 0.5,2"), Ok(WantedPose { planar, attitude: None }));
+        let whole = WantedPose { planar, attitude: Some([0.5, 0.4, 0.1]) };
+        assert_eq!(wanted_pose("-1,0.5,2,0.5,0.4,0.1"), Ok(whole));
+        for wrong in ["", "1,2", "1,2,3,4", "1,2,NaN", "1,2,3,4,5,inf", "a,b,c"] {
+            assert!(wanted_pose(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! What makes the pictures: recorded ones, or the model of the field.
+
+use std::time::Instant;
+
+use image::RgbImage;
+
+use reality_sim::{
+    CameraPose, Reconstruction, Synthesizer,
+    probing::SIMULATED,
+    sensor::{Renderer, SceneColors},
+    sequence::CameraSetup,
+    synthesis::{Auto, Blend, Method, Nearest, Plane, Quadratic},
+};
+
+use super::options::MethodName;
+
+/// What draws.
+pub enum Painter<'a> {
+    Recorded(&'a Synthesizer, &'static dyn Method),
+    Simulated(Box<Renderer>),
+}
+
+/// A picture.
+pub struct Painted {
+    pub work: Work,
+    pub milliseconds: f64,
+}
+
+/// With where it came from, or without.
+pub enum Work {
+    Reconstructed(Reconstruction),
+    Drawn(RgbImage),
+}
+
+impl Work {
+    /// The picture.
+    pub fn picture(&self) -> &RgbImage {
+        match self {
+            Self::Reconstructed(reconstruction) => &reconstruction.picture,
+            Self::Drawn(picture) => picture,
+        }
+    }
+
+    /// The share of the pixels that some recorded picture shows, where it is made from such.
+    pub fn covered(&self) -> Option<f64> {
+        match self {
+            Self::Reconstructed(reconstruction) => Some(reconstruction.covered()),
+            Self::Drawn(_) => None,
+        }
+    }
+}
+
+impl<'a> Painter<'a> {
+    /// By this method; `setup` is the camera whose pictures are made.
+    pub fn new(method: MethodName, synthesizer: &'a Synthesizer, setup: &CameraSetup) -> Self {
+        let field = synthesizer.archive().field();
+        let recorded: &'static dyn Method = match method {
+            MethodName::Auto => &Auto,
+            MethodName::Nearest => &Nearest,
+            MethodName::Quadratic => &Quadratic,
+            MethodName::Plane => &Plane,
+            MethodName::Blend => &Blend,
+            MethodName::Simulated => {
+                let renderer = Renderer::new(setup, field, SceneColors::new(setup, field));
+                return Self::Simulated(Box::new(renderer));
+            }
+        };
+        Self::Recorded(synthesizer, recorded)
+    }
+
+    /// The method's name.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Recorded(_, method) => method.name(),
+            Self::Simulated(_) => SIMULATED,
+        }
+    }
+
+    /// The picture at a pose.
+    pub fn paint(&self, pose: CameraPose) -> anyhow::Result<Painted> {
+        let start = Instant::now();
+        let work = match self {
+            Self::Recorded(synthesizer, method) => Work::Reconstructed(synthesizer.image_at(pose, *method)?),
+            Self::Simulated(renderer) => Work::Drawn(renderer.draw(pose)?),
+        };
+        Ok(Painted { work, milliseconds: 1e3 * start.elapsed().as_secs_f64() })
+    }
+}
