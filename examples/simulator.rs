@@ -25,10 +25,10 @@ const ASIDE_M: f64 = 0.4;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = env::args().skip(1).collect();
-    let folder = env::temp_dir().join(format!("reality-sim-example-{}.db", std::process::id()));
+    let file = env::temp_dir().join(format!("reality-sim-example-{}.db", std::process::id()));
     let database = match arguments.first() {
         Some(database) => Path::new(database),
-        None => demonstration(&folder)?,
+        None => demonstration(&file)?,
     };
     let start = arguments.get(1).map_or("-2.25,-0.45,1.45", String::as_str);
     let numbers: Vec<f64> = start.split(',').map(str::parse).collect::<Result<_, _>>()?;
@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         robot = robot.moved(Motion2 { forward_m: STEP_M, left_m: 0.0, turn_rad });
     }
-    std::fs::remove_file(folder).ok();
+    std::fs::remove_file(file).ok();
     Ok(())
 }
 

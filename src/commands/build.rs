@@ -22,7 +22,7 @@ use reality_sim::{
 
 use super::{
     device::BackendArgs,
-    output::{check_output_file, frame_progress, print, print_json},
+    output::{aligned, check_output_file, frame_progress, print, print_json},
 };
 
 /// Options of `build`.
@@ -249,6 +249,6 @@ impl Report {
             ));
         }
         lines.push(("database", format!("{}, {} pictures", self.database, self.images)));
-        lines.iter().map(|(name, value)| format!("{name:10}{value}\n")).collect()
+        aligned(&lines)
     }
 }

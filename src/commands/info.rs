@@ -14,7 +14,7 @@ use reality_sim::{
     sequence::write_atomically,
 };
 
-use super::output::{check_output_file, print, print_json};
+use super::output::{aligned, check_output_file, print, print_json};
 
 /// Side of a cell of the carpet, metres.
 const CELL_M: f64 = 0.25;
@@ -211,7 +211,7 @@ impl Report {
                 format!("the next picture is {median:.0} px away in the median, 95 % are below {p95:.0} px"),
             ));
         }
-        lines.iter().map(|(name, value)| format!("{name:10}{value}\n")).collect()
+        aligned(&lines)
     }
 }
 

@@ -65,6 +65,11 @@ pub fn check_distinct(outputs: &[&PathBuf]) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Lines of a name and a value each, the values below each other.
+pub fn aligned(lines: &[(&str, String)]) -> String {
+    lines.iter().map(|(name, value)| format!("{name:10}{value}\n")).collect()
+}
+
 /// Prints one JSON object on standard output.
 pub fn print_json(report: &impl Serialize) -> anyhow::Result<()> {
     print(&format!("{}\n", serde_json::to_string_pretty(report)?))

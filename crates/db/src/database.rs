@@ -32,7 +32,7 @@ const WRITER_CACHE_KIB: i64 = 32 << 10;
 /// A pose-indexed image database.
 ///
 /// Threads share one through an `Arc`, and then read one after the other, decoding at once; a thread that needs a
-/// connection of its own takes [`Database::reopen`]. Any number of programs may read while one writes. Every method
+/// connection of its own opens the file itself. Any number of programs may read while one writes. Every method
 /// sees whole transactions only. While nobody writes the database is one file, which can be read wherever it lies.
 #[derive(Debug)]
 pub struct Database {
@@ -50,11 +50,6 @@ impl Database {
     /// Opens a database for writing, creates it where there is none, and brings one of an older version to this one's.
     pub fn create_or_open(path: &Path) -> Result<Self, DbError> {
         Self::try_create_or_open(path).map_err(|fault| DbError::new(path, fault))
-    }
-
-    /// Another reader of the same file, with a connection of its own.
-    pub fn reopen(&self) -> Result<Self, DbError> {
-        Self::open(&self.path)
     }
 
     /// The file.

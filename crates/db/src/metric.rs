@@ -144,7 +144,6 @@ fn point_seen(camera: &Camera, pose: CameraPose, pixel: DVec2, background_m: f64
 
 /// JᵀJ of a point, by central differences.
 fn pixel_motion(camera: &Camera, pose: CameraPose, point_in_world: DVec3) -> Option<Matrix6<f64>> {
-    let mut square = Matrix6::zeros();
     let mut gradients = [DVec2::ZERO; 6];
     for (axis, gradient) in gradients.iter_mut().enumerate() {
         let pixel = |step: f64| {
@@ -152,12 +151,7 @@ fn pixel_motion(camera: &Camera, pose: CameraPose, point_in_world: DVec3) -> Opt
         };
         *gradient = (pixel(STEP)? - pixel(-STEP)?) / (2.0 * STEP);
     }
-    for row in 0..6 {
-        for column in 0..6 {
-            square[(row, column)] = gradients[row].dot(gradients[column]);
-        }
-    }
-    Some(square)
+    Some(Matrix6::from_fn(|row, column| gradients[row].dot(gradients[column])))
 }
 
 fn moved(mut pose: CameraPose, axis: usize, step: f64) -> CameraPose {
@@ -169,10 +163,6 @@ fn moved(mut pose: CameraPose, axis: usize, step: f64) -> CameraPose {
         &mut pose.pitch_rad,
         &mut pose.roll_rad,
     ];
-    for (index, coordinate) in coordinates.into_iter().enumerate() {
-        if index == axis {
-            *coordinate += step;
-        }
-    }
+    *coordinates[axis] += step;
     pose
 }

@@ -2,7 +2,7 @@
 
 use reality_sim_core::pose::CameraPose;
 
-use crate::{Blend, Method, Nearest, Reconstruction, SynthesisError, Synthesizer};
+use crate::{Blend, Method, Reconstruction, SynthesisError, Synthesizer, nearest::as_recorded};
 
 /// A picture whose pixels lie this near to where they should, root mean square, was recorded at the pose asked for.
 const RECORDED_PX: f64 = 0.5;
@@ -17,11 +17,11 @@ impl Method for Auto {
     }
 
     fn reconstruct(&self, from: &Synthesizer, pose: CameraPose) -> Result<Reconstruction, SynthesisError> {
-        let is_like = |image| from.archive().camera_of(image) == from.camera();
         let near = from.nearest(pose, from.config().candidates)?;
-        let mut recorded = near.iter().take_while(|neighbour| neighbour.distance_px <= RECORDED_PX);
-        // The nearest of the size is then the nearest of the lens, or as near to half a pixel.
-        let is_recorded = recorded.any(|neighbour| is_like(neighbour.image));
-        if is_recorded { Nearest.reconstruct(from, pose) } else { Blend.reconstruct(from, pose) }
+        let mut recorded = near.into_iter().take_while(|neighbour| neighbour.distance_px <= RECORDED_PX);
+        match recorded.find(|neighbour| from.archive().camera_of(neighbour.image) == from.camera()) {
+            Some(neighbour) => as_recorded(from, neighbour),
+            None => Blend.reconstruct(from, pose),
+        }
     }
 }

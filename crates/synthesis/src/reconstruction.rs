@@ -37,9 +37,9 @@ impl Reconstruction {
         rays: &RayTable,
     ) -> Self {
         rays.mark_outside(&mut origins);
-        let seen = origins.iter().filter(|origin| origin.source != Origin::OUTSIDE).count();
         let mut counts = [0_usize; 256];
         origins.iter().for_each(|origin| counts[usize::from(origin.source)] += 1);
+        let seen = origins.len() - counts[usize::from(Origin::OUTSIDE)];
         let share = |source: usize| counts[source] as f64 / seen.max(1) as f64;
         let used = images.enumerate().map(|(source, (image, distance_px))| Used {
             image,

@@ -171,9 +171,9 @@ impl Synthesizer {
         pose: CameraPose,
         count: usize,
     ) -> Result<Vec<Neighbour>, SynthesisError> {
-        let fail = |reason| SynthesisError::NoNeighbours { pose, reason };
-        let mut candidates = self.archive.index().nearest(pose, self.config.candidates).map_err(fail)?;
-        for natural in self.archive.index().natural(pose).map_err(fail)? {
+        let mut candidates = self.nearest(pose, self.config.candidates)?;
+        let natural = self.archive.index().natural(pose);
+        for natural in natural.map_err(|reason| SynthesisError::NoNeighbours { pose, reason })? {
             if candidates.iter().all(|candidate| candidate.image != natural.image) {
                 candidates.push(natural);
             }

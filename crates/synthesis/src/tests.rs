@@ -90,6 +90,26 @@ fn the_recorded_picture_is_given_where_there_is_one_and_a_reconstruction_elsewhe
     assert_eq!(other.image_at(pose, &Auto).unwrap().method, "blend");
 }
 
+/// Another lens of the same size stood a little nearer: the picture is the right lens's all the same.
+#[test]
+fn the_recorded_picture_is_that_of_the_lens_wanted() {
+    let mut walk = walk();
+    let (folder, archive) = stored(&walk);
+    let path = archive.database().path().to_path_buf();
+    let (pose, recorded) = truth(&walk, 7);
+    walk.name = "another lens".to_owned();
+    walk.setup.camera.fx = 200.0;
+    let beside = CameraPose { yaw_rad: pose.yaw_rad + 5e-4, ..pose };
+    walk.groundtruth[9] = Some(beside);
+    let poses: Vec<_> = walk.groundtruth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
+    let mut database = Database::create_or_open(&path).unwrap();
+    database.ingest(&walk, &poses, &PoseSource::GroundTruth, |_| ()).unwrap();
+    let synthesizer = Synthesizer::new(Arc::new(Archive::open(&path, 64 << 20).unwrap()));
+    assert_eq!(synthesizer.camera(), archive.camera_of(7), "of equals the first one");
+    assert_eq!(synthesizer.image_at(beside, &Auto).unwrap().picture, recorded);
+    drop(folder);
+}
+
 #[test]
 fn the_maps_of_origin_and_trust_agree_with_what_was_used() {
     let (_folder, synthesizer) = without_some_frames();

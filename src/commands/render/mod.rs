@@ -11,6 +11,7 @@ use image::DynamicImage;
 
 use reality_sim::{
     Archive, CameraPose,
+    evaluation::percentile,
     montage::strip,
     sequence::{read_camera, save_image},
 };
@@ -105,7 +106,7 @@ fn along_path(
     Ok(Report {
         method: painter.name(),
         pictures: poses.len(),
-        milliseconds: times[times.len() / 2],
+        milliseconds: percentile(&times, 0.5).unwrap_or_default(),
         covered: (!covered.is_empty()).then(|| covered.iter().sum::<f64>() / covered.len() as f64),
         used: Vec::new(),
         out: args.out.display().to_string(),

@@ -4,6 +4,8 @@ use serde::Serialize;
 
 use reality_sim::{Archive, Reconstruction, synthesis::Used};
 
+use crate::commands::output::aligned;
+
 /// What `--json` prints.
 #[derive(Serialize)]
 pub struct Report {
@@ -64,6 +66,6 @@ impl Report {
         }
         lines.push(("time", format!("{:.1} ms a picture", self.milliseconds)));
         lines.push(("picture", self.out.clone()));
-        lines.iter().map(|(name, value)| format!("{name:10}{value}\n")).collect()
+        aligned(&lines)
     }
 }

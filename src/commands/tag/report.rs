@@ -11,7 +11,7 @@ use reality_sim::{
 };
 
 use super::options::TagArgs;
-use crate::commands::device::Device;
+use crate::commands::{device::Device, output::aligned};
 
 /// A pose to hand out, with what is known of its errors.
 pub struct PoseResult {
@@ -161,7 +161,7 @@ impl Report {
         for (name, path) in [("poses", &self.out), ("details", &self.details), ("overlay", &self.overlay)] {
             lines.extend(path.iter().map(|path| (name, path.clone())));
         }
-        lines.iter().map(|(name, value)| format!("{name:10}{value}\n")).collect()
+        aligned(&lines)
     }
 }
 

@@ -119,11 +119,6 @@ impl PoseIndex {
         Ok(neighbours)
     }
 
-    /// The edges of the triangulations used for a heading, each between two places, metres: for drawing.
-    pub fn edges(&self, yaw_rad: f64) -> Vec<[[f64; 2]; 2]> {
-        self.sectors_around(yaw_rad).flat_map(|(sector, _)| sector.edges()).collect()
-    }
-
     fn check(&self, pose: CameraPose) -> Result<(), NoNeighbours> {
         if !pose.is_finite() {
             return Err(NoNeighbours::NotFinite);

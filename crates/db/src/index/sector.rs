@@ -96,10 +96,6 @@ impl Sector {
         let [first, end] = self.delaunay.vertex(spot).data().items;
         &self.items[first as usize..end as usize]
     }
-
-    pub(super) fn edges(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
-        self.delaunay.undirected_edges().map(|edge| edge.positions().map(|position| [position.x, position.y]))
-    }
 }
 
 /// An image and the cell of the grid that it lies in, in the order in which spots are stored.

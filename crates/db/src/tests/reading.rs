@@ -72,7 +72,7 @@ fn threads_share_a_database_and_open_it_again() {
     thread::scope(|scope| {
         for _ in 0..3 {
             scope.spawn(|| {
-                let own = database.reopen().unwrap();
+                let own = Database::open(&path).unwrap();
                 for (image, picture) in database.images().unwrap().iter().zip(&pictures) {
                     assert_eq!(&database.picture(image.id).unwrap(), picture);
                     assert_eq!(&own.picture(image.id).unwrap(), picture);
