@@ -1,15 +1,14 @@
 //! Draws a pose into its picture: the field's lines where the pose puts them, the field's border as it was found, the
 //! particles, and a map of the field from above.
 //!
-//! Everything on the ground goes through the camera's own lens model point by point; straight lines in the world are
-//! never straight chords in the picture.
+//! Everything on the ground goes through the camera's own lens model, see [`crate::field::project_lines`].
 
 use glam::{DVec2, Vec2};
 use image::RgbImage;
 
 use crate::{
     camera::Camera,
-    field::{Curve, FieldDimensions},
+    field::{Curve, FieldDimensions, project_lines, project_polygon},
     pose::CameraPose,
 };
 
@@ -26,12 +25,6 @@ const MAP_GROUND_SRGB: [u8; 3] = [14, 44, 28];
 const MAP_LINE_SRGB: [u8; 3] = [225, 235, 228];
 const PATH_SRGB: [u8; 3] = [250, 190, 225];
 
-/// Points next to each other on a curve are about this far apart in the picture where the curve is nearest, pixels.
-const SPACING_PX: f64 = 6.0;
-/// Largest distance between such points on the ground, metres.
-const MAX_SPACING_M: f64 = 0.02;
-/// Points farther apart in the picture than this are not joined, pixels: the curve leaves the view between them.
-const MAX_STEP_PX: f64 = 20.0;
 /// Poses farther apart than this are not joined on the map, metres: the robot was carried, or the filter jumped.
 const MAX_PATH_STEP_M: f64 = 0.5;
 /// Width of the map over that of the picture.
@@ -79,14 +72,18 @@ impl Overlay<'_> {
         let scale = f64::from(picture.width().max(picture.height())) / 640.0;
         let pen = Pen { width_px: 1.3 * scale.clamp(1.0, 4.0), halo: 0.35 };
         if let Some(BorderOutline { corners_in_heading, camera_in_heading }) = self.border {
-            let segments = self.outline(corners_in_heading, camera_in_heading);
-            pen.stroke(&mut picture, &segments, BORDER_SRGB);
+            let corners: Vec<DVec2> = corners_in_heading.iter().map(|corner| corner.as_dvec2()).collect();
+            let outline = project_polygon(self.camera, &corners, camera_in_heading);
+            pen.stroke(&mut picture, &segments(&outline), BORDER_SRGB);
         }
         if let Some(truth) = self.truth {
-            pen.stroke(&mut picture, &self.lines(truth, &[0.0]), TRUTH_SRGB);
+            let centres = project_lines(self.camera, self.field, truth, 0.0);
+            pen.stroke(&mut picture, &segments(&centres), TRUTH_SRGB);
         }
         let half_width_m = self.field.line_width_m / 2.0;
-        pen.stroke(&mut picture, &self.lines(self.pose, &[-half_width_m, half_width_m]), POSE_SRGB);
+        let edge = |sideways_m| project_lines(self.camera, self.field, self.pose, sideways_m);
+        let edges = [edge(-half_width_m), edge(half_width_m)].concat();
+        pen.stroke(&mut picture, &segments(&edges), POSE_SRGB);
         let dots: Vec<_> = self
             .particles
             .iter()
@@ -120,53 +117,6 @@ impl Overlay<'_> {
         picture
     }
 
-    /// The field's lines seen from a pose, moved sideways by each of these lengths.
-    fn lines(&self, pose: CameraPose, sideways_m: &[f64]) -> Vec<Segment> {
-        let mut segments = Vec::new();
-        for curve in self.field.curves() {
-            let count = self.count(curve.length_m(), pose);
-            for offset_m in sideways_m {
-                let points = (0..=count).map(|step| {
-                    let (point, tangent) = curve.at(step as f64 / count as f64);
-                    point + *offset_m * tangent.perp()
-                });
-                self.join(pose, points, &mut segments);
-            }
-        }
-        segments
-    }
-
-    fn outline(&self, corners: &[Vec2], pose: CameraPose) -> Vec<Segment> {
-        let mut segments = Vec::new();
-        for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
-            let (from, to) = (from.as_dvec2(), to.as_dvec2());
-            let count = self.count(from.distance(to), pose);
-            let points = (0..=count).map(|step| from.lerp(to, step as f64 / count as f64));
-            self.join(pose, points, &mut segments);
-        }
-        segments
-    }
-
-    /// Steps in which a length on the ground is drawn.
-    fn count(&self, length_m: f64, pose: CameraPose) -> usize {
-        let spacing_m = SPACING_PX * pose.height_m / self.camera.fx.max(self.camera.fy);
-        (length_m / spacing_m.clamp(1e-3, MAX_SPACING_M)).ceil().max(1.0) as usize
-    }
-
-    /// Joins points of the ground that are seen next to each other.
-    fn join(&self, pose: CameraPose, points: impl Iterator<Item = DVec2>, segments: &mut Vec<Segment>) {
-        let mut before: Option<DVec2> = None;
-        for point in points {
-            let pixel = self.see(pose, point);
-            if let (Some(from), Some(to)) = (before, pixel)
-                && from.distance(to) < MAX_STEP_PX
-            {
-                segments.push((from, to));
-            }
-            before = pixel;
-        }
-    }
-
     fn see(&self, pose: CameraPose, point_on_ground: DVec2) -> Option<DVec2> {
         self.camera.project(pose.camera_from_world(point_on_ground.extend(0.0))).ok()
     }
@@ -174,6 +124,11 @@ impl Overlay<'_> {
 
 /// A straight piece in the picture, pixels.
 type Segment = (DVec2, DVec2);
+
+/// The straight pieces of polylines.
+fn segments(polylines: &[Vec<DVec2>]) -> Vec<Segment> {
+    polylines.iter().flat_map(|polyline| polyline.windows(2).map(|pair| (pair[0], pair[1]))).collect()
+}
 
 /// The field from above: where it lies in the picture, and its scale.
 struct Map {

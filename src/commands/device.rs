@@ -5,6 +5,8 @@ use std::sync::Arc;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 
+#[cfg(feature = "viewer")]
+use reality_sim::backend::BackendError;
 use reality_sim::backend::{Backend, CpuBackend};
 
 /// Where to compute.
@@ -89,4 +91,34 @@ impl BackendArgs {
     pub fn device(&self) -> anyhow::Result<Device> {
         self.processor_only("--backend gpu")
     }
+}
+
+/// The devices that a window lets choose from, the usual one first.
+#[cfg(feature = "viewer")]
+pub fn all() -> Vec<reality_sim_viewer::Device> {
+    let choose = |name: String, backend: Choice, adapter: Option<String>| {
+        let args = BackendArgs { backend, adapter };
+        let open = move || {
+            args.device().map(|device| device.backend).map_err(|error| BackendError(error.to_string()))
+        };
+        reality_sim_viewer::Device { name, open: Arc::new(open) }
+    };
+    let mut devices = vec![
+        choose("automatic".to_owned(), Choice::Auto, None),
+        choose("processor".to_owned(), Choice::Cpu, None),
+    ];
+    devices.extend(adapter_names().into_iter().map(|name| choose(name.clone(), Choice::Gpu, Some(name))));
+    devices
+}
+
+/// The graphics adapters of this machine.
+#[cfg(all(feature = "viewer", feature = "gpu"))]
+fn adapter_names() -> Vec<String> {
+    reality_sim::gpu::adapters().into_iter().map(|adapter| adapter.name).collect()
+}
+
+/// This build knows none.
+#[cfg(all(feature = "viewer", not(feature = "gpu")))]
+fn adapter_names() -> Vec<String> {
+    Vec::new()
 }

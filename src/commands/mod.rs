@@ -10,6 +10,8 @@ mod output;
 mod picture_at;
 mod render;
 mod tag;
+#[cfg(feature = "viewer")]
+mod viewer;
 
 /// What to do.
 #[derive(Debug, clap::Subcommand)]
@@ -27,6 +29,9 @@ pub enum Command {
     /// List graphics adapters, and check that they compute what the CPU computes
     #[cfg(feature = "gpu")]
     Doctor(doctor::DoctorArgs),
+    /// Open a window: the filter at work on a recording, pictures at any pose; without arguments the demonstration
+    #[cfg(feature = "viewer")]
+    Viewer(viewer::ViewerArgs),
 }
 
 impl Command {
@@ -40,6 +45,8 @@ impl Command {
             Self::Info(_) => Ok(()),
             #[cfg(feature = "gpu")]
             Self::Doctor(_) => Ok(()),
+            #[cfg(feature = "viewer")]
+            Self::Viewer(_) => Ok(()),
         }
     }
 
@@ -53,6 +60,8 @@ impl Command {
             Self::Info(args) => info::run(args),
             #[cfg(feature = "gpu")]
             Self::Doctor(args) => doctor::run(args),
+            #[cfg(feature = "viewer")]
+            Self::Viewer(args) => viewer::run(args),
         }
     }
 }

@@ -48,6 +48,21 @@ impl Database {
         source: &PoseSource,
         mut progress: impl FnMut(usize),
     ) -> Result<IngestReport, DbError> {
+        self.ingest_while(sequence, poses, source, |done| {
+            progress(done);
+            true
+        })
+    }
+
+    /// As [`Database::ingest`], as long as `progress` says true: after the batch where it does not, the rest is left for
+    /// another call.
+    pub fn ingest_while(
+        &mut self,
+        sequence: &Sequence,
+        poses: &[Option<PoseEstimate>],
+        source: &PoseSource,
+        mut progress: impl FnMut(usize) -> bool,
+    ) -> Result<IngestReport, DbError> {
         let path = self.path().to_path_buf();
         let fail = |fault| DbError::new(&path, fault);
         if !self.is_writer {
@@ -64,7 +79,9 @@ impl Database {
                 .map_err(|error| fail(error.into()))?;
             done = recording.add_batch(&transaction, done, &mut report)?;
             transaction.commit().map_err(|error| fail(error.into()))?;
-            progress(done);
+            if !progress(done) {
+                break;
+            }
         }
         Ok(report)
     }

@@ -3,12 +3,14 @@
 mod curves;
 mod dimensions;
 mod presets;
+mod projected;
 mod sampling;
 
 pub use self::{
     curves::{Curve, Goal, GoalPost},
     dimensions::{FieldDimensions, InvalidField},
     presets::preset_names,
+    projected::{project_lines, project_polygon},
     sampling::{LineSample, VisibleSample, sample_lines, visible_samples},
 };
 

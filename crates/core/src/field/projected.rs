@@ -1,0 +1,74 @@
+//! Curves on the ground as a camera sees them, point by point through its lens: straight lines in the world are never
+//! straight chords in the picture.
+
+use glam::DVec2;
+
+use super::FieldDimensions;
+use crate::{camera::Camera, pose::CameraPose};
+
+/// Points next to each other on a curve are about this far apart in the picture where the curve is nearest, pixels.
+const SPACING_PX: f64 = 6.0;
+/// Largest distance between such points on the ground, metres.
+const MAX_SPACING_M: f64 = 0.02;
+/// Points farther apart in the picture than this are not joined, pixels: the curve leaves the view between them.
+const MAX_STEP_PX: f64 = 20.0;
+
+/// The field's lines seen from a pose: polylines, pixels. `sideways_m` is 0 for the lines' centres, half their width to
+/// either side for their edges.
+pub fn project_lines(
+    camera: &Camera,
+    field: &FieldDimensions,
+    pose: CameraPose,
+    sideways_m: f64,
+) -> Vec<Vec<DVec2>> {
+    let view = View { camera, pose };
+    let curve_seen = |curve: super::Curve| {
+        let count = view.steps(curve.length_m());
+        view.polylines((0..=count).map(move |step| {
+            let (point, tangent) = curve.at(step as f64 / count as f64);
+            point + sideways_m * tangent.perp()
+        }))
+    };
+    field.curves().into_iter().flat_map(curve_seen).collect()
+}
+
+/// A closed polygon on the ground seen from a pose: polylines, pixels. Corners are in the same axes as the pose, metres.
+pub fn project_polygon(camera: &Camera, corners: &[DVec2], pose: CameraPose) -> Vec<Vec<DVec2>> {
+    let view = View { camera, pose };
+    let side = |(from, to): (&DVec2, &DVec2)| {
+        let (from, to, count) = (*from, *to, view.steps(from.distance(*to)));
+        view.polylines((0..=count).map(move |step| from.lerp(to, step as f64 / count as f64)))
+    };
+    corners.iter().zip(corners.iter().cycle().skip(1)).flat_map(side).collect()
+}
+
+struct View<'a> {
+    camera: &'a Camera,
+    pose: CameraPose,
+}
+
+impl View<'_> {
+    /// Steps in which a length on the ground is drawn.
+    fn steps(&self, length_m: f64) -> usize {
+        let spacing_m = SPACING_PX * self.pose.height_m / self.camera.fx.max(self.camera.fy);
+        (length_m / spacing_m.clamp(1e-3, MAX_SPACING_M)).ceil().max(1.0) as usize
+    }
+
+    /// Joins points of the ground that are seen next to each other.
+    fn polylines(&self, points: impl Iterator<Item = DVec2>) -> Vec<Vec<DVec2>> {
+        let mut polylines: Vec<Vec<DVec2>> = vec![Vec::new()];
+        let mut before: Option<DVec2> = None;
+        for point in points {
+            let pixel = self.camera.project(self.pose.camera_from_world(point.extend(0.0))).ok();
+            if let Some(pixel) = pixel {
+                if before.is_none_or(|before| before.distance(pixel) >= MAX_STEP_PX) {
+                    polylines.push(Vec::new());
+                }
+                polylines.last_mut().into_iter().for_each(|polyline| polyline.push(pixel));
+            }
+            before = pixel;
+        }
+        polylines.retain(|polyline| polyline.len() > 1);
+        polylines
+    }
+}

@@ -1,0 +1,253 @@
+//! What is in the window: the bars, the panel that is shown, and what is being opened.
+
+use std::path::{Path, PathBuf};
+
+use eframe::{
+    CreationContext, Frame, Storage,
+    egui::{self, Context, ThemePreference, Ui},
+};
+
+use crate::{
+    ViewerOptions,
+    background::{Outcome, Task},
+    device::Device,
+    drive::DrivePanel,
+    open_window::{Chosen, OpenWindow, Purpose},
+    opening::{Opened, open},
+    problems::Problems,
+    screenshot::Screenshot,
+    settings::Settings,
+    shortcuts::{self, Action, Place},
+    toolbar::{PanelKind, Toolbar},
+    walk::WalkPanel,
+};
+
+/// The whole window.
+pub struct ViewerApp {
+    settings: Settings,
+    devices: Vec<Device>,
+    demonstration: Option<PathBuf>,
+    /// What draws the window, in words.
+    adapter: String,
+    opening: Option<Opening>,
+    open_window: OpenWindow,
+    screenshot: Screenshot,
+    problems: Problems,
+    notice: String,
+    help_is_open: bool,
+    shown: PanelKind,
+    walk: Option<WalkPanel>,
+    drive: Option<DrivePanel>,
+}
+
+/// Something on its way in.
+struct Opening {
+    purpose: Purpose,
+    path: PathBuf,
+    task: Task<Opened>,
+}
+
+impl ViewerApp {
+    /// A window that opens something first.
+    pub fn new(cc: &CreationContext<'_>, options: ViewerOptions) -> Self {
+        let settings = Settings::load(cc.storage);
+        cc.egui_ctx.set_theme(settings.theme);
+        let mut app = Self {
+            settings,
+            devices: options.devices,
+            demonstration: options.demonstration,
+            adapter: adapter(cc),
+            opening: None,
+            open_window: OpenWindow::default(),
+            screenshot: Screenshot::default(),
+            problems: Problems::default(),
+            notice: String::new(),
+            help_is_open: false,
+            shown: PanelKind::default(),
+            walk: None,
+            drive: None,
+        };
+        app.open(&cc.egui_ctx, Purpose::Open, &options.open);
+        app
+    }
+
+    /// Opens a path in the background.
+    fn open(&mut self, ctx: &Context, purpose: Purpose, path: &Path) {
+        let wanted = path.to_path_buf();
+        let task = Task::spawn(ctx, format!("Opening {} …", path.display()), move |_| open(&wanted));
+        self.opening = Some(Opening { purpose, path: path.to_path_buf(), task });
+    }
+
+    fn take_opened(&mut self, ctx: &Context) {
+        let Some(outcome) = self.opening.as_ref().and_then(|opening| opening.task.poll()) else { return };
+        let Some(Opening { purpose, path, .. }) = self.opening.take() else { return };
+        match (outcome, purpose) {
+            (Outcome::Failed(reason), _) => self.problems.add(reason),
+            (Outcome::Cancelled, _) => {}
+            (Outcome::Done(opened), Purpose::Open) => self.show_opened(ctx, opened, &path),
+            (Outcome::Done(Opened::Recording(sequence)), Purpose::Compare) => {
+                if let Some(drive) = &mut self.drive
+                    && let Err(reason) = drive.compare_with(&sequence)
+                {
+                    self.problems.add(reason);
+                }
+            }
+            (Outcome::Done(Opened::Database(_)), Purpose::Compare) => {
+                let path = path.display();
+                self.problems
+                    .add(format!("{path}: is a database: to compare with, open the folder of a recording"));
+            }
+        }
+    }
+
+    fn show_opened(&mut self, ctx: &Context, opened: Opened, path: &Path) {
+        // The demonstration has a place of its own in the list.
+        if self.demonstration.as_deref() != Some(path) {
+            self.settings.remember(&std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf()));
+        }
+        match opened {
+            Opened::Recording(sequence) => {
+                self.drive = Some(DrivePanel::of_recording(sequence.clone()));
+                self.walk = Some(WalkPanel::new(ctx, sequence, &self.devices, &self.settings.walk));
+                self.shown = PanelKind::Walk;
+            }
+            Opened::Database(archive) => {
+                // What Walk shows is another recording than this one: it goes.
+                self.walk = None;
+                self.drive = Some(DrivePanel::of_database(archive));
+                self.shown = PanelKind::Drive;
+            }
+        }
+    }
+
+    fn act(&mut self, ctx: &Context, action: Action) {
+        match action {
+            Action::OpenPath => self.open_window.ask(Purpose::Open),
+            Action::Walk if self.walk.is_some() => self.shown = PanelKind::Walk,
+            Action::Drive if self.drive.is_some() => self.shown = PanelKind::Drive,
+            Action::Theme => {
+                self.settings.theme = match self.settings.theme {
+                    ThemePreference::System => ThemePreference::Light,
+                    ThemePreference::Light => ThemePreference::Dark,
+                    ThemePreference::Dark => ThemePreference::System,
+                };
+                ctx.set_theme(self.settings.theme);
+            }
+            Action::Screenshot => self.screenshot.take(ctx),
+            Action::Help => self.help_is_open = !self.help_is_open,
+            _ => {}
+        }
+    }
+
+    fn take_dropped(&mut self, ctx: &Context) {
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        if let Some(path) = dropped.first().map(|file| file.path().to_path_buf()) {
+            self.open(ctx, Purpose::Open, &path);
+        }
+    }
+
+    fn take_screenshot(&mut self) {
+        match self.screenshot.poll() {
+            Some(Ok(path)) => self.notice = format!("saved {}", path.display()),
+            Some(Err(reason)) => self.problems.add(reason),
+            None => {}
+        }
+    }
+
+    fn bars(&mut self, ui: &mut Ui, frame: &Frame) {
+        let has = [(PanelKind::Walk, self.walk.is_some()), (PanelKind::Drive, self.drive.is_some())];
+        let panels: Vec<PanelKind> =
+            has.into_iter().filter(|(_, has)| *has).map(|(panel, _)| panel).collect();
+        let toolbar = Toolbar { panels: &panels, shown: self.shown, theme: self.settings.theme };
+        if let Some(action) = toolbar.ui(ui) {
+            self.act(ui.ctx(), action);
+        }
+        self.problems.ui(ui);
+        egui::Panel::bottom("status").show(ui, |ui| {
+            ui.horizontal(|ui| {
+                if let Some(opening) = &self.opening {
+                    opening.task.ui(ui);
+                }
+                ui.label(&self.notice);
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    if let Some(seconds) = frame.info().cpu_usage {
+                        ui.weak(format!("{:.1} ms", 1000.0 * seconds))
+                            .on_hover_text("Time that the window's own thread took for the last frame");
+                        ui.separator();
+                    }
+                    ui.add(egui::Label::new(egui::RichText::new(&self.adapter).weak()).truncate());
+                });
+            });
+        });
+    }
+
+    fn panel(&mut self, ui: &mut Ui) {
+        let Self { settings, devices, problems, .. } = self;
+        match (self.shown, &mut self.walk, &mut self.drive) {
+            (PanelKind::Walk, Some(walk), _) => walk.ui(ui, &mut settings.walk, devices, problems),
+            (PanelKind::Drive, _, Some(drive)) => {
+                if drive.ui(ui, &mut settings.drive, devices, problems) {
+                    self.open_window.ask(Purpose::Compare);
+                }
+            }
+            _ => {
+                egui::CentralPanel::default().show(ui, |ui| {
+                    ui.centered_and_justified(|ui| {
+                        if self.opening.is_some() {
+                            ui.spinner();
+                        } else {
+                            ui.label("Nothing is open. Press Open…, or drop a recording's folder or a database here.");
+                        }
+                    });
+                });
+            }
+        }
+    }
+}
+
+impl eframe::App for ViewerApp {
+    fn ui(&mut self, ui: &mut Ui, frame: &mut Frame) {
+        let ctx = ui.ctx().clone();
+        self.take_opened(&ctx);
+        self.take_dropped(&ctx);
+        self.take_screenshot();
+        for action in shortcuts::pressed(ui, Place::Everywhere) {
+            self.act(&ctx, action);
+        }
+        self.bars(ui, frame);
+        self.panel(ui);
+        shortcuts::window(ui, &mut self.help_is_open);
+        let chosen = self.open_window.ui(ui, &self.settings.recent, self.demonstration.as_deref());
+        if let Some(Chosen { purpose, path }) = chosen {
+            self.open(&ctx, purpose, &path);
+        }
+        drop_hint(&ctx);
+    }
+
+    fn save(&mut self, storage: &mut dyn Storage) {
+        self.settings.store(storage);
+    }
+}
+
+/// Says that what is held over the window can be dropped.
+fn drop_hint(ctx: &Context) {
+    if ctx.input(|input| input.raw.hovered_files.is_empty()) {
+        return;
+    }
+    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop"));
+    let (painter, rect) = (ctx.layer_painter(layer), ctx.content_rect());
+    painter.rect_filled(rect, 0.0, egui::Color32::from_black_alpha(170));
+    let font = egui::FontId::proportional(22.0);
+    let text = "Drop a recording's folder or a database to open it";
+    painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, font, egui::Color32::WHITE);
+}
+
+/// What draws the window, in words.
+fn adapter(cc: &CreationContext<'_>) -> String {
+    let Some(state) = &cc.wgpu_render_state else { return String::new() };
+    let info = state.adapter.get_info();
+    match info.device_type {
+        wgpu::DeviceType::Cpu => format!("no graphics card: the processor draws this window ({})", info.name),
+        _ => format!("drawn by {}", info.name),
+    }
+}

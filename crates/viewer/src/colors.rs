@@ -1,0 +1,18 @@
+//! Colours that mean the same in every panel, told apart with any kind of colour vision, on light and dark.
+
+use eframe::egui::Color32;
+
+/// What the filter found: lines, path, arrow.
+pub const POSE: Color32 = Color32::from_rgb(255, 45, 160);
+/// The truth.
+pub const TRUTH: Color32 = Color32::from_rgb(20, 130, 255);
+/// The field's border in the picture, and the camera's footprint on the field.
+pub const BORDER: Color32 = Color32::from_rgb(255, 205, 0);
+/// Particles of full weight.
+pub const PARTICLE: Color32 = Color32::from_rgb(255, 150, 30);
+/// Odometry alone.
+pub const ODOMETRY: Color32 = Color32::from_rgb(190, 190, 200);
+/// The carpet from above.
+pub const CARPET: Color32 = Color32::from_rgb(18, 56, 36);
+/// The carpet's lines from above.
+pub const LINE: Color32 = Color32::from_rgb(225, 235, 228);

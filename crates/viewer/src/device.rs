@@ -1,0 +1,25 @@
+//! Where filter and pictures can be computed, as the program offers it.
+
+use std::{fmt, sync::Arc};
+
+use reality_sim_core::backend::{Backend, BackendError};
+
+/// A device to choose.
+#[derive(Clone)]
+pub struct Device {
+    /// What it is called in the list.
+    pub name: String,
+    /// Opens it; called by a thread that may wait.
+    pub open: Arc<dyn Fn() -> Result<Arc<dyn Backend>, BackendError> + Send + Sync>,
+}
+
+impl fmt::Debug for Device {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_tuple("Device").field(&self.name).finish()
+    }
+}
+
+/// The device of this name, else the first.
+pub(crate) fn by_name<'a>(devices: &'a [Device], name: &str) -> Option<&'a Device> {
+    devices.iter().find(|device| device.name == name).or(devices.first())
+}

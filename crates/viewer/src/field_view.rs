@@ -1,0 +1,193 @@
+//! The field from above, to draw on and to drag things over: +x to the right, +y up, in metres. The wheel zooms, the
+//! secondary button moves the view, a double click on the carpet shows all of it again.
+
+use eframe::egui::{
+    Color32, CursorIcon, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2,
+    WidgetInfo, pos2, vec2,
+};
+use glam::DVec2;
+use reality_sim_core::{
+    field::{Curve, FieldDimensions},
+    pose::Pose2,
+};
+
+use crate::colors;
+
+/// Poses farther apart than this are not joined, metres: the robot was carried, or the filter jumped.
+const MAX_PATH_STEP_M: f64 = 0.5;
+/// The view can be enlarged so many times.
+const MAX_ZOOM: f32 = 40.0;
+
+/// Which part of the field is looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FieldView {
+    zoom: f32,
+    middle_in_world: DVec2,
+}
+
+impl Default for FieldView {
+    fn default() -> Self {
+        Self { zoom: 1.0, middle_in_world: DVec2::ZERO }
+    }
+}
+
+impl FieldView {
+    /// Draws carpet and lines into a rectangle of this size.
+    pub fn show(&mut self, ui: &mut Ui, field: &FieldDimensions, size: Vec2, name: &str) -> FieldCanvas {
+        let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, name));
+        let half = field.carpet_half_extent_m();
+        let whole = (size.x / (2.0 * half.x) as f32).min(size.y / (2.0 * half.y) as f32);
+        self.look_around(ui, &response, rect, whole);
+        let canvas = FieldCanvas {
+            painter: ui.painter_at(rect),
+            rect,
+            px_per_m: whole * self.zoom,
+            middle_in_world: self.middle_in_world,
+            response,
+        };
+        canvas.draw_field(field, half);
+        canvas
+    }
+
+    fn look_around(&mut self, ui: &Ui, response: &Response, rect: Rect, whole: f32) {
+        let to_world = |offset: Vec2, zoom: f32| {
+            DVec2::new(f64::from(offset.x), f64::from(-offset.y)) / f64::from(whole * zoom)
+        };
+        if let Some(pointer) = response.hover_pos() {
+            let factor = ui.input(|input| input.zoom_delta() * (input.smooth_scroll_delta().y / 200.0).exp());
+            let zoom = (self.zoom * factor).clamp(1.0, MAX_ZOOM);
+            // The place under the pointer stays there.
+            let offset = pointer - rect.center();
+            self.middle_in_world += to_world(offset, self.zoom) - to_world(offset, zoom);
+            self.zoom = zoom;
+        }
+        if response.dragged_by(PointerButton::Secondary) || response.dragged_by(PointerButton::Middle) {
+            self.middle_in_world -= to_world(response.drag_delta(), self.zoom);
+            ui.set_cursor_icon(CursorIcon::Grabbing);
+        }
+        if self.zoom == 1.0 || response.double_clicked() {
+            *self = Self::default();
+        }
+    }
+}
+
+/// The field as it was drawn.
+pub struct FieldCanvas {
+    pub painter: Painter,
+    pub rect: Rect,
+    pub response: Response,
+    px_per_m: f32,
+    middle_in_world: DVec2,
+}
+
+impl FieldCanvas {
+    /// Where a place on the field is on the screen.
+    pub fn at(&self, place_in_world: DVec2) -> Pos2 {
+        let offset = (place_in_world - self.middle_in_world) * f64::from(self.px_per_m);
+        self.rect.center() + vec2(offset.x as f32, -offset.y as f32)
+    }
+
+    /// Which place on the field is there on the screen.
+    pub fn in_world(&self, position: Pos2) -> DVec2 {
+        let offset = position - self.rect.center();
+        self.middle_in_world
+            + DVec2::new(f64::from(offset.x), f64::from(-offset.y)) / f64::from(self.px_per_m)
+    }
+
+    /// A length on the field in points of the screen.
+    pub fn points(&self, length_m: f64) -> f32 {
+        length_m as f32 * self.px_per_m
+    }
+
+    /// Joins places, but for steps that no robot walks.
+    pub fn path(&self, places: impl IntoIterator<Item = DVec2>, stroke: impl Into<Stroke>) {
+        let stroke = stroke.into();
+        let mut piece: Vec<Pos2> = Vec::new();
+        let mut before: Option<DVec2> = None;
+        for place in places {
+            if before.is_some_and(|before| before.distance(place) > MAX_PATH_STEP_M) {
+                self.painter.add(Shape::line(std::mem::take(&mut piece), stroke));
+            }
+            piece.push(self.at(place));
+            before = Some(place);
+        }
+        self.painter.add(Shape::line(piece, stroke));
+    }
+
+    /// An arrow at a pose, as long as a tenth of the view, with a dark rim.
+    pub fn arrow(&self, pose: Pose2, color: Color32) {
+        let length = self.arrow_length();
+        let tail = self.at(pose.position_in_world());
+        let direction = vec2(pose.yaw_rad.cos() as f32, -pose.yaw_rad.sin() as f32);
+        let (tip, side) = (tail + length * direction, direction.rot90());
+        let barb = |sign: f32| tip - 0.35 * length * direction + sign * 0.2 * length * side;
+        for stroke in [Stroke::new(5.0, Color32::from_black_alpha(150)), Stroke::new(2.5, color)] {
+            self.painter.line_segment([tail, tip], stroke);
+            self.painter.add(Shape::line(vec![barb(-1.0), tip, barb(1.0)], stroke));
+            self.painter.circle(tail, 3.0, color, (stroke.width - 2.5, stroke.color));
+        }
+    }
+
+    /// Where the tip of a pose's arrow is.
+    pub fn arrow_tip(&self, pose: Pose2) -> Pos2 {
+        let direction = vec2(pose.yaw_rad.cos() as f32, -pose.yaw_rad.sin() as f32);
+        self.at(pose.position_in_world()) + self.arrow_length() * direction
+    }
+
+    fn arrow_length(&self) -> f32 {
+        (0.1 * self.rect.width().min(self.rect.height())).clamp(18.0, 60.0)
+    }
+
+    fn draw_field(&self, field: &FieldDimensions, half: DVec2) {
+        let carpet = Rect::from_two_pos(self.at(-half), self.at(half));
+        self.painter.rect_filled(self.rect, 0.0, colors::CARPET.gamma_multiply(0.55));
+        self.painter.rect_filled(carpet, 0.0, colors::CARPET);
+        let stroke = Stroke::new(self.points(field.line_width_m).max(1.0), colors::LINE);
+        for curve in field.curves() {
+            match curve {
+                Curve::Segment { from, to } => {
+                    self.painter.line_segment([self.at(from), self.at(to)], stroke);
+                }
+                Curve::Circle { center, radius_m } => {
+                    self.painter.circle_stroke(self.at(center), self.points(radius_m), stroke);
+                }
+            }
+        }
+        self.draw_goals(field);
+        self.draw_scale();
+    }
+
+    fn draw_goals(&self, field: &FieldDimensions) {
+        let (x, y) = (0.5 * field.length_m, 0.5 * field.goal_width_m);
+        let sides = [(x, field.goal_srgb_positive_x), (-x, field.goal_srgb_negative_x)];
+        for (x, color) in sides {
+            let [r, g, b] = color.unwrap_or([255, 255, 255]);
+            let stroke = Stroke::new(
+                (2.0 * self.points(field.goal_post_diameter_m)).max(3.0),
+                Color32::from_rgb(r, g, b),
+            );
+            self.painter.line_segment([self.at(DVec2::new(x, -y)), self.at(DVec2::new(x, y))], stroke);
+        }
+    }
+
+    /// A metre, and where x and y point to.
+    fn draw_scale(&self) {
+        let (corner, metre) = (self.rect.left_bottom() + vec2(10.0, -10.0), self.points(1.0));
+        let stroke = Stroke::new(1.5, colors::LINE);
+        let font = eframe::egui::FontId::proportional(11.0);
+        let ends = [corner, corner + vec2(metre, 0.0)];
+        self.painter.line_segment(ends, stroke);
+        for end in ends {
+            self.painter.line_segment([end - vec2(0.0, 3.0), end + vec2(0.0, 3.0)], stroke);
+        }
+        let align = eframe::egui::Align2::CENTER_BOTTOM;
+        self.painter.text(
+            pos2(corner.x + 0.5 * metre, corner.y - 2.0),
+            align,
+            "1 m, +x →",
+            font,
+            colors::LINE,
+        );
+    }
+}

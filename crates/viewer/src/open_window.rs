@@ -1,0 +1,129 @@
+//! The window that asks what to open: a path to type, the system's own dialogs, and what was open before.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{self, Key, Ui};
+
+use crate::background::{Outcome, Task};
+
+/// What the path asked for is wanted for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Purpose {
+    /// To look at.
+    #[default]
+    Open,
+    /// Its pictures are the truth that Drive compares with.
+    Compare,
+}
+
+/// The window.
+#[derive(Default)]
+pub struct OpenWindow {
+    is_open: bool,
+    purpose: Purpose,
+    path: String,
+    dialog: Option<Task<Option<PathBuf>>>,
+}
+
+/// A path that was chosen.
+pub struct Chosen {
+    pub purpose: Purpose,
+    pub path: PathBuf,
+}
+
+impl OpenWindow {
+    /// Asks for a path.
+    pub fn ask(&mut self, purpose: Purpose) {
+        (self.is_open, self.purpose) = (true, purpose);
+    }
+
+    /// Shows the window while it is open.
+    pub fn ui(&mut self, ui: &Ui, recent: &[PathBuf], demonstration: Option<&Path>) -> Option<Chosen> {
+        let from_dialog = self.from_dialog();
+        if !self.is_open {
+            return None;
+        }
+        let mut is_open = true;
+        let title = match self.purpose {
+            Purpose::Open => "Open a recording or a database",
+            Purpose::Compare => "Compare with the pictures of a recording",
+        };
+        let window = egui::Window::new(title).open(&mut is_open).collapsible(false).default_width(520.0);
+        let shown = window.show(ui.ctx(), |ui| self.content(ui, recent, demonstration));
+        self.is_open = is_open && !ui.input(|input| input.key_pressed(Key::Escape));
+        let path = from_dialog.or_else(|| shown.and_then(|shown| shown.inner.flatten()))?;
+        self.is_open = false;
+        Some(Chosen { purpose: self.purpose, path })
+    }
+
+    fn content(&mut self, ui: &mut Ui, recent: &[PathBuf], demonstration: Option<&Path>) -> Option<PathBuf> {
+        ui.label(match self.purpose {
+            Purpose::Open => "A recording is a folder with sequence.toml; a database is a file that `reality-sim build` made. Either can be dropped onto the window, too.",
+            Purpose::Compare => "A recording is a folder with sequence.toml, here one with ground truth.",
+        });
+        let mut chosen = None;
+        ui.horizontal(|ui| {
+            let text = egui::TextEdit::singleline(&mut self.path).hint_text("path").desired_width(360.0);
+            let typed = ui.add(text);
+            let is_entered = typed.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+            let is_clicked =
+                ui.add_enabled(!self.path.trim().is_empty(), egui::Button::new("Open")).clicked();
+            if (is_entered || is_clicked) && !self.path.trim().is_empty() {
+                chosen = Some(PathBuf::from(self.path.trim()));
+            }
+        });
+        ui.horizontal(|ui| {
+            if ui.button("Choose a folder…").clicked() {
+                self.dialog = Some(dialog(ui.ctx(), Kind::Folder));
+            }
+            if self.purpose == Purpose::Open && ui.button("Choose a database…").clicked() {
+                self.dialog = Some(dialog(ui.ctx(), Kind::File));
+            }
+        });
+        if self.purpose == Purpose::Open {
+            if let Some(path) = demonstration {
+                ui.separator();
+                if ui.link("The demonstration walk").clicked() {
+                    chosen = Some(path.to_path_buf());
+                }
+            }
+            for path in recent {
+                if ui.link(path.display().to_string()).clicked() {
+                    chosen = Some(path.clone());
+                }
+            }
+        }
+        chosen
+    }
+
+    fn from_dialog(&mut self) -> Option<PathBuf> {
+        let outcome = self.dialog.as_ref()?.poll()?;
+        self.dialog = None;
+        match outcome {
+            Outcome::Done(path) => path,
+            Outcome::Failed(_) | Outcome::Cancelled => None,
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Folder,
+    File,
+}
+
+/// Opens a dialog of the system: made here, since some systems want that in the window's thread, waited for elsewhere.
+fn dialog(ctx: &egui::Context, kind: Kind) -> Task<Option<PathBuf>> {
+    let dialog = rfd::AsyncFileDialog::new().set_title("Open in Reality Sim");
+    let path = |file: Option<rfd::FileHandle>| file.map(|file| file.path().to_path_buf());
+    match kind {
+        Kind::Folder => {
+            let answer = dialog.pick_folder();
+            Task::spawn(ctx, "", move |_| Ok(path(pollster::block_on(answer))))
+        }
+        Kind::File => {
+            let answer = dialog.pick_file();
+            Task::spawn(ctx, "", move |_| Ok(path(pollster::block_on(answer))))
+        }
+    }
+}

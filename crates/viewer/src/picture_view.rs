@@ -1,0 +1,129 @@
+//! Camera pictures on the screen: uploaded once, drawn as large as fits, with places in them on the screen and back.
+
+use std::sync::Arc;
+
+use eframe::egui::{
+    Color32, ColorImage, Context, CursorIcon, Painter, Pos2, Rect, Response, Role, Sense, Stroke,
+    TextureHandle, TextureId, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+};
+use glam::DVec2;
+use image::{GrayImage, RgbImage};
+
+/// A picture for the screen. Made by the thread that has the picture: converting takes a millisecond.
+pub fn color_image(picture: &RgbImage) -> Arc<ColorImage> {
+    let size = [picture.width() as usize, picture.height() as usize];
+    Arc::new(ColorImage::from_rgb(size, picture.as_raw()))
+}
+
+/// A grey picture for the screen.
+pub fn gray_image(picture: &GrayImage) -> Arc<ColorImage> {
+    let size = [picture.width() as usize, picture.height() as usize];
+    Arc::new(ColorImage::from_gray(size, picture.as_raw()))
+}
+
+/// A picture on the graphics device.
+#[derive(Default)]
+pub struct Uploaded {
+    texture: Option<TextureHandle>,
+    picture: Option<Arc<ColorImage>>,
+}
+
+impl Uploaded {
+    /// The texture of a picture, uploaded where it is another than last time.
+    pub fn texture(&mut self, ctx: &Context, picture: &Arc<ColorImage>) -> TextureId {
+        let texture = self.texture.get_or_insert_with(|| {
+            ctx.load_texture("camera picture", ColorImage::default(), TextureOptions::LINEAR)
+        });
+        if !self.picture.as_ref().is_some_and(|uploaded| Arc::ptr_eq(uploaded, picture)) {
+            texture.set(picture.clone(), TextureOptions::LINEAR);
+            self.picture = Some(picture.clone());
+        }
+        texture.id()
+    }
+
+    /// The picture uploaded last.
+    pub fn picture(&self) -> Option<&Arc<ColorImage>> {
+        self.picture.as_ref()
+    }
+}
+
+/// A picture as it was drawn.
+pub struct PictureCanvas {
+    pub painter: Painter,
+    pub rect: Rect,
+    pub response: Response,
+    /// Points of the screen for a pixel.
+    scale: f32,
+}
+
+const WHOLE: Rect = Rect { min: Pos2::ZERO, max: pos2(1.0, 1.0) };
+
+impl PictureCanvas {
+    /// Room for a picture of `pixels`, as large as fits into `room`, black until something is drawn.
+    pub fn allocate(ui: &mut Ui, pixels: [usize; 2], room: Vec2, name: &str) -> Self {
+        let pixels = vec2(pixels[0].max(1) as f32, pixels[1].max(1) as f32);
+        let scale = (room / pixels).min_elem().max(0.01);
+        let (rect, response) = ui.allocate_exact_size(scale * pixels, Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, name));
+        let painter = ui.painter_at(rect);
+        painter.rect_filled(rect, 0.0, Color32::BLACK);
+        Self { painter, rect, response, scale }
+    }
+
+    /// Fills it with a texture.
+    pub fn draw(&self, texture: TextureId, tint: Color32) {
+        self.painter.image(texture, self.rect, WHOLE, tint);
+    }
+
+    /// One texture left of a line, another right of it, with a handle to drag the line: `share` is 0 at the left edge, 1 at
+    /// the right one.
+    pub fn draw_wipe(&self, ui: &Ui, left: TextureId, right: TextureId, share: &mut f32) {
+        if let Some(pointer) = self
+            .response
+            .interact_pointer_pos()
+            .filter(|_| self.response.dragged() || self.response.clicked())
+        {
+            *share = ((pointer.x - self.rect.left()) / self.rect.width()).clamp(0.0, 1.0);
+        }
+        if self.response.hovered() {
+            ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
+        }
+        let x = self.rect.left() + *share * self.rect.width();
+        let sides =
+            [(left, self.rect.left()..=x, 0.0..=*share), (right, x..=self.rect.right(), *share..=1.0)];
+        for (texture, screen, texels) in sides {
+            let rect = Rect::from_x_y_ranges(screen, self.rect.y_range());
+            self.painter.image(texture, rect, Rect::from_x_y_ranges(texels, 0.0..=1.0), Color32::WHITE);
+        }
+        for stroke in [Stroke::new(4.0, Color32::from_black_alpha(160)), Stroke::new(1.5, Color32::WHITE)] {
+            self.painter.vline(x, self.rect.y_range(), stroke);
+        }
+        self.painter.circle(
+            pos2(x, self.rect.center().y),
+            7.0,
+            Color32::WHITE,
+            (1.5, Color32::from_black_alpha(160)),
+        );
+    }
+
+    /// Where a place in the picture is on the screen. A pixel's middle has integer coordinates.
+    pub fn at(&self, pixel: DVec2) -> Pos2 {
+        self.rect.min + self.scale * (vec2(pixel.x as f32, pixel.y as f32) + Vec2::splat(0.5))
+    }
+
+    /// Which place in the picture is there on the screen.
+    pub fn pixel(&self, position: Pos2) -> DVec2 {
+        let offset = (position - self.rect.min) / self.scale - Vec2::splat(0.5);
+        DVec2::new(f64::from(offset.x), f64::from(offset.y))
+    }
+
+    /// Draws polylines given in pixels, with a dark rim.
+    pub fn polylines(&self, polylines: &[Vec<DVec2>], color: Color32) {
+        for stroke in [Stroke::new(3.5, Color32::from_black_alpha(90)), Stroke::new(1.6, color)] {
+            for polyline in polylines {
+                let points = polyline.iter().map(|&pixel| self.at(pixel)).collect();
+                self.painter.add(eframe::egui::Shape::line(points, stroke));
+            }
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! The keys: one table for what they do and for the list of them.
+
+use eframe::egui::{self, Key, KeyboardShortcut, Modifiers, Ui};
+
+/// What a key does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Action {
+    OpenPath,
+    Walk,
+    Drive,
+    Theme,
+    Screenshot,
+    Help,
+    PlayPause,
+    StepBack,
+    StepForward,
+    First,
+    Last,
+    Forward,
+    Backward,
+    Left,
+    Right,
+    TurnLeft,
+    TurnRight,
+}
+
+/// Where a key is heard.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    Everywhere,
+    Walk,
+    Drive,
+}
+
+const fn plain(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::NONE, key)
+}
+
+const fn command(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND, key)
+}
+
+/// All of them, in the order in which they are listed.
+const TABLE: &[(Place, KeyboardShortcut, Action, &str)] = &[
+    (Place::Everywhere, command(Key::O), Action::OpenPath, "open a recording or a database"),
+    (Place::Everywhere, command(Key::Num1), Action::Walk, "show Walk"),
+    (Place::Everywhere, command(Key::Num2), Action::Drive, "show Drive"),
+    (Place::Everywhere, command(Key::T), Action::Theme, "light or dark"),
+    (Place::Everywhere, command(Key::P), Action::Screenshot, "save a screenshot"),
+    (Place::Everywhere, plain(Key::F1), Action::Help, "this list"),
+    (Place::Everywhere, plain(Key::Questionmark), Action::Help, "this list"),
+    (Place::Walk, plain(Key::Space), Action::PlayPause, "play or pause"),
+    (Place::Walk, plain(Key::ArrowLeft), Action::StepBack, "one picture back"),
+    (Place::Walk, plain(Key::ArrowRight), Action::StepForward, "one picture on"),
+    (Place::Walk, plain(Key::Home), Action::First, "to the first picture"),
+    (Place::Walk, plain(Key::End), Action::Last, "to the last picture"),
+    (Place::Drive, plain(Key::W), Action::Forward, "walk forwards"),
+    (Place::Drive, plain(Key::S), Action::Backward, "walk backwards"),
+    (Place::Drive, plain(Key::A), Action::Left, "walk to the left"),
+    (Place::Drive, plain(Key::D), Action::Right, "walk to the right"),
+    (Place::Drive, plain(Key::Q), Action::TurnLeft, "turn to the left"),
+    (Place::Drive, plain(Key::E), Action::TurnRight, "turn to the right"),
+    (Place::Drive, plain(Key::Space), Action::PlayPause, "follow the drawn path, or stop"),
+];
+
+/// What was pressed since the last frame in a place; nothing while someone types.
+pub fn pressed(ui: &Ui, place: Place) -> Vec<Action> {
+    if ui.ctx().text_edit_focused() {
+        return Vec::new();
+    }
+    let here = TABLE.iter().filter(|(heard, ..)| *heard == place);
+    ui.input_mut(|input| {
+        here.filter(|(_, shortcut, ..)| match shortcut.logical_key {
+            // Typed with Shift on many keyboards, and on others not.
+            Key::Questionmark => input.key_pressed(Key::Questionmark),
+            _ => input.consume_shortcut(shortcut),
+        })
+        .map(|(_, _, action, _)| *action)
+        .collect()
+    })
+}
+
+/// What is held down in a place.
+pub fn held(ui: &Ui, place: Place) -> Vec<Action> {
+    if ui.ctx().text_edit_focused() {
+        return Vec::new();
+    }
+    let here = TABLE.iter().filter(|(heard, ..)| *heard == place);
+    ui.input(|input| {
+        let plain = !input.modifiers.any();
+        here.filter(|(_, shortcut, ..)| plain && input.key_down(shortcut.logical_key))
+            .map(|(_, _, action, _)| *action)
+            .collect()
+    })
+}
+
+/// The key of an action, for buttons' hover texts.
+pub fn name(ui: &Ui, action: Action) -> String {
+    let found = TABLE.iter().find(|(_, _, other, _)| *other == action);
+    found.map_or_else(String::new, |(_, shortcut, ..)| ui.ctx().format_shortcut(shortcut))
+}
+
+/// The list of all keys.
+pub fn window(ui: &Ui, is_open: &mut bool) {
+    egui::Window::new("Keys and mouse").open(is_open).resizable(false).collapsible(false).show(
+        ui.ctx(),
+        |ui| {
+            for (title, place) in
+                [("Everywhere", Place::Everywhere), ("Walk", Place::Walk), ("Drive", Place::Drive)]
+            {
+                ui.strong(title);
+                egui::Grid::new(title).num_columns(2).spacing([24.0, 2.0]).show(ui, |ui| {
+                    for (_, shortcut, _, text) in TABLE.iter().filter(|(heard, ..)| *heard == place) {
+                        ui.monospace(ui.ctx().format_shortcut(shortcut));
+                        ui.label(*text);
+                        ui.end_row();
+                    }
+                });
+                ui.add_space(6.0);
+            }
+            ui.strong("On the field");
+            ui.label("wheel: zoom · secondary button: move the view · double click: all of it");
+            ui.label("drag the arrow's tail: move the robot · drag its tip: turn it");
+        },
+    );
+}

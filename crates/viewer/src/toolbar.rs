@@ -1,0 +1,63 @@
+//! The bar along the top: panels, what to open, light or dark, a screenshot, help.
+
+use eframe::egui::{self, ThemePreference, Ui};
+
+use crate::shortcuts::{self, Action};
+
+/// The panels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PanelKind {
+    #[default]
+    Walk,
+    Drive,
+}
+
+/// What the bar shows.
+pub struct Toolbar<'a> {
+    /// The panels that have something to show.
+    pub panels: &'a [PanelKind],
+    pub shown: PanelKind,
+    pub theme: ThemePreference,
+}
+
+impl Toolbar<'_> {
+    /// Shows it; what was clicked comes back as if its key had been pressed.
+    pub fn ui(&self, ui: &mut Ui) -> Option<Action> {
+        egui::Panel::top("toolbar").show(ui, |ui| ui.horizontal(|ui| self.content(ui)).inner).inner
+    }
+
+    fn content(&self, ui: &mut Ui) -> Option<Action> {
+        let mut clicked = None;
+        for &panel in self.panels {
+            let (text, action) = match panel {
+                PanelKind::Walk => ("Walk", Action::Walk),
+                PanelKind::Drive => ("Drive", Action::Drive),
+            };
+            if ui
+                .selectable_label(panel == self.shown, egui::RichText::new(text).strong().size(15.0))
+                .clicked()
+            {
+                clicked = Some(action);
+            }
+        }
+        ui.separator();
+        let mut button = |ui: &mut Ui, text: &str, action: Action, what: &str| {
+            let hover = format!("{what} ({})", shortcuts::name(ui, action));
+            if ui.button(text).on_hover_text(hover).clicked() {
+                clicked = Some(action);
+            }
+        };
+        button(ui, "Open…", Action::OpenPath, "Open a recording or a database");
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            button(ui, "?", Action::Help, "Keys and mouse");
+            button(ui, "Screenshot", Action::Screenshot, "Save a picture of this window");
+            let theme = match self.theme {
+                ThemePreference::System => "System",
+                ThemePreference::Light => "Light",
+                ThemePreference::Dark => "Dark",
+            };
+            button(ui, theme, Action::Theme, "Light, dark, or as the system has it");
+        });
+        clicked
+    }
+}

@@ -1,0 +1,46 @@
+//! `reality-sim viewer`: everything in a window.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::bail;
+use clap::Args;
+
+use reality_sim_viewer::ViewerOptions;
+
+use super::device;
+
+/// Where the demonstration lies, below the project's folder.
+const DEMONSTRATION: &str = "assets/walk";
+
+/// Options of `viewer`.
+#[derive(Debug, Args)]
+pub struct ViewerArgs {
+    /// A recording's folder or a database; without it, the demonstration
+    #[arg(value_name = "SEQUENCE|DATABASE")]
+    open: Option<PathBuf>,
+}
+
+/// Runs the command.
+pub fn run(args: &ViewerArgs) -> anyhow::Result<()> {
+    let demonstration = demonstration();
+    let open = match (&args.open, &demonstration) {
+        (Some(path), _) if !path.exists() => {
+            bail!("{}: does not exist: give a recording's folder or a database", path.display())
+        }
+        (Some(path), _) => path.clone(),
+        (None, Some(path)) => path.clone(),
+        (None, None) => bail!(
+            "viewer: the demonstration ({DEMONSTRATION}) is neither here nor beside the program: give a recording's folder or a database"
+        ),
+    };
+    Ok(reality_sim_viewer::run(ViewerOptions { open, demonstration, devices: device::all() })?)
+}
+
+/// The demonstration: here, in a folder above the program, or where the program was built.
+fn demonstration() -> Option<PathBuf> {
+    let program = std::env::current_exe().unwrap_or_default();
+    let folders = std::iter::once(Path::new("."))
+        .chain(program.ancestors().skip(1))
+        .chain([Path::new(env!("CARGO_MANIFEST_DIR"))]);
+    folders.map(|folder| folder.join(DEMONSTRATION)).find(|path| path.join("sequence.toml").is_file())
+}
