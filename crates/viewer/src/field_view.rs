@@ -2,8 +2,8 @@
 //! secondary button moves the view, a double click on the carpet shows all of it again.
 
 use eframe::egui::{
-    Color32, CursorIcon, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2,
-    WidgetInfo, pos2, vec2,
+    Align2, Color32, CursorIcon, FontId, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, Shape,
+    Stroke, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use reality_sim_core::{
@@ -129,6 +129,13 @@ impl FieldCanvas {
         }
     }
 
+    /// What can be done here, in a few words along the lower edge.
+    pub fn hint(&self, text: &str) {
+        let corner = self.rect.right_bottom() - vec2(8.0, 6.0);
+        let color = colors::LINE.gamma_multiply(0.6);
+        self.painter.text(corner, Align2::RIGHT_BOTTOM, text, FontId::proportional(11.0), color);
+    }
+
     /// Where the tip of a pose's arrow is.
     pub fn arrow_tip(&self, pose: Pose2) -> Pos2 {
         let direction = vec2(pose.yaw_rad.cos() as f32, -pose.yaw_rad.sin() as f32);
@@ -171,23 +178,17 @@ impl FieldCanvas {
         }
     }
 
-    /// A metre, and where x and y point to.
+    /// A metre.
     fn draw_scale(&self) {
         let (corner, metre) = (self.rect.left_bottom() + vec2(10.0, -10.0), self.points(1.0));
         let stroke = Stroke::new(1.5, colors::LINE);
-        let font = eframe::egui::FontId::proportional(11.0);
+        let font = FontId::proportional(11.0);
         let ends = [corner, corner + vec2(metre, 0.0)];
         self.painter.line_segment(ends, stroke);
         for end in ends {
             self.painter.line_segment([end - vec2(0.0, 3.0), end + vec2(0.0, 3.0)], stroke);
         }
-        let align = eframe::egui::Align2::CENTER_BOTTOM;
-        self.painter.text(
-            pos2(corner.x + 0.5 * metre, corner.y - 2.0),
-            align,
-            "1 m, +x →",
-            font,
-            colors::LINE,
-        );
+        let align = Align2::CENTER_BOTTOM;
+        self.painter.text(pos2(corner.x + 0.5 * metre, corner.y - 2.0), align, "1 m", font, colors::LINE);
     }
 }

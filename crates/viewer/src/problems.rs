@@ -32,8 +32,7 @@ impl Problems {
                     if ui.button("Copy").clicked() {
                         ui.copy_text(message.clone());
                     }
-                    ui.label(RichText::new("⚠").color(ui.visuals().error_fg_color));
-                    ui.add(egui::Label::new(message).wrap());
+                    ui.add(egui::Label::new(RichText::new(message).strong()).wrap());
                     is_kept
                 };
                 ui.horizontal(keep).inner

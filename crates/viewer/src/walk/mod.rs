@@ -1,28 +1,217 @@
-//! stub
-use crate::{device::Device, problems::Problems};
-use eframe::egui::{Context, Ui};
-use reality_sim_core::sequence::Sequence;
-use serde::{Deserialize, Serialize};
+//! Walk: the particle filter at work on a recording.
+
+mod camera;
+mod controls;
+mod curves;
+mod frame;
+mod history;
+mod map;
+mod player;
+mod settings;
+#[cfg(test)]
+mod tests;
+mod transport;
+
 use std::sync::Arc;
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default)]
-pub struct WalkSettings {}
-pub struct WalkPanel {}
+
+use eframe::egui::{self, Context, Ui, vec2};
+use reality_sim_core::sequence::Sequence;
+
+pub use self::settings::WalkSettings;
+use self::{
+    camera::CameraTextures,
+    controls::fact,
+    frame::{FrameView, Record},
+    history::History,
+    map::Map,
+    player::{Command, Message, Player},
+};
+use crate::{
+    device::Device,
+    problems::Problems,
+    shortcuts::{self, Place},
+};
+
+/// Width of the settings beside the views, with its margins, points.
+const SETTINGS_WIDTH: f32 = 234.0;
+/// Height of everything along the bottom but the curves, points.
+const TRANSPORT_HEIGHT: f32 = 84.0;
+/// Curves take what picture and field side by side leave, within these heights, points.
+const CURVE_HEIGHTS: std::ops::RangeInclusive<f32> = 72.0..=330.0;
+/// From this width on picture and field stand side by side, else one above the other, in heights.
+const WIDE: f32 = 1.25;
+
+/// A recording, the player that works on it, and what it has sent.
+pub struct WalkPanel {
+    sequence: Arc<Sequence>,
+    player: Player,
+    /// What the player was told last.
+    told: WalkSettings,
+    is_playing: bool,
+    frame: Option<Box<FrameView>>,
+    history: History,
+    map: Map,
+    textures: CameraTextures,
+}
+
 impl WalkPanel {
-    pub fn new(
-        _ctx: &Context,
-        _sequence: Arc<Sequence>,
-        _devices: &[Device],
-        _settings: &WalkSettings,
-    ) -> Self {
-        Self {}
+    /// Starts a player on a recording; it shows the first picture and waits.
+    pub fn new(ctx: &Context, sequence: Arc<Sequence>, devices: &[Device], settings: &WalkSettings) -> Self {
+        let WalkSettings { filter, speed, layers } = settings.clone();
+        let player = Player::spawn(ctx, sequence.clone(), devices.to_vec(), filter, speed, layers.veil);
+        Self {
+            history: History::new(sequence.frames.len()),
+            sequence,
+            player,
+            told: settings.clone(),
+            is_playing: false,
+            frame: None,
+            map: Map::default(),
+            textures: CameraTextures::default(),
+        }
     }
+
+    /// Takes what the player has sent; of several frames the last one is drawn.
+    fn listen(&mut self, problems: &mut Problems) {
+        while let Some(message) = self.player.poll() {
+            match message {
+                Message::Begun => self.history = History::new(self.sequence.frames.len()),
+                Message::Frame(frame) => {
+                    self.history.add(frame.record);
+                    self.frame = Some(frame);
+                }
+                Message::Playing(is_playing) => self.is_playing = is_playing,
+                Message::Problem(reason) => problems.add(reason),
+            }
+        }
+    }
+
+    /// Tells the player what was set since the last time.
+    fn tell_settings(&mut self, settings: &WalkSettings) {
+        let told = &self.told;
+        if settings.filter != told.filter {
+            self.player.tell(Command::Filter(settings.filter.clone()));
+        }
+        if settings.speed != told.speed {
+            self.player.tell(Command::Speed(settings.speed));
+        }
+        if settings.layers.veil != told.layers.veil {
+            self.player.tell(Command::Veil(settings.layers.veil));
+        }
+        if settings != told {
+            self.told = settings.clone();
+        }
+    }
+
+    /// Shows it.
     pub fn ui(
         &mut self,
-        _ui: &mut Ui,
-        _settings: &mut WalkSettings,
-        _devices: &[Device],
-        _problems: &mut Problems,
+        ui: &mut Ui,
+        settings: &mut WalkSettings,
+        devices: &[Device],
+        problems: &mut Problems,
     ) {
+        self.listen(problems);
+        let Some(frame) = self.frame.take() else {
+            egui::CentralPanel::default().show(ui, |ui| {
+                ui.centered_and_justified(|ui| ui.label("Looking at the first picture …"));
+            });
+            return;
+        };
+        let commands = self.content(ui, &frame, settings, devices);
+        self.frame = Some(frame);
+        commands.into_iter().for_each(|command| self.player.tell(command));
+        self.tell_settings(settings);
     }
+
+    fn content(
+        &mut self,
+        ui: &mut Ui,
+        frame: &FrameView,
+        settings: &mut WalkSettings,
+        devices: &[Device],
+    ) -> Vec<Command> {
+        let Self { sequence, history, is_playing, .. } = self;
+        let (at, last) = (frame.record.index, sequence.frames.len() - 1);
+        let mut commands: Vec<Command> = shortcuts::pressed(ui, Place::Walk)
+            .into_iter()
+            .filter_map(|action| transport::command(action, at, last, *is_playing))
+            .collect();
+        egui::Panel::right("walk settings").resizable(false).exact_size(SETTINGS_WIDTH).show(ui, |ui| {
+            egui::ScrollArea::vertical().show(ui, |ui| {
+                facts(ui, &frame.record);
+                ui.separator();
+                controls::layers(ui, &mut settings.layers, frame.truth.is_some());
+                ui.separator();
+                controls::filter(ui, &mut settings.filter, devices);
+            });
+        });
+        let curve_height =
+            (ui.available_height() - TRANSPORT_HEIGHT - height_within(ui.available_width(), sequence))
+                .clamp(*CURVE_HEIGHTS.start(), *CURVE_HEIGHTS.end());
+        egui::Panel::bottom("time").show(ui, |ui| {
+            ui.add_space(4.0);
+            commands.extend(transport::ui(ui, sequence, at, *is_playing, &mut settings.speed));
+            commands.extend(curves::ui(ui, sequence, history, at, curve_height).map(Command::GoTo));
+        });
+        egui::CentralPanel::default().show(ui, |ui| commands.extend(self.views(ui, frame, settings)));
+        commands
+    }
+
+    /// The camera's picture and the field, side by side or one above the other.
+    fn views(&mut self, ui: &mut Ui, frame: &FrameView, settings: &WalkSettings) -> Option<Command> {
+        let room = ui.available_size();
+        let is_wide = room.x > WIDE * room.y;
+        let camera = &self.sequence.setup.camera;
+        let aspect = camera.width as f32 / camera.height as f32;
+        let (picture, field) = if is_wide {
+            // As high as both can be side by side; the field gets the rest of the width.
+            let height = height_within(room.x, &self.sequence).min(room.y);
+            let width = (aspect * height).min(0.7 * room.x);
+            (vec2(width, height), vec2(room.x - width - ui.spacing().item_spacing.x, height))
+        } else {
+            let height = 0.5 * (room.y - ui.spacing().item_spacing.y);
+            (vec2(room.x, height), vec2(room.x, height))
+        };
+        let layout = if is_wide { egui::Layout::left_to_right(egui::Align::Min) } else { *ui.layout() };
+        let layers = &settings.layers;
+        let dropped = ui.with_layout(layout, |ui| {
+            camera::ui(ui, frame, layers, &mut self.textures, picture);
+            self.map.ui(ui, &self.sequence, frame, &self.history, layers, field)
+        });
+        dropped.inner.map(Command::Place)
+    }
+}
+
+/// The height at which picture and field side by side fill the width.
+fn height_within(width: f32, sequence: &Sequence) -> f32 {
+    let (camera, half) = (&sequence.setup.camera, sequence.field.carpet_half_extent_m());
+    width / (camera.width as f32 / camera.height as f32 + (half.x / half.y) as f32)
+}
+
+/// What was found in the picture shown.
+fn facts(ui: &mut Ui, record: &Record) {
+    let state = match (record.sure, record.searched) {
+        (true, false) => "sure",
+        (true, true) => "sure, after a search",
+        (false, false) => "not sure",
+        (false, true) => "lost: searching",
+    };
+    let pose = record.pose;
+    egui::Grid::new("facts").num_columns(2).spacing([8.0, 2.0]).show(ui, |ui| {
+        fact(ui, "Pose", state);
+        fact(ui, "x, y", format!("{:.3} m, {:.3} m", pose.x_m, pose.y_m));
+        fact(ui, "heading", format!("{:.2}°", pose.yaw_rad.to_degrees()));
+        fact(ui, "height", format!("{:.3} m", pose.height_m));
+        fact(
+            ui,
+            "pitch, roll",
+            format!("{:.2}°, {:.2}°", pose.pitch_rad.to_degrees(), pose.roll_rad.to_degrees()),
+        );
+        if let (Some(error_m), Some(error_yaw_rad)) = (record.error_m, record.error_yaw_rad) {
+            let text = format!("{:.2} cm, {:.2}°", 100.0 * error_m, error_yaw_rad.to_degrees());
+            fact(ui, "error", text);
+        }
+        fact(ui, "particles", record.particles.to_string());
+    });
 }

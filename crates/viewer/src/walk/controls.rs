@@ -1,0 +1,190 @@
+//! What can be set: the filter, and what is drawn. Everything acts at once.
+
+use eframe::egui::{self, Color32, ComboBox, DragValue, RichText, Ui};
+use reality_sim_core::{filter::Resampling, observation::ObservationKind};
+
+use super::settings::{FilterSettings, Layers, Veil};
+use crate::{colors, device::Device};
+
+const MODELS: [(ObservationKind, &str, &str); 3] = [
+    (
+        ObservationKind::Contrast,
+        "contrast",
+        "Lines against their flanks, then a sub-pixel fit of all six degrees of freedom",
+    ),
+    (ObservationKind::Gauss, "gauss", "The paper's Eq. 2: blurred grey values along the projected lines"),
+    (
+        ObservationKind::Distance,
+        "distance",
+        "The paper's Eq. 1: distances from projected lines to white ones",
+    ),
+];
+
+const SCHEMES: [(Resampling, &str); 4] = [
+    (Resampling::Residual, "residual"),
+    (Resampling::Systematic, "systematic"),
+    (Resampling::Stratified, "stratified"),
+    (Resampling::Multinomial, "multinomial"),
+];
+
+/// The filter's settings.
+pub fn filter(ui: &mut Ui, settings: &mut FilterSettings, devices: &[Device]) {
+    ui.strong("Filter");
+    egui::Grid::new("filter").num_columns(2).spacing([8.0, 4.0]).show(ui, |ui| {
+        model(ui, settings);
+        row(ui, "Particles", "How many poses are weighed against each picture", |ui| {
+            ui.add(DragValue::new(&mut settings.particles).range(1..=100_000).speed(10))
+        });
+        row(ui, "Iterations", "Rounds of weighing and resampling a picture (the paper's T)", |ui| {
+            ui.add(DragValue::new(&mut settings.iterations).range(1..=50).speed(0.1))
+        });
+        observation(ui, settings);
+        resampling(ui, settings);
+        device(ui, settings, devices);
+    });
+    ui.checkbox(&mut settings.odometry, "Use the odometry")
+        .on_hover_text("Without it, the picture before alone predicts the next one, as in the paper");
+    ui.checkbox(&mut settings.recovery, "Search when lost")
+        .on_hover_text("Looks over the field where the lines do not fit any more");
+    if ui.button("Defaults").on_hover_text("All of the filter's settings as they come").clicked() {
+        *settings = FilterSettings::default();
+    }
+}
+
+/// A name and a widget that is called by it.
+fn row(ui: &mut Ui, name: &str, explanation: &str, widget: impl FnOnce(&mut Ui) -> egui::Response) {
+    let label = ui.label(name).on_hover_text(explanation);
+    widget(ui).labelled_by(label.id).on_hover_text(explanation);
+    ui.end_row();
+}
+
+fn model(ui: &mut Ui, settings: &mut FilterSettings) {
+    let kind = settings.observation.kind;
+    let name = MODELS.iter().find(|(other, ..)| *other == kind).map_or("", |(_, name, _)| name);
+    let mut chosen = kind;
+    row(ui, "Model", "What a pose is weighed by", |ui| {
+        let combo = ComboBox::from_id_salt("model").selected_text(name).show_ui(ui, |ui| {
+            for (kind, name, explanation) in MODELS {
+                ui.selectable_value(&mut chosen, kind, name).on_hover_text(explanation);
+            }
+        });
+        combo.response
+    });
+    if chosen != kind {
+        settings.set_model(chosen);
+    }
+}
+
+/// What the model in use reads.
+fn observation(ui: &mut Ui, settings: &mut FilterSettings) {
+    let observation = &mut settings.observation;
+    if observation.kind != ObservationKind::Distance {
+        row(ui, "Blur, px", "Sigma of the Gaussian blur", |ui| {
+            ui.add(
+                DragValue::new(&mut observation.blur_sigma_px).range(0.0..=10.0).speed(0.02).max_decimals(2),
+            )
+        });
+    }
+    if observation.kind == ObservationKind::Contrast {
+        row(ui, "Gain", "Log-weight of a line sample that is found", |ui| {
+            ui.add(DragValue::new(&mut observation.contrast_gain).range(0.01..=10.0).speed(0.01))
+        });
+    } else {
+        row(
+            ui,
+            "α",
+            "Divides the sum along the lines: the smaller, the more the best particles count",
+            |ui| ui.add(DragValue::new(&mut observation.alpha).range(1.0..=100_000.0).speed(2.0)),
+        );
+    }
+}
+
+fn resampling(ui: &mut Ui, settings: &mut FilterSettings) {
+    let name = SCHEMES.iter().find(|(scheme, _)| *scheme == settings.resampling).map_or("", |(_, name)| name);
+    row(ui, "Resampling", "How survivors are chosen", |ui| {
+        let combo = ComboBox::from_id_salt("resampling").selected_text(name).show_ui(ui, |ui| {
+            for (scheme, name) in SCHEMES {
+                ui.selectable_value(&mut settings.resampling, scheme, name);
+            }
+        });
+        combo.response
+    });
+}
+
+fn device(ui: &mut Ui, settings: &mut FilterSettings, devices: &[Device]) {
+    let shown =
+        crate::device::by_name(devices, &settings.device).map_or("", |device| &device.name).to_owned();
+    row(ui, "Computed by", "Where particles are weighed", |ui| {
+        let combo = ComboBox::from_id_salt("device").selected_text(&shown).width(110.0).truncate();
+        let combo = combo.show_ui(ui, |ui| {
+            for device in devices {
+                ui.selectable_value(&mut settings.device, device.name.clone(), &device.name);
+            }
+        });
+        combo.response
+    });
+}
+
+/// What is drawn; each switch in the colour of what it draws.
+pub fn layers(ui: &mut Ui, layers: &mut Layers, has_truth: bool) {
+    let switch = |ui: &mut Ui, is_on: &mut bool, color: Color32, name: &str, explanation: &str| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let (rect, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
+            ui.painter().circle_filled(rect.center(), 4.5, color);
+            ui.checkbox(is_on, name).on_hover_text(explanation);
+        });
+    };
+    ui.strong("Shown");
+    switch(ui, &mut layers.pose, colors::POSE, "Pose found", "Both edges of the lines at the pose found");
+    switch(
+        ui,
+        &mut layers.best_particle,
+        colors::PARTICLE,
+        "Best particle",
+        "The filter's own pose, before the fit",
+    );
+    if has_truth {
+        switch(
+            ui,
+            &mut layers.truth,
+            colors::TRUTH,
+            "Truth",
+            "The lines' centres at the true pose, and the true way",
+        );
+    }
+    switch(ui, &mut layers.border, colors::BORDER, "Field's border", "As it was found in the picture");
+    switch(ui, &mut layers.particles, colors::PARTICLE, "Particles", "The heavier, the brighter and larger");
+    switch(ui, &mut layers.path, colors::POSE, "Way found", "The places found so far");
+    switch(
+        ui,
+        &mut layers.odometry,
+        colors::ODOMETRY,
+        "Odometry alone",
+        "Where dead reckoning from the first pose leads",
+    );
+    switch(ui, &mut layers.footprint, colors::BORDER, "Footprint", "The ground in view");
+    veil(ui, layers);
+}
+
+fn veil(ui: &mut Ui, layers: &mut Layers) {
+    ui.add_space(4.0);
+    let label = ui.label("Over the picture");
+    let combo = ComboBox::from_id_salt("veil").selected_text(layers.veil.name()).show_ui(ui, |ui| {
+        for veil in Veil::ALL {
+            ui.selectable_value(&mut layers.veil, veil, veil.name()).on_hover_text(veil.explanation());
+        }
+    });
+    combo.response.labelled_by(label.id).on_hover_text(layers.veil.explanation());
+    if layers.veil != Veil::None {
+        let slider = egui::Slider::new(&mut layers.veil_opacity, 0.0..=1.0).show_value(false);
+        ui.add(slider.text("opacity"));
+    }
+}
+
+/// A fact and its value.
+pub fn fact(ui: &mut Ui, name: &str, value: impl Into<RichText>) {
+    ui.label(RichText::new(name).weak());
+    ui.label(value.into());
+    ui.end_row();
+}

@@ -1,0 +1,158 @@
+//! What is to be seen of one picture once the filter has looked at it. Made by the filter's thread, so that the window only
+//! draws.
+
+use std::sync::Arc;
+
+use eframe::egui::ColorImage;
+use glam::DVec2;
+use reality_sim_core::{
+    field::{project_lines, project_polygon},
+    filter::normalise,
+    observation::{CpuScorer, Scorer},
+    pose::{CameraPose, Pose2, wrap_angle},
+    preprocess::{Attitude, Prepared, distance_field, gaussian_blur},
+    sequence::Sequence,
+    tag::TaggedFrame,
+};
+
+use super::settings::Veil;
+use crate::picture_view::{color_image, gray_image};
+
+/// Particles shown at most: more cannot be told apart.
+const SHOWN_PARTICLES: usize = 2000;
+
+/// A curve's values for one picture, and what a path needs of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Record {
+    pub index: usize,
+    pub pose: CameraPose,
+    /// From the truth on the ground, where it is known.
+    pub error_m: Option<f64>,
+    pub error_yaw_rad: Option<f64>,
+    pub effective_sample_size: f64,
+    pub spread_m: f64,
+    pub particles: usize,
+    pub milliseconds: f64,
+    pub sure: bool,
+    pub searched: bool,
+}
+
+impl Record {
+    pub fn new(index: usize, tagged: &TaggedFrame, truth: Option<CameraPose>) -> Self {
+        let pose = tagged.pose;
+        let offset_m = |truth: CameraPose| (pose.x_m - truth.x_m).hypot(pose.y_m - truth.y_m);
+        Self {
+            index,
+            pose,
+            error_m: truth.map(offset_m),
+            error_yaw_rad: truth.map(|truth| wrap_angle(pose.yaw_rad - truth.yaw_rad).abs()),
+            effective_sample_size: tagged.filter.effective_sample_size,
+            spread_m: tagged.filter.spread_m,
+            particles: tagged.filter.particles,
+            milliseconds: 1000.0 * tagged.seconds,
+            sure: tagged.sure,
+            searched: tagged.searched,
+        }
+    }
+}
+
+/// A particle to be drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WeightedParticle {
+    pub pose: Pose2,
+    /// Over that of the best one.
+    pub relative_weight: f32,
+}
+
+/// Everything to be seen of one picture.
+pub struct FrameView {
+    pub record: Record,
+    pub picture: Arc<ColorImage>,
+    pub veil: Option<Arc<ColorImage>>,
+    pub particles: Vec<WeightedParticle>,
+    pub best_particle: CameraPose,
+    pub truth: Option<CameraPose>,
+    /// Polylines, pixels: both edges of the lines at the pose found and at the best particle, the centres at the true pose.
+    pub pose_lines: Vec<Vec<DVec2>>,
+    pub best_lines: Vec<Vec<DVec2>>,
+    pub truth_lines: Vec<Vec<DVec2>>,
+    /// The field's border as it was found.
+    pub border: Vec<Vec<DVec2>>,
+}
+
+/// A picture that was tagged, with what drawing it needs.
+pub struct Seen {
+    pub index: usize,
+    pub prepared: Prepared,
+    pub attitude: Attitude,
+    pub tagged: TaggedFrame,
+    pub particles: Vec<CameraPose>,
+    /// Made once: only the veil changes while a picture stays.
+    pub picture: Arc<ColorImage>,
+}
+
+impl Seen {
+    pub fn new(
+        index: usize,
+        prepared: Prepared,
+        attitude: Attitude,
+        tagged: TaggedFrame,
+        particles: Vec<CameraPose>,
+    ) -> Self {
+        let picture = color_image(&prepared.picture);
+        Self { index, prepared, attitude, tagged, particles, picture }
+    }
+
+    /// What is to be seen of it.
+    pub fn view(
+        &self,
+        sequence: &Sequence,
+        scorer: &mut CpuScorer,
+        blur_sigma_px: f32,
+        veil: Veil,
+    ) -> FrameView {
+        let (camera, field) = (&sequence.setup.camera, &sequence.field);
+        let half_width_m = 0.5 * field.line_width_m;
+        let lines = |pose, sideways_m| project_lines(camera, field, pose, sideways_m);
+        let edges = |pose| [lines(pose, -half_width_m), lines(pose, half_width_m)].concat();
+        let corners: Vec<DVec2> =
+            self.prepared.border.outline_in_heading.iter().map(|corner| corner.as_dvec2()).collect();
+        let truth = sequence.groundtruth[self.index];
+        FrameView {
+            record: Record::new(self.index, &self.tagged, truth),
+            picture: self.picture.clone(),
+            veil: self.veil(veil, blur_sigma_px),
+            particles: self.weighted_particles(scorer),
+            best_particle: self.tagged.filter.pose,
+            truth,
+            pose_lines: edges(self.tagged.pose),
+            best_lines: edges(self.tagged.filter.pose),
+            truth_lines: truth.map_or_else(Vec::new, |truth| lines(truth, 0.0)),
+            border: project_polygon(camera, &corners, self.attitude.at(Pose2::default())),
+        }
+    }
+
+    fn veil(&self, veil: Veil, blur_sigma_px: f32) -> Option<Arc<ColorImage>> {
+        let evidence = || self.prepared.evidence();
+        match veil {
+            Veil::None => None,
+            Veil::Blurred => Some(gray_image(&gaussian_blur(&self.prepared.luma(), blur_sigma_px))),
+            Veil::Evidence => Some(gray_image(&evidence())),
+            Veil::Distances => Some(gray_image(&distance_field(&evidence()))),
+        }
+    }
+
+    /// The particles by the weight that the observation model gives each of them.
+    fn weighted_particles(&self, scorer: &mut CpuScorer) -> Vec<WeightedParticle> {
+        let step = self.particles.len().div_ceil(SHOWN_PARTICLES).max(1);
+        let shown: Vec<CameraPose> = self.particles.iter().copied().step_by(step).collect();
+        scorer.load(&self.prepared);
+        let weights = normalise(&scorer.log_weights(&shown));
+        let most = weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let weighted = |(pose, weight): (&CameraPose, f64)| WeightedParticle {
+            pose: pose.planar(),
+            relative_weight: (weight / most) as f32,
+        };
+        shown.iter().zip(weights).map(weighted).collect()
+    }
+}

@@ -1,0 +1,60 @@
+//! Play, pause, step and scrub.
+
+use eframe::egui::{self, ComboBox, Slider, Ui};
+use reality_sim_core::sequence::Sequence;
+
+use super::{player::Command, settings::Speed};
+use crate::shortcuts::{self, Action};
+
+/// Shows the controls; what was asked for comes back.
+pub fn ui(
+    ui: &mut Ui,
+    sequence: &Sequence,
+    at: usize,
+    is_playing: bool,
+    speed: &mut Speed,
+) -> Option<Command> {
+    let mut asked = None;
+    let last = sequence.frames.len() - 1;
+    ui.horizontal(|ui| {
+        let mut button = |ui: &mut Ui, text: &str, action: Action, what: &str| {
+            let hover = format!("{what} ({})", shortcuts::name(ui, action));
+            if ui.button(text).on_hover_text(hover).clicked() {
+                asked = command(action, at, last, is_playing);
+            }
+        };
+        button(ui, "Start", Action::First, "Begin again at the first picture");
+        button(ui, "Back", Action::StepBack, "One picture back");
+        button(ui, if is_playing { "Pause" } else { "Play" }, Action::PlayPause, "Play or pause");
+        button(ui, "Next", Action::StepForward, "One picture on");
+        let combo = ComboBox::from_id_salt("speed").selected_text(speed.name()).show_ui(ui, |ui| {
+            for choice in Speed::ALL {
+                ui.selectable_value(speed, choice, choice.name());
+            }
+        });
+        combo.response.on_hover_text("How fast the recording is played");
+        let time_s = sequence.frames[at].timestamp_s - sequence.frames[0].timestamp_s;
+        ui.label(format!("picture {} of {}, {time_s:.1} s", at + 1, last + 1));
+        let mut wanted = at;
+        ui.spacing_mut().slider_width = ui.available_width() - 16.0;
+        let slider = ui.add(Slider::new(&mut wanted, 0..=last).show_value(false));
+        slider.widget_info(|| egui::WidgetInfo::slider(true, wanted as f64, "Picture"));
+        if wanted != at {
+            asked = Some(Command::GoTo(wanted));
+        }
+    });
+    asked
+}
+
+/// What a key or a button asks of the player.
+pub fn command(action: Action, at: usize, last: usize, is_playing: bool) -> Option<Command> {
+    match action {
+        Action::PlayPause if is_playing => Some(Command::Pause),
+        Action::PlayPause => Some(Command::Play),
+        Action::First => Some(Command::Restart),
+        Action::Last => Some(Command::GoTo(last)),
+        Action::StepBack => Some(Command::GoTo(at.saturating_sub(1))),
+        Action::StepForward if at < last => Some(Command::GoTo(at + 1)),
+        _ => None,
+    }
+}
