@@ -12,6 +12,7 @@ use crate::{
     background::{Outcome, Task},
     device::Device,
     drive::DrivePanel,
+    frame_times::FrameTimes,
     open_window::{Chosen, OpenWindow, Purpose},
     opening::{Opened, open},
     problems::Problems,
@@ -29,6 +30,7 @@ pub struct ViewerApp {
     demonstration: Option<PathBuf>,
     /// What draws the window, in words.
     adapter: String,
+    frame_times: FrameTimes,
     opening: Option<Opening>,
     open_window: OpenWindow,
     screenshot: Screenshot,
@@ -57,6 +59,7 @@ impl ViewerApp {
             devices: options.devices,
             demonstration: options.demonstration,
             adapter: adapter(cc),
+            frame_times: FrameTimes::default(),
             opening: None,
             open_window: OpenWindow::default(),
             screenshot: Screenshot::default(),
@@ -154,7 +157,7 @@ impl ViewerApp {
         }
     }
 
-    fn bars(&mut self, ui: &mut Ui, frame: &Frame) {
+    fn bars(&mut self, ui: &mut Ui) {
         let has = [(PanelKind::Walk, self.walk.is_some()), (PanelKind::Drive, self.drive.is_some())];
         let panels: Vec<PanelKind> =
             has.into_iter().filter(|(_, has)| *has).map(|(panel, _)| panel).collect();
@@ -170,9 +173,9 @@ impl ViewerApp {
                 }
                 ui.label(&self.notice);
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    if let Some(seconds) = frame.info().cpu_usage {
-                        ui.weak(format!("{:.1} ms", 1000.0 * seconds))
-                            .on_hover_text("Time that the window's own thread took for the last frame");
+                    if let Some(milliseconds) = self.frame_times.last() {
+                        let hover = |ui: &mut Ui| ui.label(self.frame_times.summary());
+                        ui.weak(format!("{milliseconds:.1} ms")).on_hover_ui(|ui| drop(hover(ui)));
                         ui.separator();
                     }
                     ui.add(egui::Label::new(egui::RichText::new(&self.adapter).weak()).truncate());
@@ -211,10 +214,11 @@ impl eframe::App for ViewerApp {
         self.take_opened(&ctx);
         self.take_dropped(&ctx);
         self.take_screenshot();
+        frame.info().cpu_usage.into_iter().for_each(|seconds| self.frame_times.add(1000.0 * seconds));
         for action in shortcuts::pressed(ui, Place::Everywhere) {
             self.act(&ctx, action);
         }
-        self.bars(ui, frame);
+        self.bars(ui);
         self.panel(ui);
         shortcuts::window(ui, &mut self.help_is_open);
         let chosen = self.open_window.ui(ui, &self.settings.recent, self.demonstration.as_deref());

@@ -50,6 +50,13 @@ impl FieldView {
         canvas
     }
 
+    /// Keeps a place in the middle of an enlarged view.
+    pub fn follow(&mut self, place_in_world: DVec2) {
+        if self.zoom > 1.0 {
+            self.middle_in_world = place_in_world;
+        }
+    }
+
     fn look_around(&mut self, ui: &Ui, response: &Response, rect: Rect, whole: f32) {
         let to_world = |offset: Vec2, zoom: f32| {
             DVec2::new(f64::from(offset.x), f64::from(-offset.y)) / f64::from(whole * zoom)
@@ -178,17 +185,21 @@ impl FieldCanvas {
         }
     }
 
-    /// A metre.
+    /// A round length, a quarter of the view at most.
     fn draw_scale(&self) {
-        let (corner, metre) = (self.rect.left_bottom() + vec2(10.0, -10.0), self.points(1.0));
+        const LENGTHS: [(f64, &str); 6] =
+            [(5.0, "5 m"), (1.0, "1 m"), (0.5, "50 cm"), (0.2, "20 cm"), (0.1, "10 cm"), (0.02, "2 cm")];
+        let fits = |(length_m, _): &(f64, &str)| self.points(*length_m) < 0.25 * self.rect.width();
+        let (length_m, name) = LENGTHS.into_iter().find(fits).unwrap_or(LENGTHS[LENGTHS.len() - 1]);
+        let (corner, length) = (self.rect.left_bottom() + vec2(10.0, -10.0), self.points(length_m));
         let stroke = Stroke::new(1.5, colors::LINE);
         let font = FontId::proportional(11.0);
-        let ends = [corner, corner + vec2(metre, 0.0)];
+        let ends = [corner, corner + vec2(length, 0.0)];
         self.painter.line_segment(ends, stroke);
         for end in ends {
             self.painter.line_segment([end - vec2(0.0, 3.0), end + vec2(0.0, 3.0)], stroke);
         }
         let align = Align2::CENTER_BOTTOM;
-        self.painter.text(pos2(corner.x + 0.5 * metre, corner.y - 2.0), align, "1 m", font, colors::LINE);
+        self.painter.text(pos2(corner.x + 0.5 * length, corner.y - 2.0), align, name, font, colors::LINE);
     }
 }

@@ -164,6 +164,9 @@ pub fn layers(ui: &mut Ui, layers: &mut Layers, has_truth: bool) {
         "Where dead reckoning from the first pose leads",
     );
     switch(ui, &mut layers.footprint, colors::BORDER, "Footprint", "The ground in view");
+    ui.checkbox(&mut layers.follow, "Follow when enlarged").on_hover_text(
+        "Keeps the pose found in the middle of the field's view while that is enlarged (wheel)",
+    );
     veil(ui, layers);
 }
 

@@ -67,7 +67,8 @@ impl Curve {
     ) -> Option<usize> {
         let time_s = |index: usize| sequence.frames[index].timestamp_s - sequence.frames[0].timestamp_s;
         let last = history.records().find(|record| record.index == at).and_then(self.value);
-        let title = last.map_or_else(|| self.title.to_owned(), |value| format!("{}: {value:.1}", self.title));
+        let title =
+            last.map_or_else(|| self.title.to_owned(), |value| format!("{}: {}", self.title, rounded(value)));
         ui.label(title).on_hover_text(self.explanation);
         let points: Vec<[f64; 2]> = history
             .records()
@@ -108,6 +109,12 @@ impl Curve {
         let clicked_s = response.response.clicked().then_some(response.inner?.x)?;
         Some(frame_at(sequence, clicked_s))
     }
+}
+
+/// Three digits.
+fn rounded(value: f64) -> String {
+    let decimals = if value < 1.0 { 2 } else { usize::from(value < 100.0) };
+    format!("{value:.decimals$}")
 }
 
 /// The frame nearest to a time after the first one.

@@ -31,6 +31,9 @@ impl Map {
         layers: &Layers,
         room: Vec2,
     ) -> Option<Pose2> {
+        if layers.follow && self.dragged.is_none() {
+            self.view.follow(frame.record.pose.planar().position_in_world());
+        }
         let canvas = self.view.show(ui, &sequence.field, room, "Field from above");
         let at = frame.record.index;
         if layers.odometry {

@@ -155,6 +155,8 @@ pub struct Layers {
     pub path: bool,
     pub odometry: bool,
     pub footprint: bool,
+    /// Keep the pose found in the middle of an enlarged view.
+    pub follow: bool,
 }
 
 impl Default for Layers {
@@ -170,6 +172,7 @@ impl Default for Layers {
             path: true,
             odometry: true,
             footprint: true,
+            follow: true,
         }
     }
 }
