@@ -32,7 +32,7 @@ pub fn filter(ui: &mut Ui, settings: &mut FilterSettings, devices: &[Device]) {
     ui.strong("Filter");
     egui::Grid::new("filter").num_columns(2).spacing([8.0, 4.0]).show(ui, |ui| {
         model(ui, settings);
-        row(ui, "Particles", "How many poses are weighed against each picture", |ui| {
+        row(ui, "Particle count", "How many poses are weighed against each picture", |ui| {
             ui.add(DragValue::new(&mut settings.particles).range(1..=100_000).speed(10))
         });
         row(ui, "Iterations", "Rounds of weighing and resampling a picture (the paper's T)", |ui| {

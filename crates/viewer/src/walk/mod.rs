@@ -195,7 +195,7 @@ fn facts(ui: &mut Ui, record: &Record) {
         (true, false) => "sure",
         (true, true) => "sure, after a search",
         (false, false) => "not sure",
-        (false, true) => "lost: searching",
+        (false, true) => "not sure, after a search",
     };
     let pose = record.pose;
     egui::Grid::new("facts").num_columns(2).spacing([8.0, 2.0]).show(ui, |ui| {

@@ -6,6 +6,9 @@ use reality_sim_core::sequence::Sequence;
 use super::{player::Command, settings::Speed};
 use crate::shortcuts::{self, Action};
 
+/// A slider shorter than this goes to a line of its own, points.
+const SHORTEST_SLIDER: f32 = 120.0;
+
 /// Shows the controls; what was asked for comes back.
 pub fn ui(
     ui: &mut Ui,
@@ -16,7 +19,7 @@ pub fn ui(
 ) -> Option<Command> {
     let mut asked = None;
     let last = sequence.frames.len() - 1;
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let mut button = |ui: &mut Ui, text: &str, action: Action, what: &str| {
             let hover = format!("{what} ({})", shortcuts::name(ui, action));
             if ui.button(text).on_hover_text(hover).clicked() {
@@ -27,16 +30,18 @@ pub fn ui(
         button(ui, "Back", Action::StepBack, "One picture back");
         button(ui, if is_playing { "Pause" } else { "Play" }, Action::PlayPause, "Play or pause");
         button(ui, "Next", Action::StepForward, "One picture on");
+        let label = ui.label("Speed");
         let combo = ComboBox::from_id_salt("speed").selected_text(speed.name()).show_ui(ui, |ui| {
             for choice in Speed::ALL {
                 ui.selectable_value(speed, choice, choice.name());
             }
         });
-        combo.response.on_hover_text("How fast the recording is played");
+        combo.response.labelled_by(label.id).on_hover_text("How fast the recording is played");
         let time_s = sequence.frames[at].timestamp_s - sequence.frames[0].timestamp_s;
         ui.label(format!("picture {} of {}, {time_s:.1} s", at + 1, last + 1));
         let mut wanted = at;
-        ui.spacing_mut().slider_width = ui.available_width() - 16.0;
+        let width = ui.available_size_before_wrap().x - 2.0 * ui.spacing().item_spacing.x;
+        ui.spacing_mut().slider_width = if width < SHORTEST_SLIDER { ui.max_rect().width() } else { width };
         let slider = ui.add(Slider::new(&mut wanted, 0..=last).show_value(false));
         slider.widget_info(|| egui::WidgetInfo::slider(true, wanted as f64, "Picture"));
         if wanted != at {

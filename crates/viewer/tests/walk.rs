@@ -1,0 +1,283 @@
+//! The panel Walk in a window without a screen, driven by clicks and keys.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+    thread,
+    time::{Duration, Instant},
+};
+
+use eframe::egui::{Key, Pos2, Rect, Vec2};
+use egui_kittest::{Harness, SnapshotOptions, kittest::Queryable};
+use image::RgbaImage;
+use reality_sim_core::backend::CpuBackend;
+use reality_sim_viewer::{Device, ViewerApp, ViewerOptions};
+
+type Window = Harness<'static, ViewerApp>;
+
+/// Longer than anything here takes, on the slowest machine.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+const POSE: [u8; 3] = [255, 45, 160];
+const TRUTH: [u8; 3] = [20, 130, 255];
+const BORDER: [u8; 3] = [255, 205, 0];
+
+fn assets() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk")
+}
+
+/// A window on the demonstration, with its first picture.
+fn window(size: [f32; 2]) -> Window {
+    let device = Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) };
+    let options = ViewerOptions { open: assets(), demonstration: Some(assets()), devices: vec![device] };
+    let builder = Harness::builder().with_size(size).with_max_steps(32);
+    let mut window = builder.wgpu().build_eframe(|cc| ViewerApp::new(cc, options));
+    until(&mut window, |window| window.query_by_label("Camera picture").is_some());
+    window
+}
+
+/// Lets the window and its threads work until something is so.
+fn until(window: &mut Window, is_so: impl Fn(&Window) -> bool) {
+    let begin = Instant::now();
+    loop {
+        window.step();
+        if is_so(window) {
+            return;
+        }
+        assert!(begin.elapsed() < PATIENCE, "it does not come: {window:?}");
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn until_label(window: &mut Window, label: &str) {
+    until(window, |window| window.query_by_label_contains(label).is_some());
+}
+
+fn click(window: &mut Window, label: &str) {
+    window.get_by_label(label).click();
+    window.step();
+}
+
+/// Chooses an entry of a combo box.
+fn choose(window: &mut Window, combo: &str, entry: &str) {
+    click(window, combo);
+    window.step();
+    click(window, entry);
+}
+
+fn rect_of(window: &Window, label: &str) -> Rect {
+    window.get_by_label(label).rect()
+}
+
+/// Pixels of nearly a colour in a part of the window.
+fn count(picture: &RgbaImage, rect: Rect, color: [u8; 3]) -> usize {
+    let is_near = |pixel: &image::Rgba<u8>| pixel.0.iter().zip(color).all(|(a, b)| a.abs_diff(b) < 24);
+    let (min, size) = (rect.min.round(), rect.size().floor());
+    let part = image::imageops::crop_imm(picture, min.x as u32, min.y as u32, size.x as u32, size.y as u32);
+    part.to_image().pixels().filter(|pixel| is_near(pixel)).count()
+}
+
+/// How many pixels of the camera's picture have a colour.
+fn in_picture(window: &mut Window, color: [u8; 3]) -> usize {
+    let rect = rect_of(window, "Camera picture");
+    count(&window.render().unwrap(), rect, color)
+}
+
+/// The mean grey value of the camera's picture.
+fn brightness(window: &mut Window) -> f64 {
+    let rect = rect_of(window, "Camera picture");
+    let picture = window.render().unwrap();
+    let part = image::imageops::crop_imm(
+        &picture,
+        rect.min.x as u32,
+        rect.min.y as u32,
+        rect.width() as u32,
+        rect.height() as u32,
+    );
+    let grey = image::imageops::grayscale(&part.to_image());
+    grey.pixels().map(|pixel| f64::from(pixel.0[0])).sum::<f64>() / f64::from(grey.width() * grey.height())
+}
+
+fn drag(window: &mut Window, from: Pos2, to: Pos2) {
+    window.hover_at(from);
+    window.step();
+    window.drag_at(from);
+    window.step();
+    for step in 1..=4 {
+        window.hover_at(from + (to - from) * (step as f32 / 4.0));
+        window.step();
+    }
+    window.drop_at(to);
+    window.step();
+}
+
+#[test]
+fn the_first_picture_is_there_with_its_lines_and_nothing_moves() {
+    let mut window = window([1280.0, 820.0]);
+    until_label(&mut window, "picture 1 of 60");
+    assert!(in_picture(&mut window, POSE) > 500);
+    // Everything has settled: no frame is asked for until something happens.
+    window.run();
+    assert!(!window.ctx.has_requested_repaint());
+}
+
+#[test]
+fn space_plays_and_pauses_and_the_arrows_step() {
+    let mut window = window([1280.0, 820.0]);
+    window.key_press(Key::Space);
+    until_label(&mut window, "picture 4 of 60");
+    window.key_press(Key::Space);
+    until(&mut window, |window| window.query_by_label("Play").is_some());
+    let at =
+        (4..60).find(|at| window.query_by_label_contains(&format!("picture {at} of")).is_some()).unwrap();
+    window.key_press(Key::ArrowRight);
+    until_label(&mut window, &format!("picture {} of 60", at + 1));
+    window.key_press(Key::ArrowLeft);
+    until_label(&mut window, &format!("picture {at} of 60"));
+    window.key_press(Key::End);
+    until_label(&mut window, "picture 60 of 60");
+    window.key_press(Key::Home);
+    until_label(&mut window, "picture 1 of 60");
+}
+
+#[test]
+fn buttons_do_what_the_keys_do() {
+    let mut window = window([1280.0, 820.0]);
+    click(&mut window, "Next");
+    until_label(&mut window, "picture 2 of 60");
+    click(&mut window, "Next");
+    until_label(&mut window, "picture 3 of 60");
+    click(&mut window, "Back");
+    until_label(&mut window, "picture 2 of 60");
+    click(&mut window, "Start");
+    until_label(&mut window, "picture 1 of 60");
+    click(&mut window, "Play");
+    until(&mut window, |window| window.query_by_label("Pause").is_some());
+    until_label(&mut window, "picture 3 of 60");
+    click(&mut window, "Pause");
+    until(&mut window, |window| window.query_by_label("Play").is_some());
+}
+
+#[test]
+fn scrubbing_leads_to_the_picture_under_the_pointer() {
+    let mut window = window([1280.0, 820.0]);
+    let slider = rect_of(&window, "Picture");
+    let at = |share: f32| Pos2::new(slider.left() + share * slider.width(), slider.center().y);
+    drag(&mut window, at(0.0), at(0.5));
+    until(&mut window, |window| {
+        (28..=33).any(|at| window.query_by_label_contains(&format!("picture {at} of")).is_some())
+    });
+}
+
+#[test]
+fn a_click_on_a_curve_leads_to_its_time() {
+    let mut window = window([1280.0, 820.0]);
+    let label = window.get_by_label_contains("spread, cm").rect();
+    let place = label.left_bottom() + Vec2::new(160.0, 80.0);
+    window.hover_at(place);
+    window.step();
+    window.drag_at(place);
+    window.step();
+    window.drop_at(place);
+    until(&mut window, |window| window.query_by_label_contains("picture 1 of").is_none());
+}
+
+#[test]
+fn overlays_are_switched_on_and_off() {
+    let mut window = window([1280.0, 820.0]);
+    for (label, color, is_on) in
+        [("Pose found", POSE, true), ("Truth", TRUTH, true), ("Field's border", BORDER, false)]
+    {
+        // The truth lies under the pose found: it is to be seen once that is off.
+        let before = in_picture(&mut window, color);
+        click(&mut window, label);
+        window.step();
+        let after = in_picture(&mut window, color);
+        let (on, off) = if is_on { (before, after) } else { (after, before) };
+        assert!(on > off + 200, "{label}: {on} pixels on, {off} off");
+        if label == "Truth" {
+            click(&mut window, label);
+        }
+    }
+}
+
+#[test]
+fn what_the_models_read_is_laid_over_the_picture() {
+    let mut window = window([1280.0, 820.0]);
+    let bare = brightness(&mut window);
+    let mut seen = vec![bare];
+    for veil in ["blurred picture", "white-line evidence", "distances"] {
+        choose(&mut window, "Over the picture", veil);
+        // The veil is made by the filter's thread.
+        let before = *seen.last().unwrap();
+        let begin = Instant::now();
+        let mut now = before;
+        while (now - before).abs() < 1.0 {
+            assert!(begin.elapsed() < PATIENCE, "{veil} changes nothing");
+            thread::sleep(Duration::from_millis(20));
+            window.step();
+            now = brightness(&mut window);
+        }
+        seen.push(now);
+    }
+    // Evidence is nearly black, distances nearly white.
+    assert!(seen[2] < 0.5 * bare && seen[3] > 1.3 * bare, "{seen:?}");
+    choose(&mut window, "Over the picture", "nothing");
+    let begin = Instant::now();
+    while (brightness(&mut window) - bare).abs() > 1.0 {
+        assert!(begin.elapsed() < PATIENCE, "the veil stays");
+        thread::sleep(Duration::from_millis(20));
+        window.step();
+    }
+}
+
+#[test]
+fn another_model_and_fewer_particles_act_at_once() {
+    let mut window = window([1280.0, 820.0]);
+    assert!(window.query_by_label("Gain").is_some() && window.query_by_label("α").is_none());
+    choose(&mut window, "Model", "gauss");
+    until(&mut window, |window| window.query_by_label("α").is_some());
+    // A click on the number lets one type another.
+    click(&mut window, "Particle count");
+    window.step();
+    window.get_by_label("Particle count").type_text("300");
+    window.key_press(Key::Enter);
+    until(&mut window, |window| window.query_by_label("300").is_some());
+    until_label(&mut window, "picture 1 of 60");
+}
+
+#[test]
+fn particles_dragged_away_find_back() {
+    let mut window = window([1280.0, 820.0]);
+    click(&mut window, "Next");
+    until_label(&mut window, "picture 2 of 60");
+    let field = rect_of(&window, "Field from above");
+    drag(&mut window, field.center(), field.center() + Vec2::new(0.25 * field.width(), 0.1 * field.height()));
+    until_label(&mut window, "not sure");
+    choose(&mut window, "Speed", "as fast as the filter");
+    click(&mut window, "Play");
+    until(&mut window, |window| window.query_by_label("sure").is_some());
+}
+
+#[test]
+fn a_narrow_window_shows_picture_and_field_one_above_the_other() {
+    let window = window([640.0, 900.0]);
+    let (picture, field) = (rect_of(&window, "Camera picture"), rect_of(&window, "Field from above"));
+    assert!(picture.bottom() <= field.top());
+    assert!(picture.width() > 150.0 && field.width() > 150.0);
+}
+
+#[test]
+fn the_panel_looks_as_it_did() {
+    let mut window = window([760.0, 520.0]);
+    until_label(&mut window, "sure");
+    // Times differ from run to run, and poses in their last digits from processor to processor.
+    for label in ["ms a frame", "error, cm", "effective sample size", "spread, cm"] {
+        let title = window.get_by_label_contains(label).rect();
+        window.mask(Rect::from_min_size(title.min, Vec2::new(180.0, 400.0)));
+    }
+    // Drivers that run on the processor compile for it: edges of lines differ by a level or two between processors.
+    window.snapshot_options("walk", &SnapshotOptions::new().threshold(1.0).max_failed_pixels(300));
+}
