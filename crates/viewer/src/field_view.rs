@@ -15,6 +15,8 @@ use crate::colors;
 
 /// Poses farther apart than this are not joined, metres: the robot was carried, or the filter jumped.
 const MAX_PATH_STEP_M: f64 = 0.5;
+/// Views narrower than this, points, have no room for words beside the scale.
+const ROOM_FOR_HINT: f32 = 340.0;
 /// The view can be enlarged so many times.
 const MAX_ZOOM: f32 = 40.0;
 
@@ -138,6 +140,9 @@ impl FieldCanvas {
 
     /// What can be done here, in a few words along the lower edge.
     pub fn hint(&self, text: &str) {
+        if self.rect.width() < ROOM_FOR_HINT {
+            return;
+        }
         let corner = self.rect.right_bottom() - vec2(8.0, 6.0);
         let color = colors::LINE.gamma_multiply(0.6);
         self.painter.text(corner, Align2::RIGHT_BOTTOM, text, FontId::proportional(11.0), color);

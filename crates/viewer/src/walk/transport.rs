@@ -40,8 +40,10 @@ pub fn ui(
         let time_s = sequence.frames[at].timestamp_s - sequence.frames[0].timestamp_s;
         ui.label(format!("picture {} of {}, {time_s:.1} s", at + 1, last + 1));
         let mut wanted = at;
-        let width = ui.available_size_before_wrap().x - 2.0 * ui.spacing().item_spacing.x;
-        ui.spacing_mut().slider_width = if width < SHORTEST_SLIDER { ui.max_rect().width() } else { width };
+        if ui.available_size_before_wrap().x < SHORTEST_SLIDER {
+            ui.end_row();
+        }
+        ui.spacing_mut().slider_width = ui.available_size_before_wrap().x - 2.0 * ui.spacing().item_spacing.x;
         let slider = ui.add(Slider::new(&mut wanted, 0..=last).show_value(false));
         slider.widget_info(|| egui::WidgetInfo::slider(true, wanted as f64, "Picture"));
         if wanted != at {
