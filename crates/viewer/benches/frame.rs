@@ -1,0 +1,73 @@
+//! What the window's own thread spends on a frame: `cargo bench -p reality-sim-viewer`.
+
+use std::{
+    hint::black_box,
+    path::Path,
+    sync::Arc,
+    thread,
+    time::{Duration, Instant},
+};
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use eframe::egui::Key;
+use egui_kittest::{Harness, kittest::Queryable};
+use reality_sim_core::backend::CpuBackend;
+use reality_sim_viewer::{Device, ViewerApp, ViewerOptions};
+
+/// Between two frames: longer than the filter takes for a picture, so that nearly every frame shows a new one.
+const PAUSE: Duration = Duration::from_millis(40);
+
+type Window = Harness<'static, ViewerApp>;
+
+criterion_group!(benches, frames);
+criterion_main!(benches);
+
+/// The demonstration: pictures of 640 × 480 pixels, 800 particles.
+fn frames(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("viewer");
+    group.sample_size(10).measurement_time(Duration::from_secs(8));
+    group.bench_function("frame_while_paused", |bencher| {
+        let mut window = window();
+        bencher.iter(|| frame(&mut window));
+    });
+    group.bench_function("frame_while_playing", |bencher| {
+        let mut window = window();
+        bencher.iter_custom(|frames| (0..frames).map(|_| frame_while_playing(&mut window)).sum());
+    });
+    group.finish();
+}
+
+fn window() -> Window {
+    let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk");
+    let device = Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) };
+    let options = ViewerOptions { open: walk, demonstration: None, devices: vec![device] };
+    let builder = Harness::builder().with_size([1280.0, 820.0]);
+    let mut window = builder.wgpu().build_eframe(|cc| ViewerApp::new(cc, options));
+    while window.query_by_label("Camera picture").is_none() {
+        window.step();
+        thread::sleep(PAUSE);
+    }
+    for label in ["Speed", "as fast as the filter"] {
+        window.get_by_label(label).click();
+        window.run_steps(2);
+    }
+    window
+}
+
+/// Layout, input, uploads and triangles; the graphics device draws them elsewhere.
+fn frame(window: &mut Window) {
+    window.step();
+    let output = window.output();
+    black_box(window.ctx.tessellate(output.shapes.clone(), output.pixels_per_point));
+}
+
+fn frame_while_playing(window: &mut Window) -> Duration {
+    if window.query_by_label("Play").is_some() {
+        window.key_press(Key::Space);
+        window.step();
+    }
+    thread::sleep(PAUSE);
+    let begin = Instant::now();
+    frame(window);
+    begin.elapsed()
+}
