@@ -30,8 +30,13 @@ fn assets() -> PathBuf {
 
 /// A window on the demonstration, with its first picture.
 fn window(size: [f32; 2]) -> Window {
+    window_on(&assets(), size)
+}
+
+/// A window on a recording, with its first picture.
+fn window_on(recording: &Path, size: [f32; 2]) -> Window {
     let device = Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) };
-    let options = ViewerOptions { open: assets(), demonstration: Some(assets()), devices: vec![device] };
+    let options = ViewerOptions { open: recording.to_path_buf(), demonstration: None, devices: vec![device] };
     let builder = Harness::builder().with_size(size).with_max_steps(32);
     let mut window = builder.wgpu().build_eframe(|cc| ViewerApp::new(cc, options));
     until(&mut window, |window| window.query_by_label("Camera picture").is_some());
@@ -46,7 +51,7 @@ fn until(window: &mut Window, is_so: impl Fn(&Window) -> bool) {
         if is_so(window) {
             return;
         }
-        assert!(begin.elapsed() < PATIENCE, "it does not come: {window:?}");
+        assert!(begin.elapsed() < PATIENCE, "it does not come; there is {:?}", window.root());
         thread::sleep(Duration::from_millis(5));
     }
 }
@@ -267,6 +272,52 @@ fn a_narrow_window_shows_picture_and_field_one_above_the_other() {
     let (picture, field) = (rect_of(&window, "Camera picture"), rect_of(&window, "Field from above"));
     assert!(picture.bottom() <= field.top());
     assert!(picture.width() > 150.0 && field.width() > 150.0);
+}
+
+/// The first frames of the demonstration, without ground truth, start and odometry.
+fn bare_recording(folder: &Path, frames: usize) {
+    for name in ["camera.toml", "field.toml"] {
+        std::fs::copy(assets().join(name), folder.join(name)).unwrap();
+    }
+    let text = "name = \"bare\"\ncamera = \"camera.toml\"\nfield = \"field.toml\"\nframes = \"frames.csv\"\n";
+    std::fs::write(folder.join("sequence.toml"), text).unwrap();
+    std::fs::create_dir(folder.join("images")).unwrap();
+    let table = std::fs::read_to_string(assets().join("frames.csv")).unwrap();
+    let mut bare = "timestamp_s,image,pitch_rad,roll_rad\n".to_owned();
+    for line in table.lines().skip(1).take(frames) {
+        let cells: Vec<&str> = line.split(',').collect();
+        std::fs::copy(assets().join(cells[1]), folder.join(cells[1])).unwrap();
+        bare += &format!("{},{},{},{}\n", cells[0], cells[1], cells[5], cells[6]);
+    }
+    std::fs::write(folder.join("frames.csv"), bare).unwrap();
+}
+
+#[test]
+fn a_recording_without_truth_start_and_odometry_is_searched_and_shown_without_them() {
+    let folder = tempfile::tempdir().unwrap();
+    bare_recording(folder.path(), 4);
+    let mut window = window_on(folder.path(), [1280.0, 820.0]);
+    until_label(&mut window, "after a search");
+    assert!(window.query_by_label("Truth").is_none());
+    assert!(window.query_by_label_contains("error, cm").is_none());
+    window.key_press(Key::End);
+    until_label(&mut window, "picture 4 of 4");
+}
+
+#[test]
+fn a_recording_of_one_picture_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    bare_recording(folder.path(), 1);
+    let mut window = window_on(folder.path(), [1280.0, 820.0]);
+    until_label(&mut window, "picture 1 of 1");
+    for key in [Key::ArrowRight, Key::ArrowLeft, Key::End, Key::Home, Key::Space] {
+        window.key_press(key);
+        window.step();
+    }
+    until(&mut window, |window| window.query_by_label("Play").is_some());
+    let slider = rect_of(&window, "Picture");
+    drag(&mut window, slider.left_center(), slider.right_center());
+    until_label(&mut window, "picture 1 of 1");
 }
 
 #[test]

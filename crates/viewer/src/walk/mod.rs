@@ -35,7 +35,7 @@ use crate::{
 /// Width of the settings beside the views, with its margins, points.
 const SETTINGS_WIDTH: f32 = 234.0;
 /// Height of everything along the bottom but the curves, points.
-const TRANSPORT_HEIGHT: f32 = 84.0;
+const TRANSPORT_HEIGHT: f32 = 108.0;
 /// Curves take what picture and field side by side leave, within these heights, points.
 const CURVE_HEIGHTS: std::ops::RangeInclusive<f32> = 72.0..=330.0;
 /// From this width on picture and field stand side by side, else one above the other, in heights.
@@ -48,6 +48,8 @@ pub struct WalkPanel {
     /// What the player was told last.
     told: WalkSettings,
     is_playing: bool,
+    /// The player was told something and has not answered yet.
+    is_waiting: bool,
     frame: Option<Box<FrameView>>,
     history: History,
     map: Map,
@@ -65,6 +67,7 @@ impl WalkPanel {
             player,
             told: settings.clone(),
             is_playing: false,
+            is_waiting: false,
             frame: None,
             map: Map::default(),
             textures: CameraTextures::default(),
@@ -80,27 +83,21 @@ impl WalkPanel {
                     self.history.add(frame.record);
                     self.frame = Some(frame);
                 }
-                Message::Playing(is_playing) => self.is_playing = is_playing,
+                Message::Playing(is_playing) => (self.is_playing, self.is_waiting) = (is_playing, false),
                 Message::Problem(reason) => problems.add(reason),
             }
         }
     }
 
-    /// Tells the player what was set since the last time.
-    fn tell_settings(&mut self, settings: &WalkSettings) {
-        let told = &self.told;
-        if settings.filter != told.filter {
-            self.player.tell(Command::Filter(settings.filter.clone()));
-        }
-        if settings.speed != told.speed {
-            self.player.tell(Command::Speed(settings.speed));
-        }
-        if settings.layers.veil != told.layers.veil {
-            self.player.tell(Command::Veil(settings.layers.veil));
-        }
-        if settings != told {
-            self.told = settings.clone();
-        }
+    /// What was set since the player was told the last time.
+    fn new_settings(&mut self, settings: &WalkSettings) -> Vec<Command> {
+        let told = std::mem::replace(&mut self.told, settings.clone());
+        let changed = [
+            (settings.filter != told.filter).then(|| Command::Filter(settings.filter.clone())),
+            (settings.speed != told.speed).then_some(Command::Speed(settings.speed)),
+            (settings.layers.veil != told.layers.veil).then_some(Command::Veil(settings.layers.veil)),
+        ];
+        changed.into_iter().flatten().collect()
     }
 
     /// Shows it.
@@ -118,10 +115,11 @@ impl WalkPanel {
             });
             return;
         };
-        let commands = self.content(ui, &frame, settings, devices);
+        let mut commands = self.content(ui, &frame, settings, devices);
         self.frame = Some(frame);
+        commands.extend(self.new_settings(settings));
+        self.is_waiting |= !commands.is_empty();
         commands.into_iter().for_each(|command| self.player.tell(command));
-        self.tell_settings(settings);
     }
 
     fn content(
@@ -131,7 +129,7 @@ impl WalkPanel {
         settings: &mut WalkSettings,
         devices: &[Device],
     ) -> Vec<Command> {
-        let Self { sequence, history, is_playing, .. } = self;
+        let Self { sequence, history, is_playing, is_waiting, .. } = self;
         let (at, last) = (frame.record.index, sequence.frames.len() - 1);
         let mut commands: Vec<Command> = shortcuts::pressed(ui, Place::Walk)
             .into_iter()
@@ -139,7 +137,7 @@ impl WalkPanel {
             .collect();
         egui::Panel::right("walk settings").resizable(false).exact_size(SETTINGS_WIDTH).show(ui, |ui| {
             egui::ScrollArea::vertical().show(ui, |ui| {
-                facts(ui, &frame.record);
+                facts(ui, &frame.record, *is_waiting && !*is_playing);
                 ui.separator();
                 controls::layers(ui, &mut settings.layers, frame.truth.is_some());
                 ui.separator();
@@ -190,8 +188,9 @@ fn height_within(width: f32, sequence: &Sequence) -> f32 {
 }
 
 /// What was found in the picture shown.
-fn facts(ui: &mut Ui, record: &Record) {
+fn facts(ui: &mut Ui, record: &Record, is_waiting: bool) {
     let state = match (record.sure, record.searched) {
+        _ if is_waiting => "working …",
         (true, false) => "sure",
         (true, true) => "sure, after a search",
         (false, false) => "not sure",

@@ -6,9 +6,6 @@ use reality_sim_core::sequence::Sequence;
 use super::{player::Command, settings::Speed};
 use crate::shortcuts::{self, Action};
 
-/// A slider shorter than this goes to a line of its own, points.
-const SHORTEST_SLIDER: f32 = 120.0;
-
 /// Shows the controls; what was asked for comes back.
 pub fn ui(
     ui: &mut Ui,
@@ -39,18 +36,17 @@ pub fn ui(
         combo.response.labelled_by(label.id).on_hover_text("How fast the recording is played");
         let time_s = sequence.frames[at].timestamp_s - sequence.frames[0].timestamp_s;
         ui.label(format!("picture {} of {}, {time_s:.1} s", at + 1, last + 1));
-        let mut wanted = at;
-        if ui.available_size_before_wrap().x < SHORTEST_SLIDER {
-            ui.end_row();
-        }
-        ui.spacing_mut().slider_width = ui.available_size_before_wrap().x - 2.0 * ui.spacing().item_spacing.x;
-        let slider = ui.add(Slider::new(&mut wanted, 0..=last).show_value(false));
-        slider.widget_info(|| egui::WidgetInfo::slider(true, wanted as f64, "Picture"));
-        if wanted != at {
-            asked = Some(Command::GoTo(wanted));
-        }
     });
-    asked
+    asked.or(scrub(ui, at, last))
+}
+
+/// A line of its own: what is beside a slider must not move while it is dragged.
+fn scrub(ui: &mut Ui, at: usize, last: usize) -> Option<Command> {
+    let mut wanted = at;
+    ui.spacing_mut().slider_width = ui.available_width();
+    let slider = ui.add(Slider::new(&mut wanted, 0..=last).show_value(false));
+    slider.widget_info(|| egui::WidgetInfo::slider(true, wanted as f64, "Picture"));
+    (wanted != at).then_some(Command::GoTo(wanted))
 }
 
 /// What a key or a button asks of the player.
