@@ -13,7 +13,7 @@ use crate::{
     device::Device,
     drive::DrivePanel,
     open_window::{Chosen, OpenWindow, Purpose},
-    opening::{Opened, open},
+    opening::{Opened, open, whole},
     problems::Problems,
     screenshot::Screenshot,
     settings::Settings,
@@ -55,7 +55,7 @@ impl ViewerApp {
         let mut app = Self {
             settings,
             devices: options.devices,
-            demonstration: options.demonstration,
+            demonstration: options.demonstration.map(|path| whole(&path)),
             adapter: adapter(cc),
             opening: None,
             open_window: OpenWindow::default(),
@@ -73,9 +73,10 @@ impl ViewerApp {
 
     /// Opens a path in the background.
     fn open(&mut self, ctx: &Context, purpose: Purpose, path: &Path) {
-        let wanted = path.to_path_buf();
-        let task = Task::spawn(ctx, format!("Opening {} …", path.display()), move |_| open(&wanted));
-        self.opening = Some(Opening { purpose, path: path.to_path_buf(), task });
+        let path = whole(path);
+        let (title, wanted) = (format!("Opening {} …", path.display()), path.clone());
+        let task = Task::spawn(ctx, title, move |_| open(&wanted));
+        self.opening = Some(Opening { purpose, path, task });
     }
 
     fn take_opened(&mut self, ctx: &Context) {
@@ -103,7 +104,7 @@ impl ViewerApp {
     fn show_opened(&mut self, ctx: &Context, opened: Opened, path: &Path) {
         // The demonstration has a place of its own in the list.
         if self.demonstration.as_deref() != Some(path) {
-            self.settings.remember(&std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf()));
+            self.settings.remember(path);
         }
         match opened {
             Opened::Recording(sequence) => {
@@ -135,14 +136,20 @@ impl ViewerApp {
             }
             Action::Screenshot => self.screenshot.take(ctx),
             Action::Help => self.help_is_open = !self.help_is_open,
+            Action::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             _ => {}
         }
     }
 
     fn take_dropped(&mut self, ctx: &Context) {
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        if let Some(path) = dropped.first().map(|file| file.path().to_path_buf()) {
-            self.open(ctx, Purpose::Open, &path);
+        if let Some(file) = dropped.first() {
+            self.open(ctx, Purpose::Open, file.path());
+        }
+        if dropped.len() > 1 {
+            self.problems.add(
+                "only the first of the things dropped is opened: drop one recording or database at a time",
+            );
         }
     }
 
@@ -167,6 +174,10 @@ impl ViewerApp {
             ui.horizontal(|ui| {
                 if let Some(opening) = &self.opening {
                     opening.task.ui(ui);
+                    // Opening leaves nothing half done: nobody has to wait until it notices.
+                    if opening.task.is_cancelled() {
+                        self.opening = None;
+                    }
                 }
                 ui.label(&self.notice);
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
