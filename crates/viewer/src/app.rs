@@ -262,3 +262,78 @@ fn adapter(cc: &CreationContext<'_>) -> String {
         _ => format!("drawn by {}", info.name),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::{
+        sync::mpsc,
+        time::{Duration, Instant},
+    };
+
+    use egui_kittest::{Harness, kittest::Queryable};
+
+    use super::*;
+
+    /// A window, and the other end of an opening that lasts until something is sent there.
+    fn with_endless_opening() -> (Harness<'static, ViewerApp>, mpsc::Sender<()>) {
+        let options =
+            ViewerOptions { open: "/no/such/walk".into(), demonstration: None, devices: Vec::new() };
+        let mut harness =
+            Harness::builder().with_size([1280.0, 820.0]).build_eframe(|cc| ViewerApp::new(cc, options));
+        let (go, wait) = mpsc::channel();
+        let task = Task::spawn(&harness.ctx, "Opening it …", move |_| {
+            wait.recv().map_err(|error| error.to_string())?;
+            open(Path::new("/no/such/walk/either"))
+        });
+        harness.state_mut().opening = Some(Opening { purpose: Purpose::Open, path: PathBuf::new(), task });
+        harness.run_steps(2);
+        harness.get_by_label("Opening it …");
+        (harness, go)
+    }
+
+    fn until(harness: &mut Harness<'_, ViewerApp>, holds: impl Fn(&Harness<'_, ViewerApp>) -> bool) {
+        let started = Instant::now();
+        while !holds(harness) {
+            assert!(started.elapsed() < Duration::from_secs(60), "it never happens: {:?}", harness.root());
+            harness.step();
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    #[test]
+    fn an_opening_that_lasts_can_be_cancelled_without_waiting_for_it() {
+        let (mut harness, go) = with_endless_opening();
+        harness.get_by_label("Cancel").click();
+        harness.run_steps(2);
+        assert!(harness.query_by_label("Opening it …").is_none());
+        assert!(harness.query_by_label("Cancel").is_none());
+        go.send(()).unwrap();
+        harness.run();
+        assert!(harness.query_by_label_contains("either").is_none(), "what was cancelled is no problem");
+    }
+
+    #[test]
+    fn what_is_opened_second_takes_the_place_of_what_still_opens() {
+        let (mut harness, go) = with_endless_opening();
+        let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk");
+        let ctx = harness.ctx.clone();
+        harness.state_mut().open(&ctx, Purpose::Open, &walk);
+        until(&mut harness, |harness| harness.query_by_label("Drive").is_some());
+        go.send(()).unwrap();
+        harness.run_steps(3);
+        assert!(harness.query_by_label("Opening it …").is_none());
+        assert!(harness.query_by_label_contains("either").is_none());
+    }
+
+    #[test]
+    fn only_a_recording_can_be_compared_with() {
+        let (mut harness, _go) = with_endless_opening();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("walk.db");
+        drop(reality_sim_db::Database::create_or_open(&path).unwrap());
+        let ctx = harness.ctx.clone();
+        harness.state_mut().open(&ctx, Purpose::Compare, &path);
+        until(&mut harness, |harness| harness.query_by_label_contains("walk.db: ").is_some());
+        assert!(harness.state().drive.is_none());
+    }
+}

@@ -64,7 +64,8 @@ pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
         eframe::run_native("Reality Sim", native, Box::new(app))
     })?;
     opened.map_err(|error| match error {
-        eframe::Error::Wgpu(error) => ViewerError::NoGraphics(error.to_string()),
+        // The list of what each kind of driver says, empty where there is none.
+        eframe::Error::Wgpu(error) => ViewerError::NoGraphics(error.to_string().replace(": {}", "")),
         error => ViewerError::NoWindow(reason(&error.to_string())),
     })
 }
