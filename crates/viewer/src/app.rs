@@ -14,7 +14,7 @@ use crate::{
     drive::DrivePanel,
     frame_times::FrameTimes,
     open_window::{Chosen, OpenWindow, Purpose},
-    opening::{Opened, open},
+    opening::{Opened, open, whole},
     problems::Problems,
     screenshot::Screenshot,
     settings::Settings,
@@ -57,7 +57,7 @@ impl ViewerApp {
         let mut app = Self {
             settings,
             devices: options.devices,
-            demonstration: options.demonstration,
+            demonstration: options.demonstration.map(|path| whole(&path)),
             adapter: adapter(cc),
             frame_times: FrameTimes::default(),
             opening: None,
@@ -76,9 +76,10 @@ impl ViewerApp {
 
     /// Opens a path in the background.
     fn open(&mut self, ctx: &Context, purpose: Purpose, path: &Path) {
-        let wanted = path.to_path_buf();
-        let task = Task::spawn(ctx, format!("Opening {} …", path.display()), move |_| open(&wanted));
-        self.opening = Some(Opening { purpose, path: path.to_path_buf(), task });
+        let path = whole(path);
+        let (title, wanted) = (format!("Opening {} …", path.display()), path.clone());
+        let task = Task::spawn(ctx, title, move |_| open(&wanted));
+        self.opening = Some(Opening { purpose, path, task });
     }
 
     fn take_opened(&mut self, ctx: &Context) {
@@ -106,7 +107,7 @@ impl ViewerApp {
     fn show_opened(&mut self, ctx: &Context, opened: Opened, path: &Path) {
         // The demonstration has a place of its own in the list.
         if self.demonstration.as_deref() != Some(path) {
-            self.settings.remember(&std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf()));
+            self.settings.remember(path);
         }
         match opened {
             Opened::Recording(sequence) => {
@@ -138,14 +139,20 @@ impl ViewerApp {
             }
             Action::Screenshot => self.screenshot.take(ctx),
             Action::Help => self.help_is_open = !self.help_is_open,
+            Action::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             _ => {}
         }
     }
 
     fn take_dropped(&mut self, ctx: &Context) {
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        if let Some(path) = dropped.first().map(|file| file.path().to_path_buf()) {
-            self.open(ctx, Purpose::Open, &path);
+        if let Some(file) = dropped.first() {
+            self.open(ctx, Purpose::Open, file.path());
+        }
+        if dropped.len() > 1 {
+            self.problems.add(
+                "only the first of the things dropped is opened: drop one recording or database at a time",
+            );
         }
     }
 
@@ -170,6 +177,10 @@ impl ViewerApp {
             ui.horizontal(|ui| {
                 if let Some(opening) = &self.opening {
                     opening.task.ui(ui);
+                    // Opening leaves nothing half done: nobody has to wait until it notices.
+                    if opening.task.is_cancelled() {
+                        self.opening = None;
+                    }
                 }
                 ui.label(&self.notice);
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -253,5 +264,80 @@ fn adapter(cc: &CreationContext<'_>) -> String {
     match info.device_type {
         wgpu::DeviceType::Cpu => format!("no graphics card: the processor draws this window ({})", info.name),
         _ => format!("drawn by {}", info.name),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{
+        sync::mpsc,
+        time::{Duration, Instant},
+    };
+
+    use egui_kittest::{Harness, kittest::Queryable};
+
+    use super::*;
+
+    /// A window, and the other end of an opening that lasts until something is sent there.
+    fn with_endless_opening() -> (Harness<'static, ViewerApp>, mpsc::Sender<()>) {
+        let options =
+            ViewerOptions { open: "/no/such/walk".into(), demonstration: None, devices: Vec::new() };
+        let mut harness =
+            Harness::builder().with_size([1280.0, 820.0]).build_eframe(|cc| ViewerApp::new(cc, options));
+        let (go, wait) = mpsc::channel();
+        let task = Task::spawn(&harness.ctx, "Opening it …", move |_| {
+            wait.recv().map_err(|error| error.to_string())?;
+            open(Path::new("/no/such/walk/either"))
+        });
+        harness.state_mut().opening = Some(Opening { purpose: Purpose::Open, path: PathBuf::new(), task });
+        harness.run_steps(2);
+        harness.get_by_label("Opening it …");
+        (harness, go)
+    }
+
+    fn until(harness: &mut Harness<'_, ViewerApp>, holds: impl Fn(&Harness<'_, ViewerApp>) -> bool) {
+        let started = Instant::now();
+        while !holds(harness) {
+            assert!(started.elapsed() < Duration::from_secs(60), "it never happens: {:?}", harness.root());
+            harness.step();
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    #[test]
+    fn an_opening_that_lasts_can_be_cancelled_without_waiting_for_it() {
+        let (mut harness, go) = with_endless_opening();
+        harness.get_by_label("Cancel").click();
+        harness.run_steps(2);
+        assert!(harness.query_by_label("Opening it …").is_none());
+        assert!(harness.query_by_label("Cancel").is_none());
+        go.send(()).unwrap();
+        harness.run();
+        assert!(harness.query_by_label_contains("either").is_none(), "what was cancelled is no problem");
+    }
+
+    #[test]
+    fn what_is_opened_second_takes_the_place_of_what_still_opens() {
+        let (mut harness, go) = with_endless_opening();
+        let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk");
+        let ctx = harness.ctx.clone();
+        harness.state_mut().open(&ctx, Purpose::Open, &walk);
+        until(&mut harness, |harness| harness.query_by_label("Drive").is_some());
+        go.send(()).unwrap();
+        harness.run_steps(3);
+        assert!(harness.query_by_label("Opening it …").is_none());
+        assert!(harness.query_by_label_contains("either").is_none());
+    }
+
+    #[test]
+    fn only_a_recording_can_be_compared_with() {
+        let (mut harness, _go) = with_endless_opening();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("walk.db");
+        drop(reality_sim_db::Database::create_or_open(&path).unwrap());
+        let ctx = harness.ctx.clone();
+        harness.state_mut().open(&ctx, Purpose::Compare, &path);
+        until(&mut harness, |harness| harness.query_by_label_contains("walk.db: ").is_some());
+        assert!(harness.state().drive.is_none());
     }
 }

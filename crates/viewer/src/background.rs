@@ -71,11 +71,11 @@ impl<T: Send + 'static> Task<T> {
         let (sender, result) = mpsc::channel();
         let (its_progress, ctx) = (progress.clone(), ctx.clone());
         thread::spawn(move || {
+            // Dropped in reverse order, after a panic too: when the window wakes up, the channel is closed.
+            let _wake = Wake(ctx);
+            let sender = sender;
             // Nobody listens any more once the task was dropped.
             let _ = sender.send(work(&its_progress));
-            // The sender goes first: should the work panic, the window finds the channel closed.
-            drop(sender);
-            ctx.request_repaint();
         });
         Self { title: title.into(), progress, result }
     }
@@ -93,6 +93,11 @@ impl<T: Send + 'static> Task<T> {
             )),
         };
         Some(outcome)
+    }
+
+    /// Whether it was asked to stop.
+    pub fn is_cancelled(&self) -> bool {
+        self.progress.is_cancelled()
     }
 
     /// What is being done, how much of it is, and a button that stops it.
@@ -119,5 +124,112 @@ impl<T: Send + 'static> Task<T> {
 impl<T> Drop for Task<T> {
     fn drop(&mut self) {
         self.progress.is_cancelled.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Asks for a repaint when it is dropped.
+struct Wake(egui::Context);
+
+impl Drop for Wake {
+    fn drop(&mut self) {
+        self.0.request_repaint();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use super::*;
+
+    /// Waits for the end of a task.
+    fn end_of<T: Send + 'static>(task: &Task<T>) -> Outcome<T> {
+        let started = Instant::now();
+        loop {
+            if let Some(outcome) = task.poll() {
+                return outcome;
+            }
+            assert!(started.elapsed() < Duration::from_secs(60), "{} does not end", task.title);
+            thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// A context that counts how often it is asked for a repaint.
+    fn counting_context() -> (egui::Context, Arc<AtomicUsize>) {
+        let (ctx, repaints) = (egui::Context::default(), Arc::new(AtomicUsize::new(0)));
+        let count = repaints.clone();
+        ctx.set_request_repaint_callback(move |_| {
+            count.fetch_add(1, Ordering::SeqCst);
+        });
+        (ctx, repaints)
+    }
+
+    #[test]
+    fn what_the_work_returns_arrives_once_and_wakes_the_window() {
+        let (ctx, repaints) = counting_context();
+        let task = Task::spawn(&ctx, "adding", |_| Ok(2 + 3));
+        assert!(matches!(end_of(&task), Outcome::Done(5)));
+        wait_until(|| repaints.load(Ordering::SeqCst) > 0);
+    }
+
+    #[test]
+    fn the_reason_of_a_failure_arrives_as_it_was_given() {
+        let task = Task::<()>::spawn(&egui::Context::default(), "", |_| Err("no such file".to_owned()));
+        assert!(matches!(end_of(&task), Outcome::Failed(reason) if reason == "no such file"));
+    }
+
+    #[test]
+    fn work_that_panics_has_failed_and_the_window_wakes_up_to_say_so() {
+        let (ctx, repaints) = counting_context();
+        let task = Task::<()>::spawn(&ctx, "Counting sheep", |_| panic!("meant to: part of a test"));
+        wait_until(|| repaints.load(Ordering::SeqCst) > 0);
+        let Some(Outcome::Failed(reason)) = task.poll() else { panic!("no failure when the window woke up") };
+        assert!(reason.contains("Counting sheep") && reason.contains("report"), "{reason}");
+    }
+
+    #[test]
+    fn dropping_a_task_asks_its_work_to_stop() {
+        let (sender, stopped) = mpsc::channel();
+        let task = Task::spawn(&egui::Context::default(), "", move |progress| {
+            while !progress.is_cancelled() {
+                thread::sleep(Duration::from_millis(1));
+            }
+            sender.send(()).map_err(|error| error.to_string())
+        });
+        assert!(task.poll().is_none(), "it ended by itself");
+        drop(task);
+        stopped.recv_timeout(Duration::from_secs(60)).unwrap();
+    }
+
+    #[test]
+    fn what_was_finished_after_the_cancelling_is_not_delivered() {
+        let (go, wait) = mpsc::channel::<()>();
+        let task = Task::spawn(&egui::Context::default(), "", move |_| Ok(wait.recv().is_ok()));
+        task.progress.is_cancelled.store(true, Ordering::Relaxed);
+        go.send(()).unwrap();
+        assert!(matches!(end_of(&task), Outcome::Cancelled));
+    }
+
+    #[test]
+    fn the_share_is_unknown_until_the_work_tells_its_steps() {
+        let (tell, told) = mpsc::channel::<()>();
+        let (go, wait) = mpsc::channel::<()>();
+        let task = Task::spawn(&egui::Context::default(), "", move |progress| {
+            wait.recv().map_err(|error| error.to_string())?;
+            progress.set(1, 4);
+            tell.send(()).map_err(|error| error.to_string())
+        });
+        assert_eq!(task.progress.share(), None);
+        go.send(()).unwrap();
+        told.recv_timeout(Duration::from_secs(60)).unwrap();
+        assert_eq!(task.progress.share(), Some(0.25));
+    }
+
+    fn wait_until(holds: impl Fn() -> bool) {
+        let started = Instant::now();
+        while !holds() {
+            assert!(started.elapsed() < Duration::from_secs(60), "it never happens");
+            thread::sleep(Duration::from_millis(1));
+        }
     }
 }

@@ -1,6 +1,14 @@
 //! Opening the window, or saying what is missing.
 
-use std::path::PathBuf;
+use std::{
+    any::Any,
+    panic::{self, AssertUnwindSafe},
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+};
 
 use eframe::egui;
 
@@ -27,11 +35,13 @@ pub enum ViewerError {
     NoDisplay,
     /// Nothing that draws.
     #[error(
-        "viewer: no graphics driver can draw the window: install a Vulkan driver (on Debian and Ubuntu: apt-get install mesa-vulkan-drivers): {0}"
+        "viewer: no graphics driver can draw the window ({0}): install a Vulkan driver (on Debian and Ubuntu: apt-get install mesa-vulkan-drivers); `reality-sim doctor` lists those that are there"
     )]
     NoGraphics(String),
     /// The display, or what is between it and us.
-    #[error("viewer: the window could not be opened: check that the display can be reached: {0}")]
+    #[error(
+        "viewer: the window could not be opened ({0}): check that DISPLAY or WAYLAND_DISPLAY names a display that can be reached, and that the libraries that windows need are there (on Debian and Ubuntu: bash scripts/setup)"
+    )]
     NoWindow(String),
 }
 
@@ -46,12 +56,17 @@ pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
         .with_inner_size([1280.0, 820.0])
         .with_min_inner_size([640.0, 420.0]);
     let native = eframe::NativeOptions { viewport, ..Default::default() };
-    let app = |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
-        Ok(Box::new(ViewerApp::new(cc, options)))
-    };
-    eframe::run_native("Reality Sim", native, Box::new(app)).map_err(|error| match error {
-        eframe::Error::Wgpu(error) => ViewerError::NoGraphics(error.to_string()),
-        error => ViewerError::NoWindow(error.to_string()),
+    let opened = while_opening(|is_open| {
+        let app = |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
+            is_open();
+            Ok(Box::new(ViewerApp::new(cc, options)))
+        };
+        eframe::run_native("Reality Sim", native, Box::new(app))
+    })?;
+    opened.map_err(|error| match error {
+        // The list of what each kind of driver says, empty where there is none.
+        eframe::Error::Wgpu(error) => ViewerError::NoGraphics(error.to_string().replace(": {}", "")),
+        error => ViewerError::NoWindow(reason(&error.to_string())),
     })
 }
 
@@ -59,4 +74,73 @@ fn has_display() -> bool {
     ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"]
         .iter()
         .any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()))
+}
+
+/// Runs what opens the window. Libraries that are missing make winit panic: until the window is open that is an error,
+/// and nothing of it goes to standard error. A panic afterwards is one.
+fn while_opening<T>(open: impl FnOnce(&dyn Fn()) -> T) -> Result<T, ViewerError> {
+    let is_open = Arc::new(AtomicBool::new(false));
+    let (loud, is_loud) = (Arc::new(panic::take_hook()), is_open.clone());
+    let this_thread = std::thread::current().id();
+    panic::set_hook(Box::new(move |info| {
+        if is_loud.load(Ordering::Relaxed) || std::thread::current().id() != this_thread {
+            loud(info);
+        }
+    }));
+    let result = panic::catch_unwind(AssertUnwindSafe(|| open(&|| is_open.store(true, Ordering::Relaxed))));
+    result.map_err(|panic| {
+        if is_open.load(Ordering::Relaxed) {
+            panic::resume_unwind(panic);
+        }
+        ViewerError::NoWindow(words(&*panic))
+    })
+}
+
+/// What a panic says.
+fn words(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+    text.unwrap_or("for an unknown reason").trim_end_matches('.').to_owned()
+}
+
+/// winit's message without the place in winit's code that it begins with.
+fn reason(message: &str) -> String {
+    let place = message.split_once("os error at ").and_then(|(_, rest)| rest.split_once(": "));
+    place.map_or(message, |(_, reason)| reason).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_opens_the_window_gives_back_its_result() {
+        assert_eq!(while_opening(|_| 5).unwrap(), 5);
+    }
+
+    #[test]
+    fn a_library_that_is_missing_is_an_error_in_words() {
+        let result: Result<(), _> = while_opening(|_| panic!("Library libnone.so could not be loaded."));
+        let message = result.unwrap_err().to_string();
+        assert!(message.contains("libnone.so") && message.contains("scripts/setup"), "{message}");
+    }
+
+    #[test]
+    fn a_fault_in_the_open_window_stays_a_panic() {
+        let run = || {
+            while_opening(|is_open| {
+                is_open();
+                panic!("meant to: part of a test");
+            })
+        };
+        let result: Result<Result<(), _>, _> = panic::catch_unwind(run);
+        assert!(result.is_err());
+    }
+
+    #[test]
+    fn winits_place_in_its_code_is_not_shown() {
+        let message = "winit EventLoopError: os error at /home/src/mod.rs:785: no X server";
+        assert_eq!(reason(message), "no X server");
+        assert_eq!(reason("winit error: something else"), "winit error: something else");
+    }
 }

@@ -20,6 +20,8 @@ pub enum Purpose {
 #[derive(Default)]
 pub struct OpenWindow {
     is_open: bool,
+    /// Opened in this frame: what is typed next goes to the path.
+    wants_focus: bool,
     purpose: Purpose,
     path: String,
     dialog: Option<Task<Option<PathBuf>>>,
@@ -34,7 +36,7 @@ pub struct Chosen {
 impl OpenWindow {
     /// Asks for a path.
     pub fn ask(&mut self, purpose: Purpose) {
-        (self.is_open, self.purpose) = (true, purpose);
+        (self.is_open, self.wants_focus, self.purpose) = (true, true, purpose);
     }
 
     /// Shows the window while it is open.
@@ -51,7 +53,7 @@ impl OpenWindow {
         let window = egui::Window::new(title).open(&mut is_open).collapsible(false).default_width(520.0);
         let shown = window.show(ui.ctx(), |ui| self.content(ui, recent, demonstration));
         self.is_open = is_open && !ui.input(|input| input.key_pressed(Key::Escape));
-        let path = from_dialog.or_else(|| shown.and_then(|shown| shown.inner.flatten()))?;
+        let path = from_dialog.or_else(|| shown?.inner.flatten())?;
         self.is_open = false;
         Some(Chosen { purpose: self.purpose, path })
     }
@@ -65,6 +67,9 @@ impl OpenWindow {
         ui.horizontal(|ui| {
             let text = egui::TextEdit::singleline(&mut self.path).hint_text("path").desired_width(360.0);
             let typed = ui.add(text);
+            if std::mem::take(&mut self.wants_focus) {
+                typed.request_focus();
+            }
             let is_entered = typed.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
             let is_clicked =
                 ui.add_enabled(!self.path.trim().is_empty(), egui::Button::new("Open")).clicked();
@@ -73,6 +78,9 @@ impl OpenWindow {
             }
         });
         ui.horizontal(|ui| {
+            if self.dialog.is_some() {
+                ui.disable();
+            }
             if ui.button("Choose a folder…").clicked() {
                 self.dialog = Some(dialog(ui.ctx(), Kind::Folder));
             }

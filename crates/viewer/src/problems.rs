@@ -2,8 +2,10 @@
 
 use eframe::egui::{self, RichText, Ui};
 
-/// Messages kept: those that come first tell the cause.
-const KEPT: usize = 4;
+/// Messages shown at a time: those that come first tell the cause.
+const SHOWN: usize = 4;
+/// Messages kept until those before them are dismissed.
+const KEPT: usize = 100;
 
 /// Messages that have not been dismissed.
 #[derive(Debug, Default)]
@@ -26,17 +28,27 @@ impl Problems {
         let frame =
             egui::Frame::side_top_panel(ui.style()).fill(ui.visuals().error_fg_color.gamma_multiply(0.18));
         egui::Panel::top("problems").frame(frame).show(ui, |ui| {
+            let more = self.0.len().saturating_sub(SHOWN);
+            let mut place = 0;
             self.0.retain(|message| {
+                place += 1;
+                if place > SHOWN {
+                    return true;
+                }
                 let keep = |ui: &mut Ui| {
                     let is_kept = !ui.button("Dismiss").clicked();
                     if ui.button("Copy").clicked() {
                         ui.copy_text(message.clone());
                     }
-                    ui.add(egui::Label::new(RichText::new(message).strong()).wrap());
+                    ui.label(RichText::new("!").strong().color(ui.visuals().error_fg_color));
+                    ui.add(egui::Label::new(message).wrap());
                     is_kept
                 };
                 ui.horizontal(keep).inner
             });
+            if more > 0 {
+                ui.weak(format!("and {more} more"));
+            }
         });
     }
 }

@@ -33,10 +33,47 @@ impl Settings {
         eframe::set_value(storage, KEY, self);
     }
 
-    /// Puts a path to the front of the recent ones.
+    /// Puts a path to the front of the recent ones. One that is no text cannot be stored: it is left out.
     pub fn remember(&mut self, path: &Path) {
+        if path.to_str().is_none() {
+            return;
+        }
         self.recent.retain(|recent| recent != path);
         self.recent.insert(0, path.to_path_buf());
         self.recent.truncate(RECENT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_path_opened_last_comes_first_and_none_comes_twice() {
+        let mut settings = Settings::default();
+        for path in ["/a", "/b", "/a"] {
+            settings.remember(Path::new(path));
+        }
+        assert_eq!(settings.recent, [PathBuf::from("/a"), PathBuf::from("/b")]);
+    }
+
+    #[test]
+    fn the_list_of_recent_paths_has_an_end() {
+        let mut settings = Settings::default();
+        for number in 0..100 {
+            settings.remember(Path::new(&format!("/recording-{number}")));
+        }
+        assert_eq!(settings.recent.len(), RECENT);
+        assert_eq!(settings.recent[0], Path::new("/recording-99"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_path_that_is_no_text_is_not_remembered() {
+        use std::{ffi::OsStr, os::unix::ffi::OsStrExt};
+
+        let mut settings = Settings::default();
+        settings.remember(Path::new(OsStr::from_bytes(b"/walk-\xff")));
+        assert!(settings.recent.is_empty());
     }
 }

@@ -1,6 +1,6 @@
 //! The keys: one table for what they do and for the list of them.
 
-use eframe::egui::{self, Key, KeyboardShortcut, Modifiers, Ui};
+use eframe::egui::{self, Event, InputState, Key, KeyboardShortcut, Modifiers, Ui};
 
 /// What a key does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -11,6 +11,7 @@ pub enum Action {
     Theme,
     Screenshot,
     Help,
+    Quit,
     PlayPause,
     StepBack,
     StepForward,
@@ -49,6 +50,7 @@ const TABLE: &[(Place, KeyboardShortcut, Action, &str)] = &[
     (Place::Everywhere, command(Key::P), Action::Screenshot, "save a screenshot"),
     (Place::Everywhere, plain(Key::F1), Action::Help, "this list"),
     (Place::Everywhere, plain(Key::Questionmark), Action::Help, "this list"),
+    (Place::Everywhere, command(Key::Q), Action::Quit, "quit"),
     (Place::Walk, plain(Key::Space), Action::PlayPause, "play or pause"),
     (Place::Walk, plain(Key::ArrowLeft), Action::StepBack, "one picture back"),
     (Place::Walk, plain(Key::ArrowRight), Action::StepForward, "one picture on"),
@@ -63,21 +65,39 @@ const TABLE: &[(Place, KeyboardShortcut, Action, &str)] = &[
     (Place::Drive, plain(Key::Space), Action::PlayPause, "follow the drawn path, or stop"),
 ];
 
-/// What was pressed since the last frame in a place; nothing while someone types.
-pub fn pressed(ui: &Ui, place: Place) -> Vec<Action> {
-    if ui.ctx().text_edit_focused() {
-        return Vec::new();
+impl Action {
+    /// Whether it happens again and again while its key is held down.
+    const fn repeats(self) -> bool {
+        matches!(self, Self::StepBack | Self::StepForward)
     }
+}
+
+/// What was pressed since the last frame in a place. While someone types, only keys with Ctrl (or Command) count.
+pub fn pressed(ui: &Ui, place: Place) -> Vec<Action> {
+    let types = ui.ctx().text_edit_focused();
     let here = TABLE.iter().filter(|(heard, ..)| *heard == place);
+    let heard = here.filter(|(_, shortcut, ..)| !types || shortcut.modifiers.command);
     ui.input_mut(|input| {
-        here.filter(|(_, shortcut, ..)| match shortcut.logical_key {
-            // Typed with Shift on many keyboards, and on others not.
-            Key::Questionmark => input.key_pressed(Key::Questionmark),
-            _ => input.consume_shortcut(shortcut),
-        })
-        .map(|(_, _, action, _)| *action)
-        .collect()
+        heard
+            .filter(|(_, shortcut, action, _)| consume(input, shortcut, action.repeats()))
+            .map(|(_, _, action, _)| *action)
+            .collect()
     })
+}
+
+/// Takes a key out of the input, for nothing else to hear it. Shift is not looked at: on many keyboards `?` needs it.
+fn consume(input: &mut InputState, shortcut: &KeyboardShortcut, repeats: bool) -> bool {
+    let mut is_pressed = false;
+    input.events.retain(|event| match event {
+        Event::Key { key, pressed: true, repeat, modifiers, .. }
+            if *key == shortcut.logical_key && modifiers.matches_logically(shortcut.modifiers) =>
+        {
+            is_pressed |= repeats || !repeat;
+            false
+        }
+        _ => true,
+    });
+    is_pressed
 }
 
 /// What is held down in a place.
@@ -102,6 +122,9 @@ pub fn name(ui: &Ui, action: Action) -> String {
 
 /// The list of all keys.
 pub fn window(ui: &Ui, is_open: &mut bool) {
+    if *is_open && ui.input(|input| input.key_pressed(Key::Escape)) {
+        *is_open = false;
+    }
     egui::Window::new("Keys and mouse").open(is_open).resizable(false).collapsible(false).show(
         ui.ctx(),
         |ui| {
