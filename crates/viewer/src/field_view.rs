@@ -23,21 +23,29 @@ const MAX_ZOOM: f32 = 40.0;
 pub struct FieldView {
     zoom: f32,
     middle_in_world: DVec2,
+    /// Shown around the carpet, metres.
+    margin_m: f64,
 }
 
 impl Default for FieldView {
     fn default() -> Self {
-        Self { zoom: 1.0, middle_in_world: DVec2::ZERO }
+        Self { zoom: 1.0, middle_in_world: DVec2::ZERO, margin_m: 0.0 }
     }
 }
 
 impl FieldView {
+    /// All of the carpet, and so many metres around it.
+    pub fn with_margin(margin_m: f64) -> Self {
+        Self { margin_m, ..Self::default() }
+    }
+
     /// Draws carpet and lines into a rectangle of this size.
     pub fn show(&mut self, ui: &mut Ui, field: &FieldDimensions, size: Vec2, name: &str) -> FieldCanvas {
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, name));
         let half = field.carpet_half_extent_m();
-        let whole = (size.x / (2.0 * half.x) as f32).min(size.y / (2.0 * half.y) as f32);
+        let room = 2.0 * (half + self.margin_m);
+        let whole = (size.x / room.x as f32).min(size.y / room.y as f32);
         self.look_around(ui, &response, rect, whole);
         let canvas = FieldCanvas {
             painter: ui.painter_at(rect),
@@ -67,7 +75,7 @@ impl FieldView {
             ui.set_cursor_icon(CursorIcon::Grabbing);
         }
         if self.zoom == 1.0 || response.double_clicked() {
-            *self = Self::default();
+            *self = Self::with_margin(self.margin_m);
         }
     }
 }

@@ -10,6 +10,7 @@ mod colors;
 mod device;
 mod drive;
 mod field_view;
+mod footprint;
 mod launch;
 mod open_window;
 mod opening;
