@@ -3,7 +3,7 @@
 
 use eframe::egui::{
     Color32, CursorIcon, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2,
-    WidgetInfo, pos2, vec2,
+    WidgetInfo, vec2,
 };
 use glam::DVec2;
 use reality_sim_core::{
@@ -189,13 +189,8 @@ impl FieldCanvas {
         for end in ends {
             self.painter.line_segment([end - vec2(0.0, 3.0), end + vec2(0.0, 3.0)], stroke);
         }
-        let align = eframe::egui::Align2::CENTER_BOTTOM;
-        self.painter.text(
-            pos2(corner.x + 0.5 * metre, corner.y - 2.0),
-            align,
-            "1 m, +x →",
-            font,
-            colors::LINE,
-        );
+        let align = eframe::egui::Align2::LEFT_BOTTOM;
+        let at = corner - vec2(0.0, 4.0);
+        self.painter.text(at, align, "1 m · +x to the right, +y up", font, colors::LINE);
     }
 }

@@ -1,57 +1,62 @@
 //! The ground that a camera sees, from above.
 
+use std::f64::consts::{PI, TAU};
+
 use glam::DVec2;
 use reality_sim_core::{camera::Camera, pose::CameraPose};
 
 /// Ground farther away than this is cut off, metres: a pixel there shows more than a robot's length.
 const FAR_M: f64 = 4.0;
-/// Pixels of the picture's border that are looked at on each side.
-const STEPS: u32 = 48;
-/// Halvings on the way to where the lens ends: less than a pixel is left.
-const HALVINGS: u32 = 12;
+/// Directions that are looked at, all around.
+const DIRECTIONS: u32 = 120;
+/// Places that are looked at in each direction.
+const PLACES: u32 = 40;
+/// Halvings of the step between places on the way to where the picture ends: a millimetre is left.
+const HALVINGS: u32 = 7;
 
-/// The outline of the ground in a picture, world axes, metres, cut off at some distance. Empty where no ground is seen.
+/// The outline of the ground in a picture, world axes, metres, cut off at some distance: the far side counter-clockwise,
+/// then the near side back. Empty where no ground is seen.
 pub fn footprint(camera: &Camera, pose: CameraPose) -> Vec<DVec2> {
-    let sees_ground =
-        camera.unproject_to_ground(pose, DVec2::new(camera.cx, f64::from(camera.height) - 1.0)).is_ok();
-    if !sees_ground {
-        return Vec::new();
-    }
-    let rotation = pose.rotation_world_from_camera();
     let place = pose.planar().position_in_world();
-    let seen = border(camera).filter_map(|pixel| {
-        let ray = rotation * camera.unproject(outermost(camera, pixel)?).ok()?;
-        let aside = ray.truncate();
-        // Above the horizon the ground goes on for ever.
-        let far_m = if ray.z < 0.0 { -pose.height_m / ray.z * aside.length() } else { f64::INFINITY };
-        Some(place + far_m.min(FAR_M) * aside.try_normalize()?)
-    });
-    seen.collect()
-}
-
-/// Pixels once around the picture.
-fn border(camera: &Camera) -> impl Iterator<Item = DVec2> {
-    let [right, bottom] = [camera.width, camera.height].map(|size| f64::from(size) - 1.0);
-    let corners = [DVec2::ZERO, DVec2::new(right, 0.0), DVec2::new(right, bottom), DVec2::new(0.0, bottom)];
-    (0..4).flat_map(move |side| {
-        let (from, to) = (corners[side], corners[(side + 1) % 4]);
-        (0..STEPS).map(move |step| from.lerp(to, f64::from(step) / f64::from(STEPS)))
-    })
-}
-
-/// The pixel nearest to this one, on the line from the principal point, at which the lens sees something.
-fn outermost(camera: &Camera, pixel: DVec2) -> Option<DVec2> {
-    let middle = DVec2::new(camera.cx, camera.cy);
-    let is_seen = |pixel: DVec2| camera.check_inside(pixel).is_ok() && camera.unproject(pixel).is_ok();
-    if is_seen(pixel) {
-        return Some(pixel);
+    let seen = |direction: DVec2, distance_m: f64| {
+        let point_in_world = (place + distance_m * direction).extend(0.0);
+        camera.project(pose.camera_from_world(point_in_world)).is_ok()
+    };
+    // From behind the robot around to behind it: what is seen lies in front.
+    let mut strips = Vec::new();
+    for number in 0..DIRECTIONS {
+        let angle_rad = pose.yaw_rad - PI + TAU * f64::from(number) / f64::from(DIRECTIONS);
+        let direction = DVec2::from_angle(angle_rad);
+        if let Some(ends_m) = strip(|distance_m| seen(direction, distance_m)) {
+            strips.push(ends_m.map(|distance_m| place + distance_m * direction));
+        }
     }
-    let (mut seen, mut unseen) = (0.0, 1.0);
+    let far = strips.iter().map(|[_, far]| *far);
+    if strips.len() == DIRECTIONS as usize && seen(DVec2::X, 0.0) {
+        // The robot itself stands on it: there is no near side.
+        return far.collect();
+    }
+    far.chain(strips.iter().rev().map(|[near, _]| *near)).collect()
+}
+
+/// From where to where something is seen along a line, metres.
+fn strip(seen: impl Fn(f64) -> bool) -> Option<[f64; 2]> {
+    let at = |place: u32| FAR_M * f64::from(place) / f64::from(PLACES);
+    let first = (0..=PLACES).find(|&place| seen(at(place)))?;
+    let last = (first..=PLACES).rev().find(|&place| seen(at(place)))?;
+    let near = if first == 0 { 0.0 } else { edge(&seen, at(first), at(first - 1)) };
+    let far = if last == PLACES { FAR_M } else { edge(&seen, at(last), at(last + 1)) };
+    Some([near, far])
+}
+
+/// Where something is just seen, between where it is and where it is not.
+fn edge(seen: impl Fn(f64) -> bool, inside_m: f64, outside_m: f64) -> f64 {
+    let (mut inside_m, mut outside_m) = (inside_m, outside_m);
     for _ in 0..HALVINGS {
-        let between = 0.5 * (seen + unseen);
-        *(if is_seen(middle.lerp(pixel, between)) { &mut seen } else { &mut unseen }) = between;
+        let between_m = 0.5 * (inside_m + outside_m);
+        *(if seen(between_m) { &mut inside_m } else { &mut outside_m }) = between_m;
     }
-    (seen > 0.0).then(|| middle.lerp(pixel, seen))
+    inside_m
 }
 
 #[cfg(test)]
@@ -81,7 +86,7 @@ mod tests {
             .abs()
             / 2.0;
         let expected = (0.5 * 639.0 / 400.0) * (0.5 * 479.0 / 400.0);
-        assert!((area - expected).abs() < 1e-6, "{area} {expected}");
+        assert!((area - expected).abs() < 0.01 * expected, "{area} {expected}");
     }
 
     #[test]

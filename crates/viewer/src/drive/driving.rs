@@ -85,8 +85,8 @@ impl Driving {
         self.map.poll(ui, &self.source, &mut settings.layers, problems);
         let width = ui.available_width();
         let is_asked = egui::Panel::right("drive map")
-            .default_size(0.4 * width)
-            .size_range(220.0..=(0.65 * width).max(230.0))
+            .default_size(0.37 * width)
+            .size_range(260.0..=(0.65 * width).max(270.0))
             .show(ui, |ui| self.map_ui(ui, settings))
             .inner;
         egui::CentralPanel::default().show(ui, |ui| {
@@ -173,17 +173,17 @@ impl Driving {
     fn pose_ui(&mut self, ui: &mut Ui) {
         let pose = self.robot.pose();
         let mut wanted = pose;
-        ui.horizontal_wrapped(|ui| {
+        ui.horizontal(|ui| {
             number(ui, "x", &mut wanted.x_m, Unit::Metre);
             number(ui, "y", &mut wanted.y_m, Unit::Metre);
             number(ui, "yaw", &mut wanted.yaw_rad, Unit::Degree);
+        });
+        ui.horizontal(|ui| {
             number(ui, "height", &mut wanted.height_m, Unit::Height);
             number(ui, "pitch", &mut wanted.pitch_rad, Unit::Degree);
             number(ui, "roll", &mut wanted.roll_rad, Unit::Degree);
-            if ui.button("Reset").on_hover_text("Back to where the first picture was taken").clicked() {
-                self.robot.reset();
-            }
         });
+        ui.weak("Drag the arrow's tail to move, its tip to turn; or walk by W A S D and turn by Q E.");
         if wanted != pose {
             self.robot
                 .take(CameraPose { yaw_rad: reality_sim_core::pose::wrap_angle(wanted.yaw_rad), ..wanted });
@@ -200,22 +200,19 @@ enum Unit {
 
 /// A number to read, to drag and to type.
 fn number(ui: &mut Ui, name: &str, value: &mut f64, unit: Unit) {
-    ui.scope(|ui| {
-        ui.spacing_mut().item_spacing.x = 3.0;
-        let label = ui.weak(name);
-        let degrees = value.to_degrees();
-        let mut shown = if matches!(unit, Unit::Degree) { degrees } else { *value };
-        let drag = match unit {
-            Unit::Metre => DragValue::new(&mut shown).speed(0.01).fixed_decimals(2).suffix(" m"),
-            Unit::Height => {
-                DragValue::new(&mut shown).speed(0.005).fixed_decimals(2).suffix(" m").range(0.05..=5.0)
-            }
-            Unit::Degree => DragValue::new(&mut shown).speed(0.5).fixed_decimals(1).suffix("°"),
-        };
-        if ui.add(drag).labelled_by(label.id).changed() {
-            *value = if matches!(unit, Unit::Degree) { shown.to_radians() } else { shown };
+    let label = ui.weak(name);
+    let degrees = value.to_degrees();
+    let mut shown = if matches!(unit, Unit::Degree) { degrees } else { *value };
+    let drag = match unit {
+        Unit::Metre => DragValue::new(&mut shown).speed(0.01).fixed_decimals(2).suffix(" m"),
+        Unit::Height => {
+            DragValue::new(&mut shown).speed(0.005).fixed_decimals(2).suffix(" m").range(0.05..=5.0)
         }
-    });
+        Unit::Degree => DragValue::new(&mut shown).speed(0.5).fixed_decimals(1).suffix("°"),
+    };
+    if ui.add(drag).labelled_by(label.id).changed() {
+        *value = if matches!(unit, Unit::Degree) { shown.to_radians() } else { shown };
+    }
 }
 
 /// How near the next picture is.

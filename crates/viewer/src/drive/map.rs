@@ -183,6 +183,9 @@ impl Map {
             if ui.add_enabled(robot.has_path(), egui::Button::new("Clear the path")).clicked() {
                 robot.clear_path();
             }
+            if ui.button("Reset").on_hover_text("Back to where the first picture was taken").clicked() {
+                robot.reset();
+            }
         });
     }
 
@@ -223,6 +226,7 @@ impl Map {
                 ),
             ];
             for (is_on, name, color, meaning) in boxes {
+                keep_together(ui, 120.0);
                 swatch(ui, color);
                 ui.checkbox(is_on, name).on_hover_text(meaning);
             }
@@ -382,6 +386,13 @@ pub fn hue(number: usize) -> Color32 {
     Color32::from_rgb(red, green, blue)
 }
 
+/// Begins a new row where less room is left in this one, points.
+pub fn keep_together(ui: &mut Ui, width: f32) {
+    if ui.available_size_before_wrap().x < width {
+        ui.end_row();
+    }
+}
+
 /// A small square of a colour, in a text.
 pub fn swatch(ui: &mut Ui, color: Color32) {
     let (rect, _) = ui.allocate_exact_size(Vec2::splat(10.0), egui::Sense::hover());
@@ -451,9 +462,9 @@ fn mark(canvas: &FieldCanvas, planar: Pose2, radius: f32, color: Color32) {
 
 fn draw_probe(canvas: &FieldCanvas, planar: Pose2) {
     let at = canvas.at(planar.position_in_world());
-    let corners = [vec2(0.0, -4.0), vec2(4.0, 0.0), vec2(0.0, 4.0), vec2(-4.0, 0.0)];
+    let corners = [vec2(0.0, -3.5), vec2(3.5, 0.0), vec2(0.0, 3.5), vec2(-3.5, 0.0)];
     let corners = corners.map(|offset| at + offset).to_vec();
-    canvas.painter.add(Shape::convex_polygon(corners, colors::TRUTH, Stroke::new(1.0, Color32::WHITE)));
+    canvas.painter.add(Shape::convex_polygon(corners, colors::TRUTH, Stroke::new(0.5, Color32::WHITE)));
 }
 
 fn draw_footprint(canvas: &FieldCanvas, outline: &[DVec2]) {
@@ -461,7 +472,7 @@ fn draw_footprint(canvas: &FieldCanvas, outline: &[DVec2]) {
         return;
     }
     let points: Vec<Pos2> = outline.iter().map(|&point| canvas.at(point)).collect();
-    canvas.painter.add(Shape::closed_line(points, Stroke::new(1.5, colors::BORDER.gamma_multiply(0.8))));
+    canvas.painter.add(Shape::closed_line(points, Stroke::new(1.2, colors::BORDER.gamma_multiply(0.7))));
 }
 
 fn draw_triangulation(canvas: &FieldCanvas, around: &Around) {

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     DriveSettings,
     kind::{PictureKind, Shown, View},
-    map::{hue, swatch},
+    map::{hue, keep_together, swatch},
     painter::{Facts, Painted},
     source::NearProbe,
 };
@@ -21,6 +21,8 @@ use crate::picture_view::{PictureCanvas, Uploaded};
 
 /// A line of text above a picture, points.
 const HEAD: f32 = 22.0;
+/// What the numbers above a picture mean.
+const FACTS_MEAN: &str = "px away: by how many pixels the picture moves from there to here, root mean square\nPSNR: likeness to the true picture at this very pose, over the carpet; higher is better\nrecorded: the share of the pixels that recorded pictures show; the others are filled in\nms: the time that it took";
 /// Shares below this are not listed.
 const LEAST_SHARE: f64 = 0.005;
 
@@ -83,29 +85,19 @@ impl Pictures {
                 Layout::One => kind_box(ui, "Picture", &mut settings.left),
                 Layout::Side | Layout::Wipe => {
                     kind_box(ui, "Left", &mut settings.left);
-                    if ui.button("⇄").on_hover_text("Swap left and right").clicked() {
+                    if ui.button("Swap").on_hover_text("Swap left and right").clicked() {
                         std::mem::swap(&mut settings.left, &mut settings.right);
                     }
                     kind_box(ui, "Right", &mut settings.right);
                 }
             }
+            if settings.layout != Layout::All {
+                shown_box(ui, settings);
+            }
             ui.checkbox(&mut settings.is_best_effort, "Best effort").on_hover_text(
                 "A picture also where little was recorded: what no recorded picture shows is filled in smoothly",
             );
         });
-        if settings.layout != Layout::All {
-            ui.horizontal_wrapped(|ui| {
-                ui.label(if settings.layout == Layout::One { "Show" } else { "Show on the left" });
-                let choices = [
-                    (Shown::Picture, "the picture", "The picture itself"),
-                    (Shown::Origins, "where each pixel came from", "A colour for each recorded image"),
-                    (Shown::Trust, "how far to trust it", "White: fully. Black: not at all"),
-                ];
-                for (shown, name, meaning) in choices {
-                    ui.selectable_value(&mut settings.shown, shown, name).on_hover_text(meaning);
-                }
-            });
-        }
     }
 
     /// Shows them; returns the pose to go to where that was asked for.
@@ -135,7 +127,9 @@ impl Pictures {
             vec2((room.x - gap.x * columns) / columns, (room.y - gap.y * rows) / rows - HEAD - gap.y)
         };
         let scale = |columns: usize| (cell(columns) / vec2(pixels[0] as f32, pixels[1] as f32)).min_elem();
-        let columns = (1..=views.len()).max_by(|&a, &b| scale(a).total_cmp(&scale(b))).unwrap_or(1);
+        let largest = (1..=views.len()).max_by(|&a, &b| scale(a).total_cmp(&scale(b))).unwrap_or(1);
+        // Two are compared more easily beside each other.
+        let columns = if views.len() == 2 && scale(2) > 0.7 * scale(1) { 2 } else { largest };
         let mut there = None;
         for row in views.chunks(columns) {
             ui.horizontal_top(|ui| {
@@ -232,6 +226,23 @@ fn kind_box(ui: &mut Ui, name: &str, kind: &mut PictureKind) {
     chosen.response.labelled_by(label.id).on_hover_text(kind.meaning());
 }
 
+fn shown_box(ui: &mut Ui, settings: &mut DriveSettings) {
+    let words = |shown: Shown| match shown {
+        Shown::Picture => "the picture",
+        Shown::Origins => "where each pixel came from",
+        Shown::Trust => "how far to trust each pixel",
+    };
+    let name = if settings.layout == Layout::One { "Show" } else { "Show on the left" };
+    let label = ui.label(name);
+    let chosen = ComboBox::from_id_salt("shown").width(180.0).selected_text(words(settings.shown));
+    let chosen = chosen.show_ui(ui, |ui| {
+        for shown in [Shown::Picture, Shown::Origins, Shown::Trust] {
+            ui.selectable_value(&mut settings.shown, shown, words(shown));
+        }
+    });
+    chosen.response.labelled_by(label.id);
+}
+
 /// What a picture is, and what is known of it.
 fn head(ui: &mut Ui, view: View, painted: Option<&Painted>) {
     let facts = painted.and_then(|painted| painted.result.as_ref().ok()).map(|drawn| &drawn.facts);
@@ -256,7 +267,7 @@ fn facts_in_words(kind: PictureKind, facts: &Facts) -> String {
         words.push(format!("frame {}, {:.0} px away", probe.frame, probe.distance_px));
     }
     if let Some(db) = facts.likeness_db {
-        words.push(format!("{db:.1} dB like the true one"));
+        words.push(format!("PSNR {db:.1} dB"));
     }
     if let Some(covered) = facts.covered {
         words.push(format!("{:.0} % recorded", 100.0 * covered));
@@ -318,6 +329,7 @@ fn legend_ui(ui: &mut Ui, view: View, gallery: &Gallery) {
             ui.weak("made of");
             for (number, used) in drawn.facts.used.iter().enumerate() {
                 if used.share >= LEAST_SHARE {
+                    keep_together(ui, 190.0);
                     swatch(ui, hue(number));
                     let frame = gallery.archive.images()[used.image as usize].frame_index;
                     let share = 100.0 * used.share;

@@ -188,7 +188,8 @@ mod tests {
         let mut robot = robot();
         robot.take(CameraPose { x_m: 90.0, y_m: -90.0, ..robot.pose() });
         let pose = robot.pose();
-        assert!((pose.x_m - 4.7).abs() < 1e-9 && (pose.y_m + 3.7).abs() < 1e-9, "{pose:?}");
+        let half = FieldDimensions::preset("humanoid-kidsize-2010").unwrap().carpet_half_extent_m();
+        assert!((pose.x_m - half.x - 1.0).abs() < 1e-9 && (pose.y_m + half.y + 1.0).abs() < 1e-9, "{pose:?}");
         robot.reset();
         assert_eq!(robot.pose(), self::robot().pose());
     }
