@@ -3,7 +3,7 @@
 use std::{f64::consts::TAU, fmt::Write};
 
 use crate::{
-    db::coverage::{Coverage, CoverageCell, HEADINGS},
+    db::coverage::{Coverage, CoverageCell, FAR_PX, HEADINGS, shade_srgb},
     field::{Curve, FieldDimensions},
 };
 
@@ -13,8 +13,6 @@ const SCALE: f64 = 80.0;
 const MARGIN: f64 = 28.0;
 /// Above and below each field for words, pixels.
 const WORDS: f64 = 64.0;
-/// Distances from here on are all one colour, pixels.
-const FAR_PX: f64 = 300.0;
 
 /// Two fields from above, side by side: how many pictures were taken where and in which directions, and how far the next
 /// picture is from every place. The opponent's goal (+x) is on the right.
@@ -45,17 +43,9 @@ pub fn coverage_svg(coverage: &Coverage, field: &FieldDimensions, title: &str) -
     svg
 }
 
-/// From nearly white (0) over green to dark blue (1): lightness falls all the way, for any kind of colour vision.
 fn shade(share: f64) -> String {
-    const STOPS: [[f64; 3]; 4] =
-        [[247.0, 247.0, 240.0], [161.0, 214.0, 170.0], [42.0, 140.0, 150.0], [20.0, 50.0, 110.0]];
-    let place = share.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
-    let first = (place.floor() as usize).min(STOPS.len() - 2);
-    let part = place - first as f64;
-    let mixed: Vec<u8> = (0..3)
-        .map(|i| (STOPS[first][i] + part * (STOPS[first + 1][i] - STOPS[first][i])).round() as u8)
-        .collect();
-    format!("#{:02x}{:02x}{:02x}", mixed[0], mixed[1], mixed[2])
+    let [red, green, blue] = shade_srgb(share);
+    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 /// One of the two fields.

@@ -14,6 +14,20 @@ use crate::index::PoseIndex;
 /// Headings that are told apart.
 pub const HEADINGS: usize = 8;
 
+/// Distances from here on are all one colour, pixels.
+pub const FAR_PX: f64 = 300.0;
+
+/// The colour of a share in pictures of the coverage, sRGB: from nearly white (0) over green to dark blue (1). Lightness
+/// falls all the way, for any kind of colour vision.
+pub fn shade_srgb(share: f64) -> [u8; 3] {
+    const STOPS: [[f64; 3]; 4] =
+        [[247.0, 247.0, 240.0], [161.0, 214.0, 170.0], [42.0, 140.0, 150.0], [20.0, 50.0, 110.0]];
+    let place = share.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
+    let first = (place.floor() as usize).min(STOPS.len() - 2);
+    let part = place - first as f64;
+    std::array::from_fn(|i| (STOPS[first][i] + part * (STOPS[first + 1][i] - STOPS[first][i])).round() as u8)
+}
+
 /// What is known of one cell of the carpet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoverageCell {

@@ -34,7 +34,7 @@ pub use self::{
     nearest::Nearest,
     plane::{Blend, Plane},
     quadratic::Quadratic,
-    reconstruction::{Reconstruction, Used},
+    reconstruction::{ORIGIN_HUES, Reconstruction, Used},
     synthesizer::{SynthesisConfig, Synthesizer},
 };
 

@@ -1,8 +1,21 @@
 //! A picture at a pose, with where it came from.
 
 use image::{GrayImage, Luma, Rgb, RgbImage};
-use reality_sim_core::warp::{Origin, RayTable};
+use reality_sim_core::warp::{MAX_SOURCES, Origin, RayTable};
 use reality_sim_db::index::ImageIndex;
+
+/// The hues of [`Reconstruction::origin_picture`], sRGB, in the order of [`Reconstruction::used`]: told apart with any kind
+/// of colour vision (Okabe and Ito, 2008).
+pub const ORIGIN_HUES: [[u8; 3]; MAX_SOURCES] = [
+    [230, 159, 0],
+    [86, 180, 233],
+    [0, 158, 115],
+    [240, 228, 66],
+    [0, 114, 178],
+    [213, 94, 0],
+    [204, 121, 167],
+    [160, 160, 160],
+];
 
 /// A recorded image that a reconstruction was made from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,18 +77,7 @@ impl Reconstruction {
 
     /// Which image each pixel came from: a hue an image, the brighter the more it can be trusted; black from none.
     pub fn origin_picture(&self) -> RgbImage {
-        /// Hues that are told apart with any kind of colour vision (Okabe and Ito, 2008).
-        const HUES: [[u8; 3]; 8] = [
-            [230, 159, 0],
-            [86, 180, 233],
-            [0, 158, 115],
-            [240, 228, 66],
-            [0, 114, 178],
-            [213, 94, 0],
-            [204, 121, 167],
-            [160, 160, 160],
-        ];
-        self.drawn(|origin| match HUES.get(usize::from(origin.source)) {
+        self.drawn(|origin| match ORIGIN_HUES.get(usize::from(origin.source)) {
             Some(hue) => {
                 Rgb(hue.map(|value| (u16::from(value) * (64 + u16::from(origin.trust) * 3 / 4) / 255) as u8))
             }

@@ -3,7 +3,7 @@
 
 use eframe::egui::{
     Align2, Color32, CursorIcon, FontId, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, Shape,
-    Stroke, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Stroke, Ui, Vec2, WidgetInfo, vec2,
 };
 use glam::DVec2;
 use reality_sim_core::{
@@ -16,7 +16,7 @@ use crate::colors;
 /// Poses farther apart than this are not joined, metres: the robot was carried, or the filter jumped.
 const MAX_PATH_STEP_M: f64 = 0.5;
 /// Views narrower than this, points, have no room for words beside the scale.
-const ROOM_FOR_HINT: f32 = 340.0;
+const ROOM_FOR_HINT: f32 = 430.0;
 /// The view can be enlarged so many times.
 const MAX_ZOOM: f32 = 40.0;
 
@@ -25,21 +25,29 @@ const MAX_ZOOM: f32 = 40.0;
 pub struct FieldView {
     zoom: f32,
     middle_in_world: DVec2,
+    /// Shown around the carpet, metres.
+    margin_m: f64,
 }
 
 impl Default for FieldView {
     fn default() -> Self {
-        Self { zoom: 1.0, middle_in_world: DVec2::ZERO }
+        Self { zoom: 1.0, middle_in_world: DVec2::ZERO, margin_m: 0.0 }
     }
 }
 
 impl FieldView {
+    /// All of the carpet, and so many metres around it.
+    pub fn with_margin(margin_m: f64) -> Self {
+        Self { margin_m, ..Self::default() }
+    }
+
     /// Draws carpet and lines into a rectangle of this size.
     pub fn show(&mut self, ui: &mut Ui, field: &FieldDimensions, size: Vec2, name: &str) -> FieldCanvas {
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, name));
         let half = field.carpet_half_extent_m();
-        let whole = (size.x / (2.0 * half.x) as f32).min(size.y / (2.0 * half.y) as f32);
+        let room = 2.0 * (half + self.margin_m);
+        let whole = (size.x / room.x as f32).min(size.y / room.y as f32);
         self.look_around(ui, &response, rect, whole);
         let canvas = FieldCanvas {
             painter: ui.painter_at(rect),
@@ -76,7 +84,7 @@ impl FieldView {
             ui.set_cursor_icon(CursorIcon::Grabbing);
         }
         if self.zoom == 1.0 || response.double_clicked() {
-            *self = Self::default();
+            *self = Self::with_margin(self.margin_m);
         }
     }
 }
@@ -122,6 +130,15 @@ impl FieldCanvas {
             before = Some(place);
         }
         self.painter.add(Shape::line(piece, stroke));
+    }
+
+    /// The outline of the ground in view, see [`crate::footprint::footprint`].
+    pub fn footprint(&self, outline: &[DVec2]) {
+        if outline.len() >= 3 {
+            let points: Vec<Pos2> = outline.iter().map(|&point| self.at(point)).collect();
+            let stroke = Stroke::new(1.2, colors::BORDER.gamma_multiply(0.7));
+            self.painter.add(Shape::closed_line(points, stroke));
+        }
     }
 
     /// An arrow at a pose, as long as a tenth of the view, with a dark rim.
@@ -204,7 +221,7 @@ impl FieldCanvas {
         for end in ends {
             self.painter.line_segment([end - vec2(0.0, 3.0), end + vec2(0.0, 3.0)], stroke);
         }
-        let align = Align2::CENTER_BOTTOM;
-        self.painter.text(pos2(corner.x + 0.5 * length, corner.y - 2.0), align, name, font, colors::LINE);
+        let text = format!("{name} · +x to the right, +y up");
+        self.painter.text(corner - vec2(0.0, 4.0), Align2::LEFT_BOTTOM, text, font, colors::LINE);
     }
 }

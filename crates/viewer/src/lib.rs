@@ -10,6 +10,7 @@ mod colors;
 mod device;
 mod drive;
 mod field_view;
+mod footprint;
 mod frame_times;
 mod launch;
 mod open_window;

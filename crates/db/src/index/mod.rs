@@ -8,6 +8,7 @@
 mod nearest;
 mod sector;
 
+use glam::DVec2;
 use reality_sim_core::pose::CameraPose;
 
 use self::{
@@ -31,6 +32,15 @@ pub struct Neighbour {
     pub distance_px: f64,
     /// Its share, of 1 over all neighbours.
     pub weight: f64,
+}
+
+/// What the natural neighbours of a heading are found in: the Delaunay triangulation of one sector's spots.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SectorTriangulation {
+    /// The sector's share at the heading, of 1 over both.
+    pub share: f64,
+    /// The edges from spot to spot, world axes, metres.
+    pub edges_in_world: Vec<[DVec2; 2]>,
 }
 
 /// Why a pose has no neighbours.
@@ -117,6 +127,18 @@ impl PoseIndex {
         }
         neighbours.sort_by(|a, b| b.weight.total_cmp(&a.weight));
         Ok(neighbours)
+    }
+
+    /// The triangulations that [`PoseIndex::natural`] mixes at a heading, radians: at most two. Takes time in proportion to
+    /// the images of the two sectors.
+    pub fn triangulations(&self, yaw_rad: f64) -> Vec<SectorTriangulation> {
+        if !yaw_rad.is_finite() {
+            return Vec::new();
+        }
+        let sectors = self.sectors_around(yaw_rad);
+        sectors
+            .map(|(sector, share)| SectorTriangulation { share, edges_in_world: sector.edges_in_world() })
+            .collect()
     }
 
     fn check(&self, pose: CameraPose) -> Result<(), NoNeighbours> {

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use glam::DVec2;
 use reality_sim_core::pose::CameraPose;
 use spade::{
     DelaunayTriangulation, HasPosition, HierarchyHintGenerator, Point2, Triangulation,
@@ -89,6 +90,12 @@ impl Sector {
             weights.extend(self.delaunay.nearest_neighbor(place).map(|vertex| (vertex.fix(), 1.0)));
         }
         weights.into_iter().map(|(vertex, weight)| (self.images_at(vertex), weight)).collect()
+    }
+
+    /// The edges between spots, world axes, metres.
+    pub(super) fn edges_in_world(&self) -> Vec<[DVec2; 2]> {
+        let ends = self.delaunay.undirected_edges().map(|edge| edge.positions());
+        ends.map(|ends| ends.map(|end| DVec2::new(end.x, end.y))).collect()
     }
 
     /// The images at a spot.

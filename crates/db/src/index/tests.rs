@@ -142,6 +142,49 @@ proptest! {
     }
 }
 
+/// Truth from geometry: spots with no other spot in the circle over them are joined (Gabriel), no two edges cross, and
+/// there are at most 3 n - 6.
+#[test]
+fn the_triangulation_of_a_heading_is_that_of_the_places_of_its_sector() {
+    let places: Vec<glam::DVec2> = (0..60)
+        .map(|i| [0.754877, 0.569840].map(|step| (f64::from(i) * step).fract()))
+        .map(|[a, b]| glam::DVec2::new(6.0 * a - 3.0, 4.0 * b - 2.0))
+        .collect();
+    let usual = CameraPose { height_m: 0.52, pitch_rad: 0.42, ..Default::default() };
+    let looking = |yaw_rad: f64| {
+        places.iter().map(move |place| usual.with_planar(Pose2::new(place.x, place.y, yaw_rad)))
+    };
+    let index = PoseIndex::new(metric(), looking(0.1).collect());
+    let [only] = &index.triangulations(0.2)[..] else { panic!("the other sector is empty") };
+    assert!((only.share - 1.0).abs() < 1e-12);
+    let edges = &only.edges_in_world;
+    let is_joined = |a: glam::DVec2, b: glam::DVec2| {
+        edges.iter().any(|edge| {
+            let is = |from: usize, to: usize| edge[from].distance(a) < 1e-9 && edge[to].distance(b) < 1e-9;
+            is(0, 1) || is(1, 0)
+        })
+    };
+    for (i, &a) in places.iter().enumerate() {
+        for &b in &places[i + 1..] {
+            let is_inside = |c: &&glam::DVec2| **c != a && **c != b && (a - **c).dot(b - **c) < 0.0;
+            let is_empty = places.iter().find(is_inside).is_none();
+            assert!(!is_empty || is_joined(a, b), "{a} and {b}");
+        }
+    }
+    let side = |a: glam::DVec2, b: glam::DVec2, c: glam::DVec2| (b - a).perp_dot(c - a);
+    let cross = |[a, b]: [glam::DVec2; 2], [c, d]: [glam::DVec2; 2]| {
+        side(a, b, c) * side(a, b, d) < -1e-12 && side(c, d, a) * side(c, d, b) < -1e-12
+    };
+    assert!(edges.iter().all(|&a| edges.iter().all(|&b| !cross(a, b))));
+    assert!(edges.len() <= 3 * places.len() - 6);
+
+    let both = PoseIndex::new(metric(), looking(0.1).chain(looking(0.8)).collect());
+    let shares: Vec<f64> = both.triangulations(0.2).iter().map(|sector| sector.share).collect();
+    assert_eq!(shares.len(), 2);
+    assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-12 && shares[0] > shares[1], "{shares:?}");
+    assert!(both.triangulations(f64::NAN).is_empty());
+}
+
 /// Enough for a tree of many levels, many at one place and heading, and headings on both sides of where turns are counted from.
 #[test]
 fn among_many_images_the_nearest_are_those_that_looking_at_all_of_them_finds() {

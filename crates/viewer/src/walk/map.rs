@@ -11,6 +11,7 @@ use super::{
 use crate::{
     colors,
     field_view::{FieldCanvas, FieldView},
+    footprint::footprint,
 };
 
 /// The view, and the place that the particles are being dragged to.
@@ -36,6 +37,9 @@ impl Map {
         }
         let canvas = self.view.show(ui, &sequence.field, room, "Field from above");
         let at = frame.record.index;
+        if layers.footprint {
+            canvas.footprint(&footprint(&sequence.setup.camera, frame.record.pose));
+        }
         if layers.odometry {
             draw_odometry(&canvas, sequence, frame, at);
         }

@@ -1,0 +1,247 @@
+//! The robot on the field and the pictures at its pose.
+
+use std::{collections::BTreeMap, sync::Arc};
+
+use eframe::egui::{self, DragValue, Ui, vec2};
+use reality_sim_core::{pose::CameraPose, sequence::Sequence};
+
+use super::{
+    DriveSettings,
+    kind::{Shown, View},
+    map::{Map, Scene},
+    painter::{Answer, Around, Painted, Painter, Wish},
+    pictures::{Gallery, Pictures},
+    robot::Robot,
+    source::{Probes, Source},
+};
+use crate::{
+    device::Device,
+    problems::Problems,
+    shortcuts::{self, Action, Place},
+};
+
+/// A frame that took longer than this does not carry the robot farther, seconds.
+const LONGEST_STEP_S: f64 = 0.1;
+/// What is below the field needs so much room, points.
+const CONTROLS: f32 = 250.0;
+
+/// Everything that is driven.
+pub struct Driving {
+    source: Arc<Source>,
+    probes: Option<Probes>,
+    painter: Option<Painter>,
+    robot: Robot,
+    map: Map,
+    pictures: Pictures,
+    around: Option<Around>,
+    painted: BTreeMap<View, Painted>,
+}
+
+impl Driving {
+    /// Puts the robot where the first picture was taken.
+    pub fn new(source: Source) -> Self {
+        let archive = &source.archive;
+        let first = archive.images().first().map(|image| image.pose.planar()).unwrap_or_default();
+        let robot = Robot::new(archive.usual_pose().with_planar(first), archive.field());
+        Self {
+            probes: source.probes.clone(),
+            source: Arc::new(source),
+            painter: None,
+            robot,
+            map: Map::default(),
+            pictures: Pictures::default(),
+            around: None,
+            painted: BTreeMap::new(),
+        }
+    }
+
+    /// Takes other true pictures to compare with.
+    pub fn compare_with(&mut self, sequence: &Arc<Sequence>) -> Result<(), String> {
+        let folder = sequence.folder.display();
+        let (own, other) = (&self.source.archive.setup().camera, &sequence.setup.camera);
+        if [own.width, own.height] != [other.width, other.height] {
+            return Err(format!(
+                "{folder}: its pictures have {} x {} pixels, those of the database {} x {}: choose a recording of the same camera",
+                other.width, other.height, own.width, own.height
+            ));
+        }
+        let probes = Probes::of_recording(sequence).ok_or_else(|| {
+            format!("{folder}: has no ground truth, so where its pictures were taken is not known: choose a recording that has one")
+        })?;
+        self.probes = Some(probes);
+        Ok(())
+    }
+
+    /// Shows it. True when a recording to compare with is asked for.
+    pub fn ui(
+        &mut self,
+        ui: &mut Ui,
+        settings: &mut DriveSettings,
+        devices: &[Device],
+        problems: &mut Problems,
+    ) -> bool {
+        self.listen(problems);
+        self.move_robot(ui);
+        self.map.poll(ui, &self.source, &mut settings.layers, problems);
+        let width = ui.available_width();
+        let is_asked = egui::Panel::right("drive map")
+            .default_size(0.37 * width)
+            .size_range(260.0..=(0.65 * width).max(270.0))
+            .show(ui, |ui| self.map_ui(ui, settings))
+            .inner;
+        egui::CentralPanel::default().show(ui, |ui| {
+            Pictures::choice_ui(ui, settings);
+            ui.separator();
+            let probe = self.around.as_ref().and_then(|around| around.probe);
+            let gallery = Gallery { archive: &self.source.archive, painted: &self.painted, probe };
+            if let Some(there) = self.pictures.ui(ui, settings, &gallery) {
+                self.robot.take(there);
+            }
+        });
+        self.wish(ui, settings, devices);
+        is_asked
+    }
+
+    /// Takes what the painter has sent.
+    fn listen(&mut self, problems: &mut Problems) {
+        while let Some(answer) = self.painter.as_mut().and_then(Painter::answer) {
+            match answer {
+                Answer::Around(around) => self.around = Some(around),
+                Answer::Painted(view, painted) => {
+                    self.painted.insert(view, painted);
+                }
+                Answer::Problem(problem) => problems.add(problem),
+            }
+        }
+    }
+
+    fn wish(&mut self, ui: &Ui, settings: &DriveSettings, devices: &[Device]) {
+        let painter = self
+            .painter
+            .get_or_insert_with(|| Painter::spawn(ui.ctx(), self.source.clone(), devices.first().cloned()));
+        painter.wish(Wish {
+            pose: self.robot.pose(),
+            views: settings.layout.views(settings),
+            is_best_effort: settings.is_best_effort,
+            wants_triangulation: settings.layers.triangulation,
+            probes: self.probes.clone(),
+        });
+    }
+
+    /// Keys and path.
+    fn move_robot(&mut self, ui: &Ui) {
+        if shortcuts::pressed(ui, Place::Drive).contains(&Action::PlayPause) {
+            self.robot.follow_or_stop();
+        }
+        let seconds = f64::from(ui.input(|input| input.stable_dt)).min(LONGEST_STEP_S);
+        let walks = self.robot.walk(&shortcuts::held(ui, Place::Drive), seconds);
+        if walks || self.robot.follow(seconds) {
+            ui.request_repaint();
+        }
+    }
+
+    /// The field, and below it what it shows.
+    fn map_ui(&mut self, ui: &mut Ui, settings: &mut DriveSettings) -> bool {
+        self.pose_ui(ui);
+        let left = View {
+            kind: settings.left,
+            shown: if settings.layout == super::Layout::All { Shown::Picture } else { settings.shown },
+        };
+        let drawn = self.painted.get(&left).and_then(|painted| painted.result.as_ref().ok());
+        let scene = Scene {
+            source: &self.source,
+            layers: settings.layers,
+            around: self.around.as_ref(),
+            used: drawn.map_or(&[], |drawn| &drawn.facts.used),
+            probes: self.probes.as_ref(),
+        };
+        let room = vec2(ui.available_width(), (ui.available_height() - CONTROLS).max(160.0));
+        self.map.ui(ui, room, &scene, &mut self.robot);
+        egui::ScrollArea::vertical()
+            .show(ui, |ui| {
+                self.map.path_ui(ui, &mut self.robot);
+                ui.separator();
+                self.map.layers_ui(ui, &scene, &mut settings.layers);
+                ui.separator();
+                near_ui(ui, &self.source, self.around.as_ref());
+                compare_ui(ui, self.probes.as_ref())
+            })
+            .inner
+    }
+
+    /// Where the robot is, to read and to set.
+    fn pose_ui(&mut self, ui: &mut Ui) {
+        let pose = self.robot.pose();
+        let mut wanted = pose;
+        ui.horizontal(|ui| {
+            number(ui, "x", &mut wanted.x_m, Unit::Metre);
+            number(ui, "y", &mut wanted.y_m, Unit::Metre);
+            number(ui, "yaw", &mut wanted.yaw_rad, Unit::Degree);
+        });
+        ui.horizontal(|ui| {
+            number(ui, "height", &mut wanted.height_m, Unit::Height);
+            number(ui, "pitch", &mut wanted.pitch_rad, Unit::Degree);
+            number(ui, "roll", &mut wanted.roll_rad, Unit::Degree);
+        });
+        ui.weak("Drag the arrow's tail to move, its tip to turn; or walk by W A S D and turn by Q E.");
+        if wanted != pose {
+            self.robot
+                .take(CameraPose { yaw_rad: reality_sim_core::pose::wrap_angle(wanted.yaw_rad), ..wanted });
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Unit {
+    Metre,
+    Height,
+    Degree,
+}
+
+/// A number to read, to drag and to type.
+fn number(ui: &mut Ui, name: &str, value: &mut f64, unit: Unit) {
+    let label = ui.weak(name);
+    let degrees = value.to_degrees();
+    let mut shown = if matches!(unit, Unit::Degree) { degrees } else { *value };
+    let drag = match unit {
+        Unit::Metre => DragValue::new(&mut shown).speed(0.01).fixed_decimals(2).suffix(" m"),
+        Unit::Height => {
+            DragValue::new(&mut shown).speed(0.005).fixed_decimals(2).suffix(" m").range(0.05..=5.0)
+        }
+        Unit::Degree => DragValue::new(&mut shown).speed(0.5).fixed_decimals(1).suffix("°"),
+    };
+    if ui.add(drag).labelled_by(label.id).changed() {
+        *value = if matches!(unit, Unit::Degree) { shown.to_radians() } else { shown };
+    }
+}
+
+/// How near the next picture is.
+fn near_ui(ui: &mut Ui, source: &Source, around: Option<&Around>) {
+    let count = source.archive.images().len();
+    let nearest = around.and_then(|around| around.nearest);
+    ui.label(match nearest {
+        Some(nearest) => {
+            let frame = source.archive.images()[nearest.image as usize].frame_index;
+            format!(
+                "{count} pictures in the database. The nearest, frame {frame}, is {:.0} px away.",
+                nearest.distance_px
+            )
+        }
+        None => format!("{count} pictures in the database."),
+    })
+    .on_hover_text("By so many pixels the picture moves from there to here (root mean square)");
+}
+
+/// The true pictures, and others to take; true when that is asked for.
+fn compare_ui(ui: &mut Ui, probes: Option<&Probes>) -> bool {
+    ui.horizontal_wrapped(|ui| {
+        if let Some(probes) = probes {
+            let count = probes.poses().len();
+            ui.label(format!("{count} true pictures to compare with, of “{}”.", probes.name()));
+        }
+        ui.button("Compare with a recording…")
+            .on_hover_text("Take the pictures of another recording as the true ones")
+            .clicked()
+    })
+    .inner
+}

@@ -1,0 +1,508 @@
+//! The field from above: the robot to drag, the path to draw, and what is known around it in layers.
+
+use std::sync::Arc;
+
+use eframe::egui::{
+    self, Align2, Color32, CursorIcon, FontId, PointerButton, Pos2, Rect, Shape, Stroke, Ui, Vec2, vec2,
+};
+use glam::DVec2;
+use reality_sim_core::pose::{CameraPose, Pose2};
+use reality_sim_db::coverage::{Coverage, CoverageCell, FAR_PX, shade_srgb};
+use reality_sim_synthesis::{ORIGIN_HUES, Used};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    painter::Around,
+    robot::Robot,
+    source::{Probes, Source},
+};
+use crate::{
+    background::{Outcome, Task},
+    colors,
+    field_view::{FieldCanvas, FieldView},
+    footprint::footprint,
+    problems::Problems,
+};
+
+/// The field is shown with so much around it, metres: the robot may go there.
+const MARGIN_M: f64 = 1.0;
+/// Side of a cell of the coverage, metres.
+const CELL_M: f64 = 0.25;
+/// The arrow's ends are caught from this far, points.
+const CATCH: f32 = 14.0;
+/// More marks than this are not seen one by one: every so many-th is drawn.
+const MOST_MARKS: usize = 3000;
+/// More lines than this are a grey area.
+const MOST_EDGES: usize = 6000;
+/// Weights below this are not written.
+const LEAST_WEIGHT: f64 = 0.005;
+
+/// Recorded pictures' places.
+const IMAGES: Color32 = Color32::from_rgb(200, 205, 210);
+/// The triangulation.
+const EDGES: Color32 = Color32::from_rgb(120, 215, 190);
+/// The drawn path.
+const PATH: Color32 = Color32::WHITE;
+
+/// What is drawn on the field.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Layers {
+    /// Where pictures were recorded.
+    pub images: bool,
+    pub coverage: CoverageLayer,
+    /// The Delaunay triangulation of the sectors around the heading.
+    pub triangulation: bool,
+    /// The natural neighbours and their weights.
+    pub neighbours: bool,
+    /// The images that the picture is made of.
+    pub used: bool,
+    /// The ground in the picture.
+    pub footprint: bool,
+    /// True pictures to compare with.
+    pub probes: bool,
+}
+
+impl Default for Layers {
+    fn default() -> Self {
+        Self {
+            images: true,
+            coverage: CoverageLayer::Off,
+            triangulation: false,
+            neighbours: false,
+            used: true,
+            footprint: true,
+            probes: true,
+        }
+    }
+}
+
+/// What the carpet is coloured by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CoverageLayer {
+    #[default]
+    Off,
+    /// How many pictures were taken there.
+    Pictures,
+    /// How far the nearest picture is.
+    Distance,
+}
+
+impl CoverageLayer {
+    const ALL: [Self; 3] = [Self::Off, Self::Pictures, Self::Distance];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Off => "no coverage",
+            Self::Pictures => "pictures taken there",
+            Self::Distance => "pixels to the nearest picture",
+        }
+    }
+}
+
+/// What was caught with the mouse.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Grip {
+    /// The arrow's tail, this far from where it was caught, metres.
+    Move(DVec2),
+    /// The arrow's tip.
+    Turn,
+    /// The path.
+    Draw,
+}
+
+/// The coverage, counted once.
+enum Counted {
+    NotYet,
+    Counting(Task<Coverage>),
+    Done(Coverage),
+    /// Not possible, or not wanted.
+    Never,
+}
+
+/// The field from above.
+pub struct Map {
+    view: FieldView,
+    grip: Option<Grip>,
+    is_drawing: bool,
+    coverage: Counted,
+}
+
+/// What there is to draw.
+pub struct Scene<'a> {
+    pub source: &'a Arc<Source>,
+    pub layers: Layers,
+    pub around: Option<&'a Around>,
+    /// The images that the picture on the left is made of.
+    pub used: &'a [Used],
+    pub probes: Option<&'a Probes>,
+}
+
+impl Default for Map {
+    fn default() -> Self {
+        Self {
+            view: FieldView::with_margin(MARGIN_M),
+            grip: None,
+            is_drawing: false,
+            coverage: Counted::NotYet,
+        }
+    }
+}
+
+impl Map {
+    /// Shows the field as large as fits into some room, and lets the robot be dragged.
+    pub fn ui(&mut self, ui: &mut Ui, room: Vec2, scene: &Scene, robot: &mut Robot) {
+        let field = scene.source.archive.field();
+        let extent = 2.0 * (field.carpet_half_extent_m() + MARGIN_M);
+        let height = (room.x * (extent.y / extent.x) as f32).min(room.y).max(80.0);
+        let canvas = self.view.show(ui, field, vec2(room.x, height), "the field from above");
+        self.drag(ui, &canvas, robot);
+        self.draw_coverage(&canvas, scene);
+        draw_known(&canvas, scene, robot.pose());
+        draw_path(&canvas, robot.path());
+        canvas.arrow(robot.pose().planar(), colors::POSE);
+    }
+
+    /// Drawing, following and forgetting a path.
+    pub fn path_ui(&mut self, ui: &mut Ui, robot: &mut Robot) {
+        ui.horizontal_wrapped(|ui| {
+            ui.toggle_value(&mut self.is_drawing, "Draw a path").on_hover_text(
+                "While this is on, dragging on the field draws the path that the robot follows",
+            );
+            let follow = if robot.is_following() { "Stop" } else { "Follow the path" };
+            if ui
+                .add_enabled(robot.has_path(), egui::Button::new(follow))
+                .on_hover_text("Space")
+                .on_disabled_hover_text("Draw a path first")
+                .clicked()
+            {
+                self.is_drawing = false;
+                robot.follow_or_stop();
+            }
+            if ui.add_enabled(robot.has_path(), egui::Button::new("Clear the path")).clicked() {
+                robot.clear_path();
+            }
+            if ui.button("Reset").on_hover_text("Back to where the first picture was taken").clicked() {
+                robot.reset();
+            }
+        });
+    }
+
+    /// The layers to switch, each with its colour.
+    pub fn layers_ui(&mut self, ui: &mut Ui, scene: &Scene, layers: &mut Layers) {
+        ui.horizontal_wrapped(|ui| {
+            let boxes: [(&mut bool, &str, Color32, &str); 6] = [
+                (&mut layers.images, "recorded", IMAGES, "Where pictures were recorded, and where they look"),
+                (
+                    &mut layers.used,
+                    "in use",
+                    hue(0),
+                    "The images that the left picture is made of, in the colours of its origins",
+                ),
+                (
+                    &mut layers.neighbours,
+                    "neighbours",
+                    Color32::WHITE,
+                    "The natural neighbours with their weights (Sibson, 1981)",
+                ),
+                (
+                    &mut layers.triangulation,
+                    "triangulation",
+                    EDGES,
+                    "The Delaunay triangulation of where pictures were taken in about this direction",
+                ),
+                (
+                    &mut layers.footprint,
+                    "ground seen",
+                    colors::BORDER,
+                    "The ground in the picture, up to 4 m away",
+                ),
+                (
+                    &mut layers.probes,
+                    "true pictures",
+                    colors::TRUTH,
+                    "Where true pictures were taken that are not in the database",
+                ),
+            ];
+            for (is_on, name, color, meaning) in boxes {
+                keep_together(ui, 120.0);
+                swatch(ui, color);
+                ui.checkbox(is_on, name).on_hover_text(meaning);
+            }
+        });
+        ui.horizontal_wrapped(|ui| {
+            let label = ui.label("Coverage");
+            egui::ComboBox::from_id_salt("coverage")
+                .width(190.0)
+                .selected_text(layers.coverage.name())
+                .show_ui(ui, |ui| {
+                    for layer in CoverageLayer::ALL {
+                        ui.selectable_value(&mut layers.coverage, layer, layer.name());
+                    }
+                })
+                .response
+                .labelled_by(label.id);
+            self.coverage_legend(ui, scene, layers.coverage);
+        });
+    }
+
+    /// Counts the coverage once it is wanted.
+    pub fn poll(&mut self, ui: &Ui, source: &Arc<Source>, layers: &mut Layers, problems: &mut Problems) {
+        if layers.coverage == CoverageLayer::Off {
+            return;
+        }
+        match &self.coverage {
+            Counted::NotYet => {
+                let source = source.clone();
+                self.coverage =
+                    Counted::Counting(Task::spawn(ui.ctx(), "Looking at the coverage …", move |_| {
+                        let archive = &source.archive;
+                        Ok(Coverage::new(archive.index(), archive.field(), archive.usual_pose(), CELL_M))
+                    }));
+            }
+            Counted::Counting(task) => match task.poll() {
+                Some(Outcome::Done(coverage)) => self.coverage = Counted::Done(coverage),
+                Some(Outcome::Failed(reason)) => {
+                    problems.add(reason);
+                    self.coverage = Counted::Never;
+                }
+                Some(Outcome::Cancelled) => {
+                    (self.coverage, layers.coverage) = (Counted::NotYet, CoverageLayer::Off);
+                }
+                None => {}
+            },
+            Counted::Done(_) | Counted::Never => {}
+        }
+    }
+
+    fn coverage_legend(&self, ui: &mut Ui, scene: &Scene, layer: CoverageLayer) {
+        match (&self.coverage, layer) {
+            (_, CoverageLayer::Off) | (Counted::NotYet | Counted::Never, _) => {}
+            (Counted::Counting(task), _) => task.ui(ui),
+            (Counted::Done(coverage), CoverageLayer::Pictures) => {
+                ui.weak("1");
+                scale(ui, |share| shade_srgb(share.max(1.0 / most(coverage))));
+                let square = 100.0 * coverage.cell_m;
+                ui.weak(format!("{:.0} in {square:.0} cm × {square:.0} cm", most(coverage)));
+            }
+            (Counted::Done(_), CoverageLayer::Distance) => {
+                ui.weak("0");
+                scale(ui, |share| shade_srgb(1.0 - share));
+                ui.weak(format!("{FAR_PX:.0} px or more, mean over all headings"));
+            }
+        }
+        if scene.source.archive.images().len() > MOST_MARKS && scene.layers.images {
+            ui.weak("Not every recorded picture is drawn.");
+        }
+    }
+
+    fn drag(&mut self, ui: &Ui, canvas: &FieldCanvas, robot: &mut Robot) {
+        let pose = robot.pose();
+        let caught = |at: Pos2| self.caught(canvas, pose.planar(), at);
+        if let Some(grip) = canvas.response.hover_pos().and_then(caught) {
+            ui.set_cursor_icon(match grip {
+                Grip::Draw => CursorIcon::Crosshair,
+                Grip::Move(_) => CursorIcon::Grab,
+                Grip::Turn => CursorIcon::Alias,
+            });
+        }
+        if canvas.response.drag_started_by(PointerButton::Primary) {
+            self.grip = ui.input(|input| input.pointer.press_origin()).and_then(caught);
+            if self.grip == Some(Grip::Draw) {
+                robot.clear_path();
+            }
+        }
+        let pointer = canvas.response.interact_pointer_pos();
+        if let (Some(grip), Some(at), true) =
+            (self.grip, pointer, canvas.response.dragged_by(PointerButton::Primary))
+        {
+            let place = canvas.in_world(at);
+            match grip {
+                Grip::Move(offset) => {
+                    let place = place + offset;
+                    robot.take(pose.with_planar(Pose2::new(place.x, place.y, pose.yaw_rad)));
+                }
+                Grip::Turn => {
+                    let aside = place - pose.planar().position_in_world();
+                    if aside.length() > 1e-3 {
+                        robot.take(CameraPose { yaw_rad: aside.to_angle(), ..pose });
+                    }
+                }
+                Grip::Draw => robot.draw_to(place),
+            }
+        }
+        if canvas.response.drag_stopped() {
+            self.grip = None;
+        }
+    }
+
+    /// What there is to catch at a place.
+    fn caught(&self, canvas: &FieldCanvas, planar: Pose2, at: Pos2) -> Option<Grip> {
+        if self.is_drawing {
+            return Some(Grip::Draw);
+        }
+        let tail = planar.position_in_world();
+        let (to_tail, to_tip) = (canvas.at(tail).distance(at), canvas.arrow_tip(planar).distance(at));
+        match () {
+            () if to_tail.min(to_tip) > CATCH => None,
+            () if to_tail <= to_tip => Some(Grip::Move(tail - canvas.in_world(at))),
+            () => Some(Grip::Turn),
+        }
+    }
+
+    fn draw_coverage(&self, canvas: &FieldCanvas, scene: &Scene) {
+        let Counted::Done(coverage) = &self.coverage else { return };
+        let most = most(coverage);
+        let color = |cell: &CoverageCell| match scene.layers.coverage {
+            CoverageLayer::Off => None,
+            CoverageLayer::Pictures if cell.count() == 0 => None,
+            CoverageLayer::Pictures => Some(shade_srgb(f64::from(cell.count()) / most)),
+            CoverageLayer::Distance => Some(shade_srgb(1.0 - cell.mean_distance_px() / FAR_PX)),
+        };
+        let half = DVec2::splat(0.5 * coverage.cell_m);
+        for cell in &coverage.cells {
+            if let Some([red, green, blue]) = color(cell) {
+                let corners = [cell.middle_in_world - half, cell.middle_in_world + half]
+                    .map(|corner| canvas.at(corner));
+                let rect = Rect::from_two_pos(corners[0], corners[1]).shrink(0.5);
+                canvas.painter.rect_filled(
+                    rect,
+                    1.0,
+                    Color32::from_rgb(red, green, blue).gamma_multiply(0.75),
+                );
+            }
+        }
+    }
+}
+
+fn most(coverage: &Coverage) -> f64 {
+    f64::from(coverage.cells.iter().map(CoverageCell::count).max().unwrap_or(0).max(1))
+}
+
+/// The colour of the image that is so many-th in use.
+pub fn hue(number: usize) -> Color32 {
+    let [red, green, blue] = ORIGIN_HUES[number % ORIGIN_HUES.len()];
+    Color32::from_rgb(red, green, blue)
+}
+
+/// Begins a new row where less room is left in this one, points.
+pub fn keep_together(ui: &mut Ui, width: f32) {
+    if ui.available_size_before_wrap().x < width {
+        ui.end_row();
+    }
+}
+
+/// A small square of a colour, in a text.
+pub fn swatch(ui: &mut Ui, color: Color32) {
+    let (rect, _) = ui.allocate_exact_size(Vec2::splat(10.0), egui::Sense::hover());
+    ui.painter().rect(rect, 2.0, color, Stroke::new(1.0, Color32::from_gray(110)), egui::StrokeKind::Inside);
+}
+
+/// A strip of colours.
+fn scale(ui: &mut Ui, color: impl Fn(f64) -> [u8; 3]) {
+    const STEPS: u32 = 24;
+    let (rect, _) = ui.allocate_exact_size(vec2(96.0, 10.0), egui::Sense::hover());
+    let step = rect.width() / STEPS as f32;
+    for number in 0..STEPS {
+        let [red, green, blue] = color(f64::from(number) / f64::from(STEPS - 1));
+        let left = rect.left() + step * number as f32;
+        let part = Rect::from_x_y_ranges(left..=left + step, rect.y_range());
+        ui.painter().rect_filled(part, 0.0, Color32::from_rgb(red, green, blue));
+    }
+}
+
+fn draw_known(canvas: &FieldCanvas, scene: &Scene, pose: CameraPose) {
+    let Scene { source, layers, around, used, probes } = scene;
+    let archive = &source.archive;
+    let poses = archive.index().poses();
+    if layers.footprint {
+        canvas.footprint(&footprint(&archive.setup().camera, pose));
+    }
+    if layers.triangulation
+        && let Some(around) = around
+    {
+        draw_triangulation(canvas, around);
+    }
+    if layers.images {
+        for pose in poses.iter().step_by(poses.len().div_ceil(MOST_MARKS).max(1)) {
+            mark(canvas, pose.planar(), 1.6, IMAGES.gamma_multiply(0.8));
+        }
+    }
+    if layers.probes
+        && let Some(probes) = probes
+    {
+        let all = probes.poses();
+        for (_, pose) in all.iter().step_by(all.len().div_ceil(MOST_MARKS).max(1)) {
+            draw_probe(canvas, pose.planar());
+        }
+    }
+    if layers.neighbours
+        && let Some(around) = around
+    {
+        draw_neighbours(canvas, around, poses, pose);
+    }
+    if layers.used {
+        for (number, image) in used.iter().enumerate().rev() {
+            let planar = poses[image.image as usize].planar();
+            canvas.painter.circle_filled(canvas.at(planar.position_in_world()), 6.0, Color32::BLACK);
+            mark(canvas, planar, 4.5, hue(number));
+        }
+    }
+}
+
+/// A dot and where it looks.
+fn mark(canvas: &FieldCanvas, planar: Pose2, radius: f32, color: Color32) {
+    let at = canvas.at(planar.position_in_world());
+    let direction = vec2(planar.yaw_rad.cos() as f32, -planar.yaw_rad.sin() as f32);
+    canvas.painter.circle_filled(at, radius, color);
+    let end = at + (radius + 5.0) * direction;
+    canvas.painter.line_segment([at, end], Stroke::new(0.6 * radius.min(3.0), color));
+}
+
+fn draw_probe(canvas: &FieldCanvas, planar: Pose2) {
+    let at = canvas.at(planar.position_in_world());
+    let corners = [vec2(0.0, -3.5), vec2(3.5, 0.0), vec2(0.0, 3.5), vec2(-3.5, 0.0)];
+    let corners = corners.map(|offset| at + offset).to_vec();
+    canvas.painter.add(Shape::convex_polygon(corners, colors::TRUTH, Stroke::new(0.5, Color32::WHITE)));
+}
+
+fn draw_triangulation(canvas: &FieldCanvas, around: &Around) {
+    for sector in &around.triangulations {
+        let color = EDGES.gamma_multiply(0.25 + 0.6 * sector.share as f32);
+        let ends = sector.edges_in_world.iter().map(|ends| ends.map(|end| canvas.at(end)));
+        let seen = ends.filter(|&[a, b]| Rect::from_two_pos(a, b).intersects(canvas.rect));
+        seen.take(MOST_EDGES).for_each(|ends| {
+            canvas.painter.line_segment(ends, Stroke::new(1.0, color));
+        });
+    }
+}
+
+fn draw_neighbours(canvas: &FieldCanvas, around: &Around, poses: &[CameraPose], pose: CameraPose) {
+    let from = canvas.at(pose.planar().position_in_world());
+    let shown = around.natural.iter().filter(|neighbour| neighbour.weight >= LEAST_WEIGHT);
+    for neighbour in shown {
+        let planar = poses[neighbour.image as usize].planar();
+        let at = canvas.at(planar.position_in_world());
+        let width = 1.0 + 4.0 * neighbour.weight as f32;
+        canvas.painter.line_segment([from, at], Stroke::new(width, Color32::from_white_alpha(150)));
+        mark(canvas, planar, 3.0, Color32::WHITE);
+        // Away from the robot, where the lines are not.
+        let aside = (at - from).normalized() * 16.0;
+        let text = format!("{:.0} %", 100.0 * neighbour.weight);
+        let galley = canvas.painter.layout_no_wrap(text, FontId::proportional(11.0), Color32::WHITE);
+        let rect = Align2::CENTER_CENTER.anchor_size(at + aside, galley.size());
+        canvas.painter.rect_filled(rect.expand(1.5), 2.0, Color32::from_black_alpha(170));
+        canvas.painter.galley(rect.min, galley, Color32::WHITE);
+    }
+}
+
+fn draw_path(canvas: &FieldCanvas, path: &[DVec2]) {
+    let points: Vec<Pos2> = path.iter().map(|&place| canvas.at(place)).collect();
+    for stroke in [Stroke::new(4.0, Color32::from_black_alpha(140)), Stroke::new(2.0, PATH)] {
+        canvas.painter.add(Shape::line(points.clone(), stroke));
+    }
+    if let [.., last] = &points[..] {
+        canvas.painter.circle(*last, 4.0, PATH, Stroke::new(1.0, Color32::BLACK));
+    }
+}

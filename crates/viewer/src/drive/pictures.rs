@@ -1,0 +1,345 @@
+//! The pictures at the robot's pose: one, two side by side or with a line between them, or all methods.
+
+use std::{collections::BTreeMap, sync::Arc};
+
+use eframe::egui::{
+    self, Align, Button, Color32, ColorImage, ComboBox, Layout as Flow, Rect, RichText, TextureId, Ui,
+    UiBuilder, Vec2, vec2,
+};
+use reality_sim_core::pose::CameraPose;
+use reality_sim_synthesis::Archive;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    DriveSettings,
+    kind::{PictureKind, Shown, View},
+    map::{hue, keep_together, swatch},
+    painter::{Facts, Painted},
+    source::NearProbe,
+};
+use crate::picture_view::{PictureCanvas, Uploaded};
+
+/// A line of text above a picture, points.
+const HEAD: f32 = 22.0;
+/// What the numbers above a picture mean.
+const FACTS_MEAN: &str = "px away: by how many pixels the picture moves from there to here, root mean square\nPSNR: likeness to the true picture at this very pose, over the carpet; higher is better\nrecorded: the share of the pixels that recorded pictures show; the others are filled in\nms: the time that it took";
+/// Shares below this are not listed.
+const LEAST_SHARE: f64 = 0.005;
+
+/// How pictures are arranged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Layout {
+    One,
+    #[default]
+    Side,
+    Wipe,
+    All,
+}
+
+impl Layout {
+    const ALL: [(Self, &'static str, &'static str); 4] = [
+        (Self::One, "One", "One picture"),
+        (Self::Side, "Side by side", "Two pictures beside each other"),
+        (Self::Wipe, "Wipe", "Two pictures at one place, with a line between them to drag"),
+        (Self::All, "All methods", "Every method's picture, the simulated and the true one"),
+    ];
+
+    /// What is shown.
+    pub fn views(self, settings: &DriveSettings) -> Vec<View> {
+        let left = View { kind: settings.left, shown: settings.shown };
+        let right = View::picture(settings.right);
+        match self {
+            Self::One => vec![left],
+            Self::Side | Self::Wipe => vec![left, right],
+            // Auto is one of the others.
+            Self::All => PictureKind::ALL[1..].iter().map(|&kind| View::picture(kind)).collect(),
+        }
+    }
+}
+
+/// What there is to show.
+pub struct Gallery<'a> {
+    pub archive: &'a Archive,
+    pub painted: &'a BTreeMap<View, Painted>,
+    pub probe: Option<NearProbe>,
+}
+
+/// Pictures on the screen.
+#[derive(Default)]
+pub struct Pictures {
+    uploaded: BTreeMap<View, Uploaded>,
+    black: Uploaded,
+}
+
+impl Pictures {
+    /// Which pictures, and how.
+    pub fn choice_ui(ui: &mut Ui, settings: &mut DriveSettings) {
+        ui.horizontal_wrapped(|ui| {
+            for (layout, name, meaning) in Layout::ALL {
+                ui.selectable_value(&mut settings.layout, layout, name).on_hover_text(meaning);
+            }
+            ui.separator();
+            match settings.layout {
+                Layout::All => {}
+                Layout::One => kind_box(ui, "Picture", &mut settings.left),
+                Layout::Side | Layout::Wipe => {
+                    kind_box(ui, "Left", &mut settings.left);
+                    if ui.button("Swap").on_hover_text("Swap left and right").clicked() {
+                        std::mem::swap(&mut settings.left, &mut settings.right);
+                    }
+                    kind_box(ui, "Right", &mut settings.right);
+                }
+            }
+            if settings.layout != Layout::All {
+                shown_box(ui, settings);
+            }
+            ui.checkbox(&mut settings.is_best_effort, "Best effort").on_hover_text(
+                "A picture also where little was recorded: what no recorded picture shows is filled in smoothly",
+            );
+        });
+    }
+
+    /// Shows them; returns the pose to go to where that was asked for.
+    pub fn ui(&mut self, ui: &mut Ui, settings: &mut DriveSettings, gallery: &Gallery) -> Option<CameraPose> {
+        let views = settings.layout.views(settings);
+        let legend = if settings.layout == Layout::All { 0.0 } else { 44.0 };
+        let room = (ui.available_size() - vec2(0.0, legend)).max(Vec2::splat(60.0));
+        let there = match (settings.layout, &views[..]) {
+            (Layout::Wipe, &[left, right]) => {
+                self.wipe(ui, [left, right], room, &mut settings.wipe_share, gallery)
+            }
+            _ => self.grid(ui, &views, room, gallery),
+        };
+        if settings.layout != Layout::All {
+            legend_ui(ui, views[0], gallery);
+        }
+        there
+    }
+
+    /// All of them, in as many columns as make them largest.
+    fn grid(&mut self, ui: &mut Ui, views: &[View], room: Vec2, gallery: &Gallery) -> Option<CameraPose> {
+        let gap = ui.spacing().item_spacing;
+        let pixels = size_of(gallery.archive);
+        let cell = |columns: usize| {
+            let rows = views.len().div_ceil(columns);
+            let [columns, rows] = [columns as f32, rows as f32];
+            vec2((room.x - gap.x * columns) / columns, (room.y - gap.y * rows) / rows - HEAD - gap.y)
+        };
+        let scale = |columns: usize| (cell(columns) / vec2(pixels[0] as f32, pixels[1] as f32)).min_elem();
+        let largest = (1..=views.len()).max_by(|&a, &b| scale(a).total_cmp(&scale(b))).unwrap_or(1);
+        // Two are compared more easily beside each other.
+        let columns = if views.len() == 2 && scale(2) > 0.7 * scale(1) { 2 } else { largest };
+        let mut there = None;
+        for row in views.chunks(columns) {
+            ui.horizontal_top(|ui| {
+                for &view in row {
+                    ui.vertical(|ui| there = self.pane(ui, view, cell(columns), gallery).or(there));
+                }
+            });
+        }
+        there
+    }
+
+    /// One picture under its name, or why there is none.
+    fn pane(&mut self, ui: &mut Ui, view: View, room: Vec2, gallery: &Gallery) -> Option<CameraPose> {
+        let painted = gallery.painted.get(&view);
+        let pixels = size_of(gallery.archive);
+        let width = (room / vec2(pixels[0] as f32, pixels[1] as f32)).min_elem() * pixels[0] as f32;
+        ui.set_width(width.max(40.0));
+        head(ui, view, painted);
+        let canvas = PictureCanvas::allocate(ui, pixels, room, &described(view, painted));
+        match painted.map(|painted| &painted.result) {
+            Some(Ok(drawn)) => {
+                let texture = self.texture(ui, view, &drawn.picture);
+                canvas.draw(texture, Color32::WHITE);
+                None
+            }
+            Some(Err(reason)) => words(ui, canvas.rect, view, reason, gallery.probe),
+            None => waiting(ui, canvas.rect),
+        }
+    }
+
+    /// Two pictures with a line between them.
+    fn wipe(
+        &mut self,
+        ui: &mut Ui,
+        views: [View; 2],
+        room: Vec2,
+        share: &mut f32,
+        gallery: &Gallery,
+    ) -> Option<CameraPose> {
+        let painted = views.map(|view| gallery.painted.get(&view));
+        let pixels = size_of(gallery.archive);
+        let room = room - vec2(0.0, 2.0 * (HEAD + ui.spacing().item_spacing.y));
+        for (side, (view, painted)) in
+            ["left of the line:", "right of it:"].iter().zip(views.iter().zip(painted))
+        {
+            ui.horizontal(|ui| {
+                ui.weak(*side);
+                head(ui, *view, painted);
+            });
+        }
+        let names = [0, 1].map(|side| described(views[side], painted[side]));
+        let canvas = PictureCanvas::allocate(ui, pixels, room.max(Vec2::splat(40.0)), &names.join(" | "));
+        let textures = [0, 1].map(|side| match painted[side].map(|painted| &painted.result) {
+            Some(Ok(drawn)) => self.texture(ui, views[side], &drawn.picture),
+            _ => self.no_picture(ui),
+        });
+        canvas.draw_wipe(ui, textures[0], textures[1], share);
+        let line = canvas.rect.left() + *share * canvas.rect.width();
+        let halves = [canvas.rect.with_max_x(line), canvas.rect.with_min_x(line)];
+        let mut there = None;
+        for side in [0, 1] {
+            if let Some(Err(reason)) = painted[side].map(|painted| &painted.result)
+                && halves[side].width() > 100.0
+            {
+                there = words(ui, halves[side], views[side], reason, gallery.probe).or(there);
+            }
+        }
+        there
+    }
+
+    fn texture(&mut self, ui: &Ui, view: View, picture: &Arc<ColorImage>) -> TextureId {
+        self.uploaded.entry(view).or_default().texture(ui.ctx(), picture)
+    }
+
+    fn no_picture(&mut self, ui: &Ui) -> TextureId {
+        let black = self.black.picture().cloned();
+        let black = black.unwrap_or_else(|| Arc::new(ColorImage::filled([1, 1], Color32::BLACK)));
+        self.black.texture(ui.ctx(), &black)
+    }
+}
+
+fn size_of(archive: &Archive) -> [usize; 2] {
+    let camera = &archive.setup().camera;
+    [camera.width as usize, camera.height as usize]
+}
+
+fn kind_box(ui: &mut Ui, name: &str, kind: &mut PictureKind) {
+    let label = ui.label(name);
+    let chosen = ComboBox::from_id_salt(name).width(110.0).selected_text(kind.name()).show_ui(ui, |ui| {
+        for other in PictureKind::ALL {
+            ui.selectable_value(kind, other, other.name()).on_hover_text(other.meaning());
+        }
+    });
+    chosen.response.labelled_by(label.id).on_hover_text(kind.meaning());
+}
+
+fn shown_box(ui: &mut Ui, settings: &mut DriveSettings) {
+    let words = |shown: Shown| match shown {
+        Shown::Picture => "the picture",
+        Shown::Origins => "where each pixel came from",
+        Shown::Trust => "how far to trust each pixel",
+    };
+    let name = if settings.layout == Layout::One { "Show" } else { "Show on the left" };
+    let label = ui.label(name);
+    let chosen = ComboBox::from_id_salt("shown").width(180.0).selected_text(words(settings.shown));
+    let chosen = chosen.show_ui(ui, |ui| {
+        for shown in [Shown::Picture, Shown::Origins, Shown::Trust] {
+            ui.selectable_value(&mut settings.shown, shown, words(shown));
+        }
+    });
+    chosen.response.labelled_by(label.id);
+}
+
+/// What a picture is, and what is known of it.
+fn head(ui: &mut Ui, view: View, painted: Option<&Painted>) {
+    let facts = painted.and_then(|painted| painted.result.as_ref().ok()).map(|drawn| &drawn.facts);
+    ui.allocate_ui_with_layout(vec2(ui.available_width(), HEAD), Flow::left_to_right(Align::Center), |ui| {
+        ui.label(RichText::new(view.kind.name()).strong()).on_hover_text(view.kind.meaning());
+        if let Some(facts) = facts {
+            let text = facts_in_words(view.kind, facts);
+            ui.add(egui::Label::new(RichText::new(&text).weak()).truncate()).on_hover_text(text);
+        }
+    });
+}
+
+fn facts_in_words(kind: PictureKind, facts: &Facts) -> String {
+    let mut words = Vec::new();
+    if kind == PictureKind::Auto {
+        words.push(format!("by {}", facts.method));
+    }
+    if let [only] = &facts.used[..] {
+        words.push(format!("{:.0} px away", only.distance_px));
+    }
+    if let Some(probe) = facts.probe {
+        words.push(format!("frame {}, {:.0} px away", probe.frame, probe.distance_px));
+    }
+    if let Some(db) = facts.likeness_db {
+        words.push(format!("PSNR {db:.1} dB"));
+    }
+    if let Some(covered) = facts.covered {
+        words.push(format!("{:.0} % recorded", 100.0 * covered));
+    }
+    words.push(format!("{:.0} ms", facts.milliseconds));
+    words.join(" · ")
+}
+
+/// A picture in words, for those who do not see it.
+fn described(view: View, painted: Option<&Painted>) -> String {
+    let name = view.kind.name();
+    let shown = match view.shown {
+        Shown::Picture => "",
+        Shown::Origins => ", where each pixel came from,",
+        Shown::Trust => ", how far to trust it,",
+    };
+    match painted {
+        Some(Painted { pose, result: Ok(_) }) => {
+            let degrees = pose.yaw_rad.to_degrees();
+            format!("{name}{shown} at x {:.2} m, y {:.2} m, yaw {degrees:.0}°", pose.x_m, pose.y_m)
+        }
+        Some(_) => format!("no picture: {name}"),
+        None => format!("{name} on its way"),
+    }
+}
+
+fn waiting(ui: &mut Ui, rect: Rect) -> Option<CameraPose> {
+    let place = Rect::from_center_size(rect.center(), Vec2::splat(24.0));
+    ui.put(place, egui::Spinner::new().size(24.0));
+    None
+}
+
+/// Why there is no picture, in its place, and a way to one.
+fn words(ui: &mut Ui, rect: Rect, view: View, reason: &str, probe: Option<NearProbe>) -> Option<CameraPose> {
+    let inside = rect.shrink(0.06 * rect.width());
+    let mut child = ui.new_child(
+        UiBuilder::new().max_rect(inside).layout(Flow::top_down(Align::Center)).id_salt(view.kind.name()),
+    );
+    child.set_clip_rect(rect.intersect(ui.clip_rect()));
+    child.add_space(0.28 * inside.height());
+    child.add(egui::Label::new(RichText::new(reason).color(Color32::from_gray(205))).wrap());
+    let probe = probe.filter(|_| view.kind == PictureKind::Truth)?;
+    child.add_space(6.0);
+    child.add(Button::new("Go there")).clicked().then_some(probe.pose)
+}
+
+/// What the colours mean.
+fn legend_ui(ui: &mut Ui, view: View, gallery: &Gallery) {
+    let drawn = gallery.painted.get(&view).and_then(|painted| painted.result.as_ref().ok());
+    let Some(drawn) = drawn else { return };
+    ui.horizontal_wrapped(|ui| match view.shown {
+        Shown::Trust => {
+            ui.weak("white: fully · black: not at all");
+        }
+        _ if drawn.facts.used.is_empty() => {
+            ui.weak("made of no recorded picture");
+        }
+        _ => {
+            ui.weak("made of");
+            for (number, used) in drawn.facts.used.iter().enumerate() {
+                if used.share >= LEAST_SHARE {
+                    keep_together(ui, 190.0);
+                    swatch(ui, hue(number));
+                    let frame = gallery.archive.images()[used.image as usize].frame_index;
+                    let share = 100.0 * used.share;
+                    ui.weak(format!("frame {frame}, {:.0} px away: {share:.0} %", used.distance_px));
+                }
+            }
+            if view.shown == Shown::Origins {
+                swatch(ui, Color32::BLACK);
+                ui.weak("no recorded picture shows it");
+            }
+        }
+    });
+}

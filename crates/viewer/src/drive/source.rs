@@ -1,0 +1,209 @@
+//! Where the pictures come from: a database that was opened, or one made of a recording for as long as it is looked at.
+
+use std::sync::Arc;
+
+use image::RgbImage;
+use reality_sim_core::{
+    observation::ObservationKind,
+    pose::CameraPose,
+    sequence::Sequence,
+    tag::{TagConfig, TaggedFrame, Tagger, recorded, smooth_sequence},
+};
+use reality_sim_db::{Database, PoseEstimate, PoseSource, metric::PixelMetric};
+use reality_sim_synthesis::{Archive, measure_hall};
+use tempfile::TempDir;
+
+use crate::{background::Progress, device::Device, opening::CACHE_BYTES};
+
+/// Every so many-th picture is held back to compare with.
+const PROBE_STEP: usize = 5;
+/// Recordings with fewer pictures need all of them.
+const LEAST_FRAMES: usize = 10;
+
+/// An archive and, where it was made for now, the folder of its file: that is deleted when the last thread has gone.
+#[derive(Debug)]
+pub struct Source {
+    pub archive: Arc<Archive>,
+    /// True pictures that are not in the archive.
+    pub probes: Option<Probes>,
+    /// After the archive, which has a file of it open.
+    _folder: Option<TempDir>,
+}
+
+impl Source {
+    /// A database that was opened.
+    pub fn of_archive(archive: Arc<Archive>) -> Self {
+        Self { archive, probes: None, _folder: None }
+    }
+}
+
+/// Pictures of a recording with the poses at which they were taken.
+#[derive(Debug, Clone)]
+pub struct Probes {
+    sequence: Arc<Sequence>,
+    /// Frames and poses.
+    poses: Arc<[(usize, CameraPose)]>,
+}
+
+/// Whether they are the same ones, not only alike.
+impl PartialEq for Probes {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.poses, &other.poses)
+    }
+}
+
+/// A probe near a pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NearProbe {
+    pub frame: usize,
+    pub pose: CameraPose,
+    /// How far the picture moves from it, root mean square pixels.
+    pub distance_px: f64,
+}
+
+impl Probes {
+    /// Those of a recording's pictures of which the pose is known; `None` where there are none.
+    pub fn of_recording(sequence: &Arc<Sequence>) -> Option<Self> {
+        let known = sequence.groundtruth.iter().enumerate();
+        Self::new(sequence, known.filter_map(|(frame, pose)| Some((frame, (*pose)?))))
+    }
+
+    fn new(sequence: &Arc<Sequence>, poses: impl Iterator<Item = (usize, CameraPose)>) -> Option<Self> {
+        let poses: Arc<[_]> = poses.collect();
+        (!poses.is_empty()).then(|| Self { sequence: sequence.clone(), poses })
+    }
+
+    /// What the recording is called.
+    pub fn name(&self) -> &str {
+        &self.sequence.name
+    }
+
+    /// Frames and poses.
+    pub fn poses(&self) -> &[(usize, CameraPose)] {
+        &self.poses
+    }
+
+    /// The one that moves the picture least.
+    pub fn nearest(&self, metric: &PixelMetric, pose: CameraPose) -> Option<NearProbe> {
+        let near = self.poses.iter().map(|&(frame, taken)| NearProbe {
+            frame,
+            pose: taken,
+            distance_px: metric.distance_px(taken, pose),
+        });
+        near.min_by(|a, b| a.distance_px.total_cmp(&b.distance_px))
+    }
+
+    /// The picture of a frame.
+    pub fn picture(&self, frame: usize) -> Result<RgbImage, String> {
+        self.sequence.load_image(frame).map_err(|error| error.to_string())
+    }
+}
+
+/// One pose a frame, where it has one, and where they are from.
+pub struct Poses {
+    estimates: Vec<Option<PoseEstimate>>,
+    source: PoseSource,
+}
+
+impl Poses {
+    /// A recording's ground truth; `None` where it has none.
+    pub fn known(sequence: &Sequence) -> Option<Self> {
+        let estimates: Vec<_> =
+            sequence.groundtruth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
+        let is_known = estimates.iter().any(Option::is_some);
+        is_known.then_some(Self { estimates, source: PoseSource::GroundTruth })
+    }
+
+    /// Found by the particle filter, of the whole recording together; those that it is not sure of are left out.
+    pub fn found(sequence: &Sequence, device: Option<&Device>, progress: &Progress) -> Result<Self, String> {
+        let (tagger, tagged) = tagged(sequence, device, progress)?;
+        let smoothed = smooth_sequence(sequence, &tagger, &tagged).map_err(|error| error.to_string())?;
+        let estimate = |index: usize| match &smoothed {
+            Some(smoothed) => {
+                PoseEstimate { pose: smoothed[index].pose, covariance: Some(smoothed[index].covariance) }
+            }
+            None => PoseEstimate::from(tagged[index].pose),
+        };
+        let sure = |(index, frame): (usize, &TaggedFrame)| frame.sure.then(|| estimate(index));
+        let estimates: Vec<_> = tagged.iter().enumerate().map(sure).collect();
+        if estimates.iter().all(Option::is_none) {
+            return Err(format!(
+                "{}: the filter is sure of no picture's pose: watch it in Walk, or make a database with `reality-sim build` and `--poses`",
+                sequence.folder.display()
+            ));
+        }
+        let settings = r#"{"program":"reality-sim viewer","observation":"contrast"}"#.to_owned();
+        Ok(Self { estimates, source: PoseSource::Filter { settings } })
+    }
+}
+
+fn tagged(
+    sequence: &Sequence,
+    device: Option<&Device>,
+    progress: &Progress,
+) -> Result<(Tagger, Vec<TaggedFrame>), String> {
+    let config = TagConfig::new(ObservationKind::Contrast);
+    let Sequence { setup, field, start, .. } = sequence;
+    let mut tagger = match device {
+        Some(device) => {
+            let backend = (device.open)().map_err(|error| error.to_string())?;
+            Tagger::with_backend(&setup.camera, field, *start, config, backend)
+                .map_err(|error| error.to_string())?
+        }
+        None => Tagger::new(&setup.camera, field, *start, config),
+    };
+    let count = sequence.frames.len();
+    let mut tagged = Vec::with_capacity(count);
+    for index in 0..count {
+        stop_if_cancelled(progress)?;
+        let picture = Arc::new(sequence.load_image(index).map_err(|error| error.to_string())?);
+        tagged.push(tagger.tag(&recorded(sequence, index, &picture)).map_err(|error| error.to_string())?);
+        progress.set(index + 1, count);
+    }
+    Ok((tagger, tagged))
+}
+
+/// Makes a database of a recording in a temporary file, measures the hall, and holds some pictures back as probes.
+pub fn build(sequence: &Arc<Sequence>, poses: Poses, progress: &Progress) -> Result<Source, String> {
+    let words = |error: &dyn std::error::Error| error.to_string();
+    let Poses { mut estimates, source } = poses;
+    let probes = held_back(sequence, &mut estimates);
+    let folder = tempfile::tempdir()
+        .map_err(|error| format!("no temporary file can be made: {error}: make room, or set TMPDIR"))?;
+    let path = folder.path().join("recording.db");
+    let mut database = Database::create_or_open(&path).map_err(|error| words(&error))?;
+    let count = estimates.len();
+    let ingested = database.ingest_while(sequence, &estimates, &source, |done| {
+        progress.set(done, count);
+        !progress.is_cancelled()
+    });
+    ingested.map_err(|error| words(&error))?;
+    stop_if_cancelled(progress)?;
+    // How long the rest takes is not known.
+    progress.set(0, 0);
+    let archive = Archive::open(&path, 0).map_err(|error| words(&error))?;
+    if let Some(hall) = measure_hall(&archive).map_err(|error| words(&error))? {
+        database.set_hall(archive.images()[0].field_id, &hall).map_err(|error| words(&error))?;
+    }
+    drop(archive);
+    drop(database);
+    stop_if_cancelled(progress)?;
+    let archive = Archive::open(&path, CACHE_BYTES).map_err(|error| words(&error))?;
+    Ok(Source { archive: Arc::new(archive), probes, _folder: Some(folder) })
+}
+
+/// Takes some of the poses out: their pictures are the truth that others are compared with.
+fn held_back(sequence: &Arc<Sequence>, estimates: &mut [Option<PoseEstimate>]) -> Option<Probes> {
+    let known: Vec<usize> = (0..estimates.len()).filter(|&frame| estimates[frame].is_some()).collect();
+    if known.len() < LEAST_FRAMES {
+        return None;
+    }
+    let held = known.iter().skip(PROBE_STEP / 2).step_by(PROBE_STEP);
+    let poses: Vec<_> = held.filter_map(|&frame| Some((frame, estimates[frame].take()?.pose))).collect();
+    Probes::new(sequence, poses.into_iter())
+}
+
+/// The words are never seen: who cancels knows.
+fn stop_if_cancelled(progress: &Progress) -> Result<(), String> {
+    if progress.is_cancelled() { Err("cancelled".to_owned()) } else { Ok(()) }
+}

@@ -1,0 +1,115 @@
+//! The ground that a camera sees, from above.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec2;
+use reality_sim_core::{camera::Camera, pose::CameraPose};
+
+/// Ground farther away than this is cut off, metres: a pixel there shows more than a robot's length.
+const FAR_M: f64 = 4.0;
+/// Directions that are looked at, all around.
+const DIRECTIONS: u32 = 120;
+/// Places that are looked at in each direction.
+const PLACES: u32 = 40;
+/// Halvings of the step between places on the way to where the picture ends: a millimetre is left.
+const HALVINGS: u32 = 7;
+
+/// The outline of the ground in a picture, world axes, metres, cut off at some distance: the far side counter-clockwise,
+/// then the near side back. Empty where no ground is seen.
+pub fn footprint(camera: &Camera, pose: CameraPose) -> Vec<DVec2> {
+    let place = pose.planar().position_in_world();
+    let seen = |direction: DVec2, distance_m: f64| {
+        let point_in_world = (place + distance_m * direction).extend(0.0);
+        camera.project(pose.camera_from_world(point_in_world)).is_ok()
+    };
+    // From behind the robot around to behind it: what is seen lies in front.
+    let mut strips = Vec::new();
+    for number in 0..DIRECTIONS {
+        let angle_rad = pose.yaw_rad - PI + TAU * f64::from(number) / f64::from(DIRECTIONS);
+        let direction = DVec2::from_angle(angle_rad);
+        if let Some(ends_m) = strip(|distance_m| seen(direction, distance_m)) {
+            strips.push(ends_m.map(|distance_m| place + distance_m * direction));
+        }
+    }
+    let far = strips.iter().map(|[_, far]| *far);
+    if strips.len() == DIRECTIONS as usize && seen(DVec2::X, 0.0) {
+        // The robot itself stands on it: there is no near side.
+        return far.collect();
+    }
+    far.chain(strips.iter().rev().map(|[near, _]| *near)).collect()
+}
+
+/// From where to where something is seen along a line, metres.
+fn strip(seen: impl Fn(f64) -> bool) -> Option<[f64; 2]> {
+    let at = |place: u32| FAR_M * f64::from(place) / f64::from(PLACES);
+    let first = (0..=PLACES).find(|&place| seen(at(place)))?;
+    let last = (first..=PLACES).rev().find(|&place| seen(at(place)))?;
+    let near = if first == 0 { 0.0 } else { edge(&seen, at(first), at(first - 1)) };
+    let far = if last == PLACES { FAR_M } else { edge(&seen, at(last), at(last + 1)) };
+    Some([near, far])
+}
+
+/// Where something is just seen, between where it is and where it is not.
+fn edge(seen: impl Fn(f64) -> bool, inside_m: f64, outside_m: f64) -> f64 {
+    let (mut inside_m, mut outside_m) = (inside_m, outside_m);
+    for _ in 0..HALVINGS {
+        let between_m = 0.5 * (inside_m + outside_m);
+        *(if seen(between_m) { &mut inside_m } else { &mut outside_m }) = between_m;
+    }
+    inside_m
+}
+
+#[cfg(test)]
+mod tests {
+    use reality_sim_core::{
+        camera::{Distortion, ImageCircle},
+        pose::Pose2,
+    };
+
+    use super::*;
+
+    fn camera() -> Camera {
+        Camera::new([640, 480], [400.0, 400.0, 319.5, 239.5], Distortion::Pinhole).unwrap()
+    }
+
+    fn pose(pitch_rad: f64) -> CameraPose {
+        CameraPose::new(Pose2::new(1.0, -0.5, 0.8), 0.5, pitch_rad, 0.0)
+    }
+
+    /// A pinhole camera that looks straight down sees a rectangle: what it measures is known from its angles alone.
+    #[test]
+    fn from_above_the_footprint_is_the_pictures_rectangle_on_the_ground() {
+        let outline = footprint(&camera(), pose(std::f64::consts::FRAC_PI_2));
+        let area: f64 = (0..outline.len())
+            .map(|index| outline[index].perp_dot(outline[(index + 1) % outline.len()]))
+            .sum::<f64>()
+            .abs()
+            / 2.0;
+        let expected = (0.5 * 639.0 / 400.0) * (0.5 * 479.0 / 400.0);
+        assert!((area - expected).abs() < 0.01 * expected, "{area} {expected}");
+    }
+
+    #[test]
+    fn ground_is_in_front_of_the_camera_and_ends_where_it_is_cut_off() {
+        let pose = pose(0.3);
+        let outline = footprint(&camera(), pose);
+        let forward = DVec2::from_angle(pose.yaw_rad);
+        let distances: Vec<f64> =
+            outline.iter().map(|point| (*point - DVec2::new(1.0, -0.5)).length()).collect();
+        assert!(outline.iter().all(|point| (*point - DVec2::new(1.0, -0.5)).dot(forward) > 0.0));
+        assert!(distances.iter().all(|distance| *distance <= FAR_M + 1e-9));
+        assert!(distances.iter().any(|distance| *distance > FAR_M - 1e-9), "the horizon is in the picture");
+    }
+
+    #[test]
+    fn a_smaller_image_circle_shows_less_ground_and_the_sky_none() {
+        let farthest = |camera: &Camera| {
+            let pose = pose(1.2);
+            let distance = |point: &DVec2| (*point - DVec2::new(1.0, -0.5)).length();
+            footprint(camera, pose).iter().map(distance).fold(0.0, f64::max)
+        };
+        let circle = ImageCircle { cx: 319.5, cy: 239.5, radius: 150.0 };
+        assert!(farthest(&camera().with_image_circle(Some(circle))) < farthest(&camera()));
+        assert!(footprint(&camera(), pose(-1.2)).is_empty());
+    }
+}
