@@ -25,6 +25,8 @@ pub struct OpenWindow {
     purpose: Purpose,
     path: String,
     dialog: Option<Task<Option<PathBuf>>>,
+    /// The last dialog gave no path: it was cancelled, or never came up, which nobody can tell apart.
+    dialog_gave_nothing: bool,
 }
 
 /// A path that was chosen.
@@ -88,6 +90,9 @@ impl OpenWindow {
                 self.dialog = Some(dialog(ui.ctx(), Kind::File));
             }
         });
+        if self.dialog_gave_nothing {
+            ui.weak("Should no dialog come up: type the path, or drop the folder or file onto the window.");
+        }
         if self.purpose == Purpose::Open {
             if let Some(path) = demonstration {
                 ui.separator();
@@ -107,10 +112,12 @@ impl OpenWindow {
     fn from_dialog(&mut self) -> Option<PathBuf> {
         let outcome = self.dialog.as_ref()?.poll()?;
         self.dialog = None;
-        match outcome {
+        let path = match outcome {
             Outcome::Done(path) => path,
             Outcome::Failed(_) | Outcome::Cancelled => None,
-        }
+        };
+        self.dialog_gave_nothing = path.is_none();
+        path
     }
 }
 
@@ -133,5 +140,48 @@ fn dialog(ctx: &egui::Context, kind: Kind) -> Task<Option<PathBuf>> {
             let answer = dialog.pick_file();
             Task::spawn(ctx, "", move |_| Ok(path(pollster::block_on(answer))))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::{Harness, kittest::Queryable};
+
+    use super::*;
+
+    /// An open window whose dialog answers.
+    fn after_dialog(answer: Option<PathBuf>) -> Harness<'static, (OpenWindow, Option<PathBuf>)> {
+        let mut window = OpenWindow::default();
+        window.ask(Purpose::Open);
+        let task = Task::spawn(&egui::Context::default(), "", |_| Ok(answer));
+        window.dialog = Some(task);
+        let show = |ui: &mut Ui, (window, chosen): &mut (OpenWindow, Option<PathBuf>)| {
+            if let Some(Chosen { path, .. }) = window.ui(ui, &[], None) {
+                *chosen = Some(path);
+            }
+        };
+        let mut harness = Harness::builder().build_ui_state(show, (window, None));
+        let started = std::time::Instant::now();
+        while harness.state().0.dialog.is_some() {
+            assert!(started.elapsed().as_secs() < 60, "the dialog does not end");
+            harness.step();
+        }
+        harness.run();
+        harness
+    }
+
+    #[test]
+    fn what_a_dialog_gives_is_opened_and_the_window_closes() {
+        let harness = after_dialog(Some("/walk".into()));
+        assert_eq!(harness.state().1.as_deref(), Some(Path::new("/walk")));
+        assert!(harness.query_by_label("Choose a folder…").is_none());
+    }
+
+    #[test]
+    fn where_no_dialog_comes_up_there_is_a_word_of_what_else_can_be_done() {
+        let harness = after_dialog(None);
+        assert_eq!(harness.state().1, None);
+        harness.get_by_label("Choose a folder…");
+        harness.get_by_label_contains("Should no dialog come up: type the path");
     }
 }
