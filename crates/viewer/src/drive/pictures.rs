@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     DriveSettings,
     kind::{PictureKind, Shown, View},
-    map::{hue, keep_together, swatch},
+    map::{hue, swatch},
     painter::{Facts, Painted},
     source::NearProbe,
 };
@@ -329,17 +329,22 @@ fn legend_ui(ui: &mut Ui, view: View, gallery: &Gallery) {
             ui.weak("made of");
             for (number, used) in drawn.facts.used.iter().enumerate() {
                 if used.share >= LEAST_SHARE {
-                    keep_together(ui, 190.0);
-                    swatch(ui, hue(number));
                     let frame = gallery.archive.images()[used.image as usize].frame_index;
                     let share = 100.0 * used.share;
-                    ui.weak(format!("frame {frame}, {:.0} px away: {share:.0} %", used.distance_px));
+                    let text = format!("frame {frame}, {:.0} px away: {share:.0} %", used.distance_px);
+                    swatched(ui, hue(number), &text);
                 }
             }
             if view.shown == Shown::Origins {
-                swatch(ui, Color32::BLACK);
-                ui.weak("no recorded picture shows it");
+                swatched(ui, Color32::BLACK, "no recorded picture shows it");
             }
         }
     });
+}
+
+/// Words behind a colour, on one row.
+fn swatched(ui: &mut Ui, color: Color32, text: &str) {
+    let layout = egui::AtomLayout::new((swatch(color), RichText::new(text).weak()));
+    let response = ui.add(layout);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
 }
