@@ -484,6 +484,7 @@ fn draw_triangulation(canvas: &FieldCanvas, around: &Around) {
 fn draw_neighbours(canvas: &FieldCanvas, around: &Around, poses: &[CameraPose], pose: CameraPose) {
     let from = canvas.at(pose.planar().position_in_world());
     let shown = around.natural.iter().filter(|neighbour| neighbour.weight >= LEAST_WEIGHT);
+    let mut below = 0.0;
     for neighbour in shown {
         let planar = poses[neighbour.image as usize].planar();
         let at = canvas.at(planar.position_in_world());
@@ -491,8 +492,10 @@ fn draw_neighbours(canvas: &FieldCanvas, around: &Around, poses: &[CameraPose], 
         canvas.painter.line_segment([from, at], Stroke::new(width, Color32::from_white_alpha(150)));
         mark(canvas, planar, 3.0, Color32::WHITE);
         // Away from the robot, where the lines are not.
-        let behind = vec2(-pose.yaw_rad.cos() as f32, pose.yaw_rad.sin() as f32);
-        let aside = if at.distance(from) > 12.0 { 16.0 * (at - from).normalized() } else { 24.0 * behind };
+        // Those at the robot's feet one below the other.
+        let is_here = at.distance(from) < 12.0;
+        let aside = if is_here { vec2(0.0, 22.0 + below) } else { 16.0 * (at - from).normalized() };
+        below += if is_here { 14.0 } else { 0.0 };
         let text = format!("{:.0} %", 100.0 * neighbour.weight);
         let galley = canvas.painter.layout_no_wrap(text, FontId::proportional(11.0), Color32::WHITE);
         let rect = Align2::CENTER_CENTER.anchor_size(at + aside, galley.size());

@@ -181,7 +181,8 @@ impl Pictures {
             });
         }
         let names = [0, 1].map(|side| described(views[side], painted[side]));
-        let canvas = PictureCanvas::allocate(ui, pixels, room.max(Vec2::splat(40.0)), &names.join(" | "));
+        let name = format!("{}, {:.0} % of the width; then {}", names[0], 100.0 * *share, names[1]);
+        let canvas = PictureCanvas::allocate(ui, pixels, room.max(Vec2::splat(40.0)), &name);
         let textures = [0, 1].map(|side| match painted[side].map(|painted| &painted.result) {
             Some(Ok(drawn)) => self.texture(ui, views[side], &drawn.picture),
             _ => self.no_picture(ui),
@@ -233,7 +234,7 @@ fn shown_box(ui: &mut Ui, settings: &mut DriveSettings) {
         Shown::Trust => "how far to trust each pixel",
     };
     let name = if settings.layout == Layout::One { "Show" } else { "Show on the left" };
-    let label = ui.label(name);
+    let label = ui.add(egui::Label::new(name).extend());
     let chosen = ComboBox::from_id_salt("shown").width(180.0).selected_text(words(settings.shown));
     let chosen = chosen.show_ui(ui, |ui| {
         for shown in [Shown::Picture, Shown::Origins, Shown::Trust] {
@@ -344,7 +345,6 @@ fn legend_ui(ui: &mut Ui, view: View, gallery: &Gallery) {
 
 /// Words behind a colour, on one row.
 fn swatched(ui: &mut Ui, color: Color32, text: &str) {
-    let layout = egui::AtomLayout::new((swatch(color), RichText::new(text).weak()));
-    let response = ui.add(layout);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
+    let row = egui::WidgetAtom::new((swatch(color), RichText::new(text).weak()));
+    ui.add(row).widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
 }
