@@ -3,7 +3,7 @@
 use std::{
     collections::BTreeMap,
     path::Path,
-    sync::{Arc, LazyLock},
+    sync::{Arc, Mutex, PoisonError, Weak},
     time::{Duration, Instant},
 };
 
@@ -18,7 +18,7 @@ use super::{
     driving::Driving,
     kind::{PictureKind, Shown, View},
     painter::{Answer, Around, Painted, Painter, Wish},
-    source::{Poses, Probes, Source, build},
+    source::{Poses, Source, build},
 };
 use crate::{
     background::{Outcome, Task},
@@ -52,16 +52,24 @@ fn built(sequence: Sequence) -> Source {
     finished(&task).unwrap()
 }
 
-/// Made once: several tests look at it.
-static SOURCE: LazyLock<Arc<Source>> = LazyLock::new(|| Arc::new(built(walk())));
+/// One for all tests that hold it at the same time; its file goes with the last of them, which a static would not let it.
+fn source() -> Arc<Source> {
+    static SHARED: Mutex<Weak<Source>> = Mutex::new(Weak::new());
+    let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
+    shared.upgrade().unwrap_or_else(|| {
+        let source = Arc::new(built(walk()));
+        *shared = Arc::downgrade(&source);
+        source
+    })
+}
 
-fn wish(pose: CameraPose) -> Wish {
+fn wish(source: &Source, pose: CameraPose) -> Wish {
     Wish {
         pose,
         views: PictureKind::ALL.map(View::picture).to_vec(),
         is_best_effort: false,
         wants_triangulation: false,
-        probes: SOURCE.probes.clone(),
+        probes: source.probes.clone(),
     }
 }
 
@@ -85,12 +93,12 @@ fn fulfilled(painter: &mut Painter, wish: &Wish) -> (Around, BTreeMap<View, Pain
     (around.unwrap(), painted)
 }
 
-fn painter() -> Painter {
-    Painter::spawn(&Context::default(), SOURCE.clone(), None)
+fn painter(source: &Arc<Source>) -> Painter {
+    Painter::spawn(&Context::default(), source.clone(), None)
 }
 
-fn probe() -> (usize, CameraPose) {
-    SOURCE.probes.as_ref().unwrap().poses()[3]
+fn probe(source: &Source) -> (usize, CameraPose) {
+    source.probes.as_ref().unwrap().poses()[3]
 }
 
 #[test]
@@ -141,8 +149,9 @@ fn without_ground_truth_the_filter_finds_where_pictures_were_taken() {
 
 #[test]
 fn where_a_true_picture_was_taken_every_method_comes_nearer_to_it_than_the_simulation() {
-    let (frame, pose) = probe();
-    let (around, painted) = fulfilled(&mut painter(), &wish(pose));
+    let source = source();
+    let (frame, pose) = probe(&source);
+    let (around, painted) = fulfilled(&mut painter(&source), &wish(&source, pose));
     let facts = |kind| &painted[&View::picture(kind)].result.as_ref().unwrap().facts;
     let shown = facts(PictureKind::Truth).probe.unwrap();
     assert_eq!((shown.frame, shown.distance_px), (frame, 0.0));
@@ -163,9 +172,10 @@ fn where_a_true_picture_was_taken_every_method_comes_nearer_to_it_than_the_simul
 
 #[test]
 fn where_nothing_was_recorded_the_reason_takes_the_place_of_the_picture() {
-    let usual = SOURCE.archive.usual_pose();
-    let outwards = wish(usual.with_planar(Pose2::new(3.2, -2.2, -0.8)));
-    let mut painter = painter();
+    let source = source();
+    let usual = source.archive.usual_pose();
+    let outwards = wish(&source, usual.with_planar(Pose2::new(3.2, -2.2, -0.8)));
+    let mut painter = painter(&source);
     let (_, painted) = fulfilled(&mut painter, &outwards);
     let reason = |kind| painted[&View::picture(kind)].result.as_ref().unwrap_err();
     assert!(reason(PictureKind::Blend).contains("best effort"), "{}", reason(PictureKind::Blend));
@@ -178,6 +188,7 @@ fn where_nothing_was_recorded_the_reason_takes_the_place_of_the_picture() {
 
 #[test]
 fn origins_and_trust_are_of_the_same_picture_and_a_simulated_one_has_none() {
+    let source = source();
     let view = |kind, shown| View { kind, shown };
     let views = vec![
         view(PictureKind::Blend, Shown::Picture),
@@ -185,8 +196,8 @@ fn origins_and_trust_are_of_the_same_picture_and_a_simulated_one_has_none() {
         view(PictureKind::Blend, Shown::Trust),
         view(PictureKind::Simulated, Shown::Origins),
     ];
-    let wish = Wish { views, wants_triangulation: true, ..wish(probe().1) };
-    let (around, painted) = fulfilled(&mut painter(), &wish);
+    let wish = Wish { views, wants_triangulation: true, ..wish(&source, probe(&source).1) };
+    let (around, painted) = fulfilled(&mut painter(&source), &wish);
     let drawn = |index: usize| painted[&wish.views[index]].result.as_ref();
     let used = |index: usize| &drawn(index).unwrap().facts.used;
     assert!(used(0) == used(1) && used(0) == used(2) && used(0).len() > 1);
@@ -197,10 +208,12 @@ fn origins_and_trust_are_of_the_same_picture_and_a_simulated_one_has_none() {
 
 #[test]
 fn of_many_wishes_the_newest_is_fulfilled() {
-    let mut painter = painter();
-    let poses = (0..200).map(|step| CameraPose { yaw_rad: 0.001 * f64::from(step), ..probe().1 });
-    let wishes: Vec<Wish> =
-        poses.map(|pose| Wish { views: vec![View::picture(PictureKind::Blend)], ..wish(pose) }).collect();
+    let source = source();
+    let mut painter = painter(&source);
+    let poses = (0..200).map(|step| CameraPose { yaw_rad: 0.001 * f64::from(step), ..probe(&source).1 });
+    let wishes: Vec<Wish> = poses
+        .map(|pose| Wish { views: vec![View::picture(PictureKind::Blend)], ..wish(&source, pose) })
+        .collect();
     wishes.iter().for_each(|wish| painter.wish(wish.clone()));
     let (start, mut answers) = (Instant::now(), 0);
     loop {
@@ -223,7 +236,7 @@ fn of_many_wishes_the_newest_is_fulfilled() {
 fn the_thread_ends_with_the_panel() {
     let source = Arc::new(built(walk()));
     let mut painter = Painter::spawn(&Context::default(), source.clone(), None);
-    painter.wish(wish(probe().1));
+    painter.wish(wish(&source, probe(&source).1));
     drop(painter);
     let start = Instant::now();
     while Arc::strong_count(&source) > 1 {
@@ -234,12 +247,13 @@ fn the_thread_ends_with_the_panel() {
 
 #[test]
 fn a_device_that_cannot_be_opened_is_told_and_the_processor_draws() {
+    let source = source();
     let device = Device {
         name: "broken".to_owned(),
         open: Arc::new(|| Err(BackendError("no driver: install one".to_owned()))),
     };
-    let mut painter = Painter::spawn(&Context::default(), SOURCE.clone(), Some(device));
-    painter.wish(wish(probe().1));
+    let mut painter = Painter::spawn(&Context::default(), source.clone(), Some(device));
+    painter.wish(wish(&source, probe(&source).1));
     let start = Instant::now();
     let mut problem = None;
     loop {
@@ -260,7 +274,8 @@ fn a_device_that_cannot_be_opened_is_told_and_the_processor_draws() {
 
 #[test]
 fn recordings_that_cannot_be_compared_are_refused_by_name() {
-    let mut driving = Driving::new(Source::of_archive(SOURCE.archive.clone()));
+    let source = source();
+    let mut driving = Driving::new(Source::of_archive(source.archive.clone()));
     assert_eq!(driving.compare_with(&Arc::new(walk())), Ok(()));
     let mut blind = walk();
     blind.groundtruth.fill(None);
@@ -274,10 +289,14 @@ fn recordings_that_cannot_be_compared_are_refused_by_name() {
 
 #[test]
 fn the_nearest_true_picture_is_the_one_that_moves_the_picture_least() {
-    let probes = Probes::of_recording(&Arc::new(walk())).unwrap();
-    let metric = SOURCE.archive.index().metric();
-    let pose = CameraPose { yaw_rad: probe().1.yaw_rad + 0.02, ..probe().1 };
-    let near = probes.nearest(metric, pose).unwrap();
-    let distances = probes.poses().iter().map(|(_, taken)| metric.distance_px(*taken, pose));
-    assert_eq!(near.distance_px, distances.fold(f64::INFINITY, f64::min));
+    let source = source();
+    let metric = source.archive.index().metric();
+    let (frame, taken) = probe(&source);
+    let pose = CameraPose { yaw_rad: taken.yaw_rad + 0.02, ..taken };
+    let near = source.probes.as_ref().unwrap().nearest(metric, pose).unwrap();
+    assert_eq!((near.frame, near.pose), (frame, taken));
+    assert!(
+        near.distance_px > 1.0 && near.distance_px < 10.0,
+        "a fiftieth of a radian at 215 pixels a radian"
+    );
 }
