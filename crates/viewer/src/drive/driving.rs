@@ -86,7 +86,7 @@ impl Driving {
         let width = ui.available_width();
         let is_asked = egui::Panel::right("drive map")
             .default_size(0.37 * width)
-            .size_range(260.0..=(0.65 * width).max(270.0))
+            .size_range(260.0..=(0.55 * width).max(270.0))
             .show(ui, |ui| self.map_ui(ui, settings))
             .inner;
         egui::CentralPanel::default().show(ui, |ui| {

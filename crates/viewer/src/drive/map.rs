@@ -226,9 +226,7 @@ impl Map {
                 ),
             ];
             for (is_on, name, color, meaning) in boxes {
-                keep_together(ui, 120.0);
-                swatch(ui, color);
-                ui.checkbox(is_on, name).on_hover_text(meaning);
+                ui.checkbox(is_on, (swatch(color), name)).on_hover_text(meaning);
             }
         });
         ui.horizontal_wrapped(|ui| {
@@ -282,13 +280,13 @@ impl Map {
             (Counted::Counting(task), _) => task.ui(ui),
             (Counted::Done(coverage), CoverageLayer::Pictures) => {
                 ui.weak("1");
-                scale(ui, |share| shade_srgb(share.max(1.0 / most(coverage))));
+                scale(ui, |share| shade(share.max(1.0 / most(coverage))));
                 let square = 100.0 * coverage.cell_m;
                 ui.weak(format!("{:.0} in {square:.0} cm × {square:.0} cm", most(coverage)));
             }
             (Counted::Done(_), CoverageLayer::Distance) => {
                 ui.weak("0");
-                scale(ui, |share| shade_srgb(1.0 - share));
+                scale(ui, |share| shade(1.0 - share));
                 ui.weak(format!("{FAR_PX:.0} px or more, mean over all headings"));
             }
         }
@@ -357,23 +355,25 @@ impl Map {
         let color = |cell: &CoverageCell| match scene.layers.coverage {
             CoverageLayer::Off => None,
             CoverageLayer::Pictures if cell.count() == 0 => None,
-            CoverageLayer::Pictures => Some(shade_srgb(f64::from(cell.count()) / most)),
-            CoverageLayer::Distance => Some(shade_srgb(1.0 - cell.mean_distance_px() / FAR_PX)),
+            CoverageLayer::Pictures => Some(shade(f64::from(cell.count()) / most)),
+            CoverageLayer::Distance => Some(shade(1.0 - cell.mean_distance_px() / FAR_PX)),
         };
         let half = DVec2::splat(0.5 * coverage.cell_m);
         for cell in &coverage.cells {
-            if let Some([red, green, blue]) = color(cell) {
+            if let Some(color) = color(cell) {
                 let corners = [cell.middle_in_world - half, cell.middle_in_world + half]
                     .map(|corner| canvas.at(corner));
-                let rect = Rect::from_two_pos(corners[0], corners[1]).shrink(0.5);
-                canvas.painter.rect_filled(
-                    rect,
-                    1.0,
-                    Color32::from_rgb(red, green, blue).gamma_multiply(0.75),
-                );
+                let rect = Rect::from_two_pos(corners[0], corners[1]);
+                canvas.painter.rect_filled(rect, 0.0, color.gamma_multiply(0.8));
             }
         }
     }
+}
+
+/// The colour of a share of the coverage: on the dark carpet the better covered is the brighter.
+fn shade(share: f64) -> Color32 {
+    let [red, green, blue] = shade_srgb(1.0 - share);
+    Color32::from_rgb(red, green, blue)
 }
 
 fn most(coverage: &Coverage) -> f64 {
@@ -386,29 +386,24 @@ pub fn hue(number: usize) -> Color32 {
     Color32::from_rgb(red, green, blue)
 }
 
-/// Begins a new row where less room is left in this one, points.
-pub fn keep_together(ui: &mut Ui, width: f32) {
-    if ui.available_size_before_wrap().x < width {
-        ui.end_row();
-    }
-}
-
 /// A small square of a colour, in a text.
-pub fn swatch(ui: &mut Ui, color: Color32) {
-    let (rect, _) = ui.allocate_exact_size(Vec2::splat(10.0), egui::Sense::hover());
-    ui.painter().rect(rect, 2.0, color, Stroke::new(1.0, Color32::from_gray(110)), egui::StrokeKind::Inside);
+pub fn swatch(color: Color32) -> egui::Atom<'static> {
+    egui::Atom::paint(Vec2::splat(10.0), move |ui, args| {
+        let stroke = Stroke::new(1.0, Color32::from_gray(110));
+        ui.painter().rect(args.rect, 2.0, color, stroke, egui::StrokeKind::Inside);
+    })
 }
 
 /// A strip of colours.
-fn scale(ui: &mut Ui, color: impl Fn(f64) -> [u8; 3]) {
+fn scale(ui: &mut Ui, color: impl Fn(f64) -> Color32) {
     const STEPS: u32 = 24;
     let (rect, _) = ui.allocate_exact_size(vec2(96.0, 10.0), egui::Sense::hover());
     let step = rect.width() / STEPS as f32;
     for number in 0..STEPS {
-        let [red, green, blue] = color(f64::from(number) / f64::from(STEPS - 1));
+        let color = color(f64::from(number) / f64::from(STEPS - 1));
         let left = rect.left() + step * number as f32;
         let part = Rect::from_x_y_ranges(left..=left + step, rect.y_range());
-        ui.painter().rect_filled(part, 0.0, Color32::from_rgb(red, green, blue));
+        ui.painter().rect_filled(part, 0.0, color);
     }
 }
 
@@ -481,6 +476,7 @@ fn draw_triangulation(canvas: &FieldCanvas, around: &Around) {
 fn draw_neighbours(canvas: &FieldCanvas, around: &Around, poses: &[CameraPose], pose: CameraPose) {
     let from = canvas.at(pose.planar().position_in_world());
     let shown = around.natural.iter().filter(|neighbour| neighbour.weight >= LEAST_WEIGHT);
+    let mut below = 0.0;
     for neighbour in shown {
         let planar = poses[neighbour.image as usize].planar();
         let at = canvas.at(planar.position_in_world());
@@ -488,7 +484,10 @@ fn draw_neighbours(canvas: &FieldCanvas, around: &Around, poses: &[CameraPose], 
         canvas.painter.line_segment([from, at], Stroke::new(width, Color32::from_white_alpha(150)));
         mark(canvas, planar, 3.0, Color32::WHITE);
         // Away from the robot, where the lines are not.
-        let aside = (at - from).normalized() * 16.0;
+        // Those at the robot's feet one below the other.
+        let is_here = at.distance(from) < 12.0;
+        let aside = if is_here { vec2(0.0, 22.0 + below) } else { 16.0 * (at - from).normalized() };
+        below += if is_here { 14.0 } else { 0.0 };
         let text = format!("{:.0} %", 100.0 * neighbour.weight);
         let galley = canvas.painter.layout_no_wrap(text, FontId::proportional(11.0), Color32::WHITE);
         let rect = Align2::CENTER_CENTER.anchor_size(at + aside, galley.size());

@@ -11,6 +11,9 @@ mod pictures;
 mod robot;
 mod source;
 
+#[cfg(test)]
+mod tests;
+
 use std::sync::Arc;
 
 use eframe::egui::{self, Ui};

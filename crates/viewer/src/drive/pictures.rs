@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     DriveSettings,
     kind::{PictureKind, Shown, View},
-    map::{hue, keep_together, swatch},
+    map::{hue, swatch},
     painter::{Facts, Painted},
     source::NearProbe,
 };
@@ -181,7 +181,8 @@ impl Pictures {
             });
         }
         let names = [0, 1].map(|side| described(views[side], painted[side]));
-        let canvas = PictureCanvas::allocate(ui, pixels, room.max(Vec2::splat(40.0)), &names.join(" | "));
+        let name = format!("{}, {:.0} % of the width; then {}", names[0], 100.0 * *share, names[1]);
+        let canvas = PictureCanvas::allocate(ui, pixels, room.max(Vec2::splat(40.0)), &name);
         let textures = [0, 1].map(|side| match painted[side].map(|painted| &painted.result) {
             Some(Ok(drawn)) => self.texture(ui, views[side], &drawn.picture),
             _ => self.no_picture(ui),
@@ -233,7 +234,7 @@ fn shown_box(ui: &mut Ui, settings: &mut DriveSettings) {
         Shown::Trust => "how far to trust each pixel",
     };
     let name = if settings.layout == Layout::One { "Show" } else { "Show on the left" };
-    let label = ui.label(name);
+    let label = ui.add(egui::Label::new(name).extend());
     let chosen = ComboBox::from_id_salt("shown").width(180.0).selected_text(words(settings.shown));
     let chosen = chosen.show_ui(ui, |ui| {
         for shown in [Shown::Picture, Shown::Origins, Shown::Trust] {
@@ -329,17 +330,21 @@ fn legend_ui(ui: &mut Ui, view: View, gallery: &Gallery) {
             ui.weak("made of");
             for (number, used) in drawn.facts.used.iter().enumerate() {
                 if used.share >= LEAST_SHARE {
-                    keep_together(ui, 190.0);
-                    swatch(ui, hue(number));
                     let frame = gallery.archive.images()[used.image as usize].frame_index;
                     let share = 100.0 * used.share;
-                    ui.weak(format!("frame {frame}, {:.0} px away: {share:.0} %", used.distance_px));
+                    let text = format!("frame {frame}, {:.0} px away: {share:.0} %", used.distance_px);
+                    swatched(ui, hue(number), &text);
                 }
             }
             if view.shown == Shown::Origins {
-                swatch(ui, Color32::BLACK);
-                ui.weak("no recorded picture shows it");
+                swatched(ui, Color32::BLACK, "no recorded picture shows it");
             }
         }
     });
+}
+
+/// Words behind a colour, on one row.
+fn swatched(ui: &mut Ui, color: Color32, text: &str) {
+    let row = egui::WidgetAtom::new((swatch(color), RichText::new(text).weak()));
+    ui.add(row).widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
 }

@@ -1,0 +1,291 @@
+//! The Drive panel in the whole window, by clicks, drags and keys.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+use eframe::egui::{Key, Pos2, Rect, Vec2, accesskit::Role, vec2};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT, Queryable},
+};
+use reality_sim_core::sequence::Sequence;
+use reality_sim_db::{Database, PoseEstimate, PoseSource};
+use reality_sim_viewer::{ViewerApp, ViewerOptions};
+use tempfile::TempDir;
+
+type Window = Harness<'static, ViewerApp>;
+
+/// Far more than any of this takes.
+const LIMIT: Duration = Duration::from_secs(120);
+const SIZE: Vec2 = vec2(1280.0, 820.0);
+
+fn walk() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk")
+}
+
+fn window(open: PathBuf) -> Window {
+    let options = ViewerOptions { open, demonstration: None, devices: Vec::new() };
+    Harness::builder().with_size(SIZE).build_eframe(|cc| ViewerApp::new(cc, options))
+}
+
+/// A database of the demonstration walk with all its pictures.
+fn database(folder: &Path) -> PathBuf {
+    let sequence = Sequence::open(&walk()).unwrap();
+    let path = folder.join("walk.db");
+    let poses: Vec<_> = sequence.groundtruth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
+    let mut database = Database::create_or_open(&path).unwrap();
+    database.ingest(&sequence, &poses, &PoseSource::GroundTruth, |_| {}).unwrap();
+    path
+}
+
+fn wait(window: &mut Window, until: impl Fn(&Window) -> bool) {
+    let start = Instant::now();
+    loop {
+        window.step();
+        if until(window) {
+            return;
+        }
+        assert!(start.elapsed() < LIMIT, "{:#?}", window.root());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn wait_for(window: &mut Window, words: &str) {
+    wait(window, |window| window.query_all_by_label_contains(words).next().is_some());
+}
+
+/// The window with a database, when the first picture has come.
+fn driving() -> (Window, TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = window(database(folder.path()));
+    wait_for(&mut window, "auto at x -1.79 m");
+    (window, folder)
+}
+
+/// Chooses from a list.
+fn pick(window: &mut Window, list: &str, what: &str) {
+    window.get_by_role_and_label(Role::ComboBox, list).click();
+    window.run_steps(4);
+    window.get_by_role_and_label(Role::Button, what).click();
+    window.run_steps(4);
+}
+
+fn click(window: &mut Window, label: &str) {
+    window.get_by_label(label).click();
+    window.run_steps(2);
+}
+
+/// A number of the robot's pose as it is shown.
+fn number(window: &Window, name: &str) -> f64 {
+    let node = window.get_by_role_and_label(Role::SpinButton, name);
+    node.accesskit_node().numeric_value().unwrap()
+}
+
+/// Where the field is on the screen, and points for a metre: with a metre around the carpet.
+fn field(window: &Window) -> (Rect, f64) {
+    let rect = window.get_by_label("the field from above").rect();
+    let extent = 2.0 * (Sequence::open(&walk()).unwrap().field.carpet_half_extent_m() + 1.0);
+    let scale = (f64::from(rect.width()) / extent.x).min(f64::from(rect.height()) / extent.y);
+    (rect, scale)
+}
+
+/// Where a place on the field is on the screen.
+fn on_screen(window: &Window, x_m: f64, y_m: f64) -> Pos2 {
+    let (rect, scale) = field(window);
+    rect.center() + vec2((scale * x_m) as f32, (-scale * y_m) as f32)
+}
+
+fn drag(window: &mut Window, places: &[Pos2]) {
+    window.hover_at(places[0]);
+    window.step();
+    window.drag_at(places[0]);
+    window.step();
+    for &place in &places[1..] {
+        window.hover_at(place);
+        window.step();
+    }
+    window.drop_at(places[places.len() - 1]);
+    window.step();
+}
+
+#[test]
+fn the_robot_dragged_goes_with_the_mouse_and_another_picture_comes() {
+    let (mut window, _folder) = driving();
+    let (x, y) = (number(&window, "x"), number(&window, "y"));
+    let from = on_screen(&window, x, y);
+    drag(&mut window, &[from, from + vec2(20.0, -10.0), from + vec2(40.0, -30.0)]);
+    let (_, scale) = field(&window);
+    assert!((number(&window, "x") - x - 40.0 / scale).abs() < 0.02, "{}", number(&window, "x"));
+    assert!((number(&window, "y") - y - 30.0 / scale).abs() < 0.02, "{}", number(&window, "y"));
+    let words = format!("auto at x {:.2} m, y {:.2} m", number(&window, "x"), number(&window, "y"));
+    wait_for(&mut window, &words);
+}
+
+#[test]
+fn the_arrows_tip_turns_the_robot_and_leaves_it_where_it_is() {
+    let (mut window, _folder) = driving();
+    let (x, y, yaw) = (number(&window, "x"), number(&window, "y"), number(&window, "yaw").to_radians());
+    let tail = on_screen(&window, x, y);
+    let rect = field(&window).0;
+    let length = (0.1 * rect.width().min(rect.height())).clamp(18.0, 60.0);
+    let tip = tail + length * vec2(yaw.cos() as f32, -yaw.sin() as f32);
+    drag(&mut window, &[tip, tail + vec2(0.0, -40.0), tail + vec2(0.0, -80.0)]);
+    assert!((number(&window, "yaw") - 90.0).abs() < 1.0, "{}", number(&window, "yaw"));
+    assert!((number(&window, "x") - x).abs() < 1e-6 && (number(&window, "y") - y).abs() < 1e-6);
+    wait_for(&mut window, "yaw 90");
+}
+
+#[test]
+fn keys_walk_and_turn_and_the_picture_follows() {
+    let (mut window, _folder) = driving();
+    let (x, y, yaw) = (number(&window, "x"), number(&window, "y"), number(&window, "yaw"));
+    window.key_down(Key::W);
+    window.run_steps(6);
+    window.key_up(Key::W);
+    window.step();
+    let (dx, dy) = (number(&window, "x") - x, number(&window, "y") - y);
+    assert!(dx.hypot(dy) > 0.05, "{dx} {dy}");
+    assert!((dy.atan2(dx).to_degrees() - yaw).abs() < 1.0, "forwards is along the heading");
+    window.key_down(Key::Q);
+    window.run_steps(4);
+    window.key_up(Key::Q);
+    window.run_steps(2);
+    assert!(number(&window, "yaw") > yaw + 3.0, "to the left is counter-clockwise");
+    let still = number(&window, "yaw");
+    window.run_steps(3);
+    assert_eq!(number(&window, "yaw"), still);
+    let words = format!("auto at x {:.2} m", number(&window, "x"));
+    wait_for(&mut window, &words);
+}
+
+#[test]
+fn every_method_gives_its_picture_and_tells_where_each_pixel_came_from() {
+    let (mut window, _folder) = driving();
+    click(&mut window, "One");
+    for method in ["nearest", "quadratic", "plane", "blend", "simulated"] {
+        pick(&mut window, "Picture", method);
+        wait_for(&mut window, &format!("{method} at x"));
+    }
+    pick(&mut window, "Picture", "blend");
+    pick(&mut window, "Show", "where each pixel came from");
+    wait_for(&mut window, "blend, where each pixel came from, at x");
+    wait_for(&mut window, "no recorded picture shows it");
+    wait_for(&mut window, "frame 0, ");
+    pick(&mut window, "Show", "how far to trust each pixel");
+    wait_for(&mut window, "white: fully");
+}
+
+#[test]
+fn all_methods_are_seen_at_once_and_a_database_alone_has_no_true_picture() {
+    let (mut window, _folder) = driving();
+    click(&mut window, "All methods");
+    for method in ["nearest", "quadratic", "plane", "blend", "simulated"] {
+        wait_for(&mut window, &format!("{method} at x"));
+    }
+    wait_for(&mut window, "No true picture is known");
+    click(&mut window, "Compare with a recording…");
+    wait_for(&mut window, "Compare with the pictures of a recording");
+}
+
+#[test]
+fn where_nothing_was_recorded_the_pane_says_so_until_best_effort_is_asked_for() {
+    let (mut window, _folder) = driving();
+    // Into the corner, and round: nobody has looked out there.
+    let (from, to) =
+        (on_screen(&window, number(&window, "x"), number(&window, "y")), on_screen(&window, 3.4, -2.4));
+    drag(&mut window, &[from, from + vec2(20.0, 0.0), to]);
+    wait_for(&mut window, "or ask for the best effort");
+    click(&mut window, "Best effort");
+    wait_for(&mut window, "auto at x 3.");
+}
+
+#[test]
+fn the_line_of_a_wipe_is_dragged() {
+    let (mut window, _folder) = driving();
+    click(&mut window, "Wipe");
+    wait_for(&mut window, "50 % of the width; then simulated at x");
+    let rect = window.get_by_label_contains("% of the width").rect();
+    let to = rect.left_center() + vec2(0.25 * rect.width(), 0.0);
+    drag(&mut window, &[rect.center(), rect.center() - vec2(20.0, 0.0), to]);
+    wait_for(&mut window, "25 % of the width");
+}
+
+#[test]
+fn a_path_is_drawn_followed_stopped_and_cleared() {
+    let (mut window, _folder) = driving();
+    let at = |window: &Window, x, y| on_screen(window, x, y);
+    click(&mut window, "Draw a path");
+    let path: Vec<Pos2> = (0..=10).map(|step| at(&window, -1.0 + 0.1 * f64::from(step), 1.0)).collect();
+    drag(&mut window, &path);
+    window.key_press(Key::Space);
+    window.run_steps(4);
+    assert!(window.query_by_label("Stop").is_some(), "it follows");
+    assert!((number(&window, "y") - 1.0).abs() < 0.05 && number(&window, "yaw").abs() < 5.0);
+    let x = number(&window, "x");
+    assert!(x > -1.05 && x < 0.0, "{x}");
+    click(&mut window, "Stop");
+    let x = number(&window, "x");
+    window.run_steps(4);
+    assert_eq!(number(&window, "x"), x);
+    click(&mut window, "Follow the path");
+    wait(&mut window, |window| window.query_by_label("Follow the path").is_some());
+    assert!(number(&window, "x").abs() < 0.05, "to its end: {}", number(&window, "x"));
+    click(&mut window, "Clear the path");
+    assert!(window.get_by_label("Follow the path").accesskit_node().is_disabled());
+}
+
+#[test]
+fn layers_and_coverage_are_switched_on() {
+    let (mut window, _folder) = driving();
+    for layer in ["neighbours", "triangulation", "recorded"] {
+        click(&mut window, layer);
+    }
+    pick(&mut window, "Coverage", "pictures taken there");
+    wait_for(&mut window, "in 25 cm × 25 cm");
+    pick(&mut window, "Coverage", "pixels to the nearest picture");
+    wait_for(&mut window, "300 px or more");
+}
+
+#[test]
+fn a_recording_becomes_a_database_that_can_be_cancelled_and_its_true_pictures_are_reached() {
+    let mut window = window(walk());
+    wait(&mut window, |window| window.query_by_label("Drive").is_some());
+    window.get_by_label("Drive").click();
+    wait(&mut window, |window| window.query_by_label("Cancel").is_some());
+    click(&mut window, "Cancel");
+    wait(&mut window, |window| window.query_by_label("Build the database").is_some());
+    click(&mut window, "Build the database");
+    wait_for(&mut window, "auto at x");
+    pick(&mut window, "Right", "true picture");
+    wait_for(&mut window, "No true picture was taken within 20 px");
+    click(&mut window, "Go there");
+    wait_for(&mut window, "true picture at x");
+    wait_for(&mut window, "PSNR");
+}
+
+#[test]
+fn a_recording_without_ground_truth_says_what_can_be_done() {
+    let folder = tempfile::tempdir().unwrap();
+    let copy = |name: &str, change: fn(String) -> String| {
+        let text = fs::read_to_string(walk().join(name)).unwrap();
+        fs::write(folder.path().join(name), change(text)).unwrap();
+    };
+    copy("sequence.toml", |text| text.replace("groundtruth = \"groundtruth.tum\"\n", ""));
+    copy("camera.toml", |text| text);
+    copy("field.toml", |text| text);
+    copy("frames.csv", |text| text.lines().take(5).map(|line| format!("{line}\n")).collect());
+    fs::create_dir(folder.path().join("images")).unwrap();
+    for frame in 0..4 {
+        let name = format!("images/{frame:06}.jpg");
+        fs::copy(walk().join(&name), folder.path().join(&name)).unwrap();
+    }
+    let mut window = window(folder.path().to_path_buf());
+    wait(&mut window, |window| window.query_by_label("Drive").is_some());
+    click(&mut window, "Drive");
+    wait_for(&mut window, "It has no ground truth");
+    click(&mut window, "Find the poses and build");
+    wait_for(&mut window, "auto at x");
+}
