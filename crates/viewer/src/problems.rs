@@ -32,7 +32,7 @@ impl Problems {
                     if ui.button("Copy").clicked() {
                         ui.copy_text(message.clone());
                     }
-                    ui.label(RichText::new("⚠").color(ui.visuals().error_fg_color));
+                    ui.label(RichText::new("!").strong().color(ui.visuals().error_fg_color));
                     ui.add(egui::Label::new(message).wrap());
                     is_kept
                 };
