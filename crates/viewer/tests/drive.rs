@@ -1,5 +1,7 @@
 //! The Drive panel in the whole window, by clicks, drags and keys.
 
+#![allow(clippy::unwrap_used)]
+
 use std::{
     fs,
     path::{Path, PathBuf},
