@@ -1,6 +1,6 @@
 //! The Drive panel in the whole window, by clicks, drags and keys.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use std::{
     fs,
