@@ -1,12 +1,14 @@
 //! The Drive panel in the whole window, by clicks, drags and keys.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+
 use std::{
     fs,
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
 
-use eframe::egui::{Key, Pos2, Rect, Vec2, accesskit::Role, vec2};
+use eframe::egui::{Key, Pos2, Rect, Vec2, ViewportId, accesskit::Role, vec2};
 use egui_kittest::{
     Harness,
     kittest::{NodeT, Queryable},
@@ -264,6 +266,32 @@ fn a_recording_becomes_a_database_that_can_be_cancelled_and_its_true_pictures_ar
     click(&mut window, "Go there");
     wait_for(&mut window, "true picture at x");
     wait_for(&mut window, "PSNR");
+}
+
+#[test]
+fn at_rest_nothing_is_drawn_anew() {
+    let (mut window, _folder) = driving();
+    click(&mut window, "triangulation");
+    window.remove_cursor();
+    let delay = |window: &Window| window.output().viewport_output[&ViewportId::ROOT].repaint_delay;
+    // Pictures come and animations end; after that nobody asks for anything.
+    wait(&mut window, |window| delay(window) == Duration::MAX);
+    std::thread::sleep(Duration::from_millis(300));
+    window.run_steps(3);
+    for _ in 0..3 {
+        window.step();
+        assert_eq!(delay(&window), Duration::MAX);
+    }
+}
+
+#[test]
+fn a_file_that_is_no_database_is_named_with_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("broken.db");
+    fs::write(&path, "not a database at all, but long enough to be looked at").unwrap();
+    let mut window = window(path);
+    wait_for(&mut window, "broken.db: ");
+    assert!(window.query_by_label("Drive").is_none());
 }
 
 #[test]

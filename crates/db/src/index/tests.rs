@@ -108,7 +108,7 @@ proptest! {
         let (mut sum, mut count) = (0.0, 0);
         for v in (7..480).step_by(5) {
             for u in (3..640).step_by(5) {
-                let pixel = glam::DVec2::new(f64::from(u), f64::from(v));
+                let pixel = DVec2::new(f64::from(u), f64::from(v));
                 let ray = pose.rotation_world_from_camera() * camera.unproject(pixel).unwrap();
                 let ground_m = if ray.z < 0.0 { -pose.height_m / ray.z } else { f64::INFINITY };
                 let point = pose.position_in_world() + ground_m.min(background_m) * ray;
@@ -133,10 +133,10 @@ proptest! {
         let mean = |pose: CameraPose| {
             let found = index.natural(pose).unwrap();
             let place = |of: fn(&CameraPose) -> f64| found.iter().map(|n| n.weight * of(&index.poses()[n.image as usize])).sum::<f64>();
-            glam::DVec2::new(place(|pose| pose.x_m), place(|pose| pose.y_m))
+            DVec2::new(place(|pose| pose.x_m), place(|pose| pose.y_m))
         };
         let at = mean(pose);
-        prop_assert!(at.distance(glam::DVec2::new(x, y)) < 0.01, "{at}");
+        prop_assert!(at.distance(DVec2::new(x, y)) < 0.01, "{at}");
         let moved = CameraPose { yaw_rad: yaw + 1e-3, x_m: x + 1e-3, ..pose };
         prop_assert!(mean(moved).distance(at) < 0.01);
     }
@@ -146,9 +146,9 @@ proptest! {
 /// there are at most 3 n - 6.
 #[test]
 fn the_triangulation_of_a_heading_is_that_of_the_places_of_its_sector() {
-    let places: Vec<glam::DVec2> = (0..60)
+    let places: Vec<DVec2> = (0..60)
         .map(|i| [0.754877, 0.569840].map(|step| (f64::from(i) * step).fract()))
-        .map(|[a, b]| glam::DVec2::new(6.0 * a - 3.0, 4.0 * b - 2.0))
+        .map(|[a, b]| DVec2::new(6.0 * a - 3.0, 4.0 * b - 2.0))
         .collect();
     let usual = CameraPose { height_m: 0.52, pitch_rad: 0.42, ..Default::default() };
     let looking = |yaw_rad: f64| {
@@ -158,7 +158,7 @@ fn the_triangulation_of_a_heading_is_that_of_the_places_of_its_sector() {
     let [only] = &index.triangulations(0.2)[..] else { panic!("the other sector is empty") };
     assert!((only.share - 1.0).abs() < 1e-12);
     let edges = &only.edges_in_world;
-    let is_joined = |a: glam::DVec2, b: glam::DVec2| {
+    let is_joined = |a: DVec2, b: DVec2| {
         edges.iter().any(|edge| {
             let is = |from: usize, to: usize| edge[from].distance(a) < 1e-9 && edge[to].distance(b) < 1e-9;
             is(0, 1) || is(1, 0)
@@ -166,13 +166,13 @@ fn the_triangulation_of_a_heading_is_that_of_the_places_of_its_sector() {
     };
     for (i, &a) in places.iter().enumerate() {
         for &b in &places[i + 1..] {
-            let is_inside = |c: &&glam::DVec2| **c != a && **c != b && (a - **c).dot(b - **c) < 0.0;
-            let is_empty = places.iter().find(is_inside).is_none();
+            let is_inside = |c: &&DVec2| **c != a && **c != b && (a - **c).dot(b - **c) < 0.0;
+            let is_empty = !places.iter().any(|c| is_inside(&c));
             assert!(!is_empty || is_joined(a, b), "{a} and {b}");
         }
     }
-    let side = |a: glam::DVec2, b: glam::DVec2, c: glam::DVec2| (b - a).perp_dot(c - a);
-    let cross = |[a, b]: [glam::DVec2; 2], [c, d]: [glam::DVec2; 2]| {
+    let side = |a: DVec2, b: DVec2, c: DVec2| (b - a).perp_dot(c - a);
+    let cross = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| {
         side(a, b, c) * side(a, b, d) < -1e-12 && side(c, d, a) * side(c, d, b) < -1e-12
     };
     assert!(edges.iter().all(|&a| edges.iter().all(|&b| !cross(a, b))));

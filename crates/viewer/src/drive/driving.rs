@@ -7,10 +7,10 @@ use reality_sim_core::{pose::CameraPose, sequence::Sequence};
 
 use super::{
     DriveSettings,
-    kind::{Shown, View},
+    kind::{PictureKind, View},
     map::{Map, Scene},
     painter::{Answer, Around, Painted, Painter, Wish},
-    pictures::{Gallery, Pictures},
+    pictures::{Gallery, Layout, Pictures},
     robot::Robot,
     source::{Probes, Source},
 };
@@ -143,11 +143,11 @@ impl Driving {
     /// The field, and below it what it shows.
     fn map_ui(&mut self, ui: &mut Ui, settings: &mut DriveSettings) -> bool {
         self.pose_ui(ui);
-        let left = View {
-            kind: settings.left,
-            shown: if settings.layout == super::Layout::All { Shown::Picture } else { settings.shown },
+        let made = match settings.layout {
+            Layout::All => View::picture(PictureKind::Blend),
+            _ => View { kind: settings.left, shown: settings.shown },
         };
-        let drawn = self.painted.get(&left).and_then(|painted| painted.result.as_ref().ok());
+        let drawn = self.painted.get(&made).and_then(|painted| painted.result.as_ref().ok());
         let scene = Scene {
             source: &self.source,
             layers: settings.layers,

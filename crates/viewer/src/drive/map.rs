@@ -162,6 +162,7 @@ impl Map {
         draw_known(&canvas, scene, robot.pose());
         draw_path(&canvas, robot.path());
         canvas.arrow(robot.pose().planar(), colors::POSE);
+        write_pointer(&canvas);
     }
 
     /// Drawing, following and forgetting a path.
@@ -493,6 +494,17 @@ fn draw_neighbours(canvas: &FieldCanvas, around: &Around, poses: &[CameraPose], 
         let rect = Align2::CENTER_CENTER.anchor_size(at + aside, galley.size());
         canvas.painter.rect_filled(rect.expand(1.5), 2.0, Color32::from_black_alpha(170));
         canvas.painter.galley(rect.min, galley, Color32::WHITE);
+    }
+}
+
+/// The place under the mouse, in numbers.
+fn write_pointer(canvas: &FieldCanvas) {
+    if let Some(pointer) = canvas.response.hover_pos() {
+        let place = canvas.in_world(pointer);
+        let text = format!("x {:.2} m, y {:.2} m", place.x, place.y);
+        let corner = canvas.rect.right_bottom() - vec2(10.0, 10.0);
+        let font = FontId::proportional(11.0);
+        canvas.painter.text(corner, Align2::RIGHT_BOTTOM, text, font, colors::LINE);
     }
 }
 

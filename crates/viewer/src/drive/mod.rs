@@ -114,8 +114,6 @@ impl DrivePanel {
             && let Some(source) = recorded.ui(ui, devices, problems)
         {
             self.0 = State::Driving(Box::new(Driving::new(source)));
-            // What was shown in this frame is no longer so.
-            ui.request_repaint();
         }
         match &mut self.0 {
             State::Recorded(_) => false,

@@ -91,6 +91,8 @@ impl Pictures {
                     kind_box(ui, "Right", &mut settings.right);
                 }
             }
+        });
+        ui.horizontal_wrapped(|ui| {
             if settings.layout != Layout::All {
                 shown_box(ui, settings);
             }
@@ -251,7 +253,8 @@ fn head(ui: &mut Ui, view: View, painted: Option<&Painted>) {
         ui.label(RichText::new(view.kind.name()).strong()).on_hover_text(view.kind.meaning());
         if let Some(facts) = facts {
             let text = facts_in_words(view.kind, facts);
-            ui.add(egui::Label::new(RichText::new(&text).weak()).truncate()).on_hover_text(text);
+            ui.add(egui::Label::new(RichText::new(&text).weak()).truncate())
+                .on_hover_text(format!("{text}\n{FACTS_MEAN}"));
         }
     });
 }

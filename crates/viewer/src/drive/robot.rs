@@ -47,8 +47,11 @@ impl Robot {
         self.pose
     }
 
-    /// Puts it somewhere, as near as it may go.
+    /// Puts it somewhere, as near as it may go; nowhere that is not made of numbers.
     pub fn place(&mut self, pose: CameraPose) {
+        if !pose.is_finite() {
+            return;
+        }
         let place = pose.planar().position_in_world().clamp(-self.reach_m, self.reach_m);
         self.pose = pose.with_planar(Pose2::new(place.x, place.y, pose.yaw_rad));
     }
@@ -190,6 +193,8 @@ mod tests {
         let pose = robot.pose();
         let half = FieldDimensions::preset("humanoid-kidsize-2010").unwrap().carpet_half_extent_m();
         assert!((pose.x_m - half.x - 1.0).abs() < 1e-9 && (pose.y_m + half.y + 1.0).abs() < 1e-9, "{pose:?}");
+        robot.take(CameraPose { yaw_rad: f64::NAN, ..pose });
+        assert_eq!(robot.pose(), pose);
         robot.reset();
         assert_eq!(robot.pose(), self::robot().pose());
     }
