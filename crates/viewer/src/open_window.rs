@@ -43,7 +43,7 @@ impl OpenWindow {
 
     /// Shows the window while it is open.
     pub fn ui(&mut self, ui: &Ui, recent: &[PathBuf], demonstration: Option<&Path>) -> Option<Chosen> {
-        let from_dialog = self.from_dialog();
+        let from_dialog = self.take_from_dialog();
         if !self.is_open {
             return None;
         }
@@ -109,7 +109,7 @@ impl OpenWindow {
         chosen
     }
 
-    fn from_dialog(&mut self) -> Option<PathBuf> {
+    fn take_from_dialog(&mut self) -> Option<PathBuf> {
         let outcome = self.dialog.as_ref()?.poll()?;
         self.dialog = None;
         let path = match outcome {

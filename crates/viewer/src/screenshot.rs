@@ -7,7 +7,7 @@ use std::{
     sync::mpsc,
 };
 
-use eframe::egui::{ColorImage, Context};
+use eframe::egui::{Color32, ColorImage, Context};
 use image::RgbaImage;
 
 /// A picture that was asked for.
@@ -52,7 +52,7 @@ fn save_here(picture: &ColorImage) -> Result<PathBuf, String> {
 
 /// Writes a picture to a folder, under a name that no file has.
 fn save(picture: &ColorImage, folder: &Path) -> Result<PathBuf, String> {
-    let bytes = picture.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
+    let bytes = picture.pixels.iter().flat_map(Color32::to_array).collect();
     let [width, height] = picture.size.map(|pixels| pixels as u32);
     let image = RgbaImage::from_raw(width, height, bytes).ok_or("the window gave an incomplete picture")?;
     let image = image::DynamicImage::from(image).into_rgb8();
@@ -88,7 +88,6 @@ fn free_name(folder: &Path) -> io::Result<PathBuf> {
 mod tests {
     use std::fs;
 
-    use eframe::egui::Color32;
     use tempfile::tempdir;
 
     use super::*;

@@ -414,6 +414,21 @@ fn settings_that_cannot_be_read_are_the_defaults() {
 }
 
 #[test]
+fn a_screenshot_goes_to_the_current_folder_and_the_window_says_where() {
+    let folder = tempdir().unwrap();
+    // No other test looks at the current folder: their paths are absolute.
+    std::env::set_current_dir(folder.path()).unwrap();
+    let mut viewer = demonstration();
+    click(&mut viewer, "Screenshot");
+    until(&mut viewer, "saved", |viewer| !texts(viewer, "saved ").is_empty());
+    let picture = image::open(folder.path().join("reality-sim-1.png")).unwrap();
+    assert_eq!((picture.width(), picture.height()), (1280, 820));
+    press(&mut viewer, Modifiers::COMMAND, Key::P);
+    until(&mut viewer, "saved again", |viewer| !texts(viewer, "reality-sim-2.png").is_empty());
+    viewer.run();
+}
+
+#[test]
 fn nothing_is_drawn_while_nothing_happens() {
     let mut viewer = demonstration();
     // Panics where frame after frame asks for another one.
