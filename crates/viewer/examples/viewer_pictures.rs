@@ -1,6 +1,8 @@
 //! Pictures of the viewer for the README, drawn without a window: `cargo run --release -p reality-sim-viewer --example
 //! viewer_pictures` writes docs/images/viewer_*.jpg.
 
+#![allow(clippy::print_stdout, reason = "says what it wrote")]
+
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
@@ -8,7 +10,7 @@ use std::{
     time::Duration,
 };
 
-use eframe::egui::Key;
+use eframe::egui::{Key, Modifiers};
 use egui_kittest::{Harness, kittest::Queryable};
 use image::{DynamicImage, codecs::jpeg::JpegEncoder};
 use reality_sim_core::backend::CpuBackend;
@@ -31,6 +33,22 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     until(&mut window, "picture 30", |window| window.query_by_label_contains("picture 30 of").is_some());
     window.key_press(Key::Space);
     save(&mut window, &images.join("viewer_walk.jpg"))?;
+
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Num2);
+    until(&mut window, "the database", |window| window.query_by_label_contains("auto at x").is_some());
+    for label in ["Wipe", "neighbours", "triangulation"] {
+        window.get_by_label(label).click();
+        window.run_steps(2);
+    }
+    let seconds_pressed = 3.0;
+    window.key_down(Key::W);
+    window.run_steps((seconds_pressed / window.input().predicted_dt) as usize);
+    window.key_up(Key::W);
+    for _ in 0..60 {
+        window.step();
+        thread::sleep(PAUSE);
+    }
+    save(&mut window, &images.join("viewer_drive.jpg"))?;
     Ok(())
 }
 

@@ -14,5 +14,7 @@ pub const PARTICLE: Color32 = Color32::from_rgb(255, 150, 30);
 pub const ODOMETRY: Color32 = Color32::from_rgb(190, 190, 200);
 /// The carpet from above.
 pub const CARPET: Color32 = Color32::from_rgb(18, 56, 36);
+/// What is beside the carpet.
+pub const BESIDE: Color32 = Color32::from_rgb(24, 38, 32);
 /// The carpet's lines from above.
 pub const LINE: Color32 = Color32::from_rgb(225, 235, 228);

@@ -177,7 +177,7 @@ impl FieldCanvas {
 
     fn draw_field(&self, field: &FieldDimensions, half: DVec2) {
         let carpet = Rect::from_two_pos(self.at(-half), self.at(half));
-        self.painter.rect_filled(self.rect, 0.0, colors::CARPET.gamma_multiply(0.55));
+        self.painter.rect_filled(self.rect, 0.0, colors::BESIDE);
         self.painter.rect_filled(carpet, 0.0, colors::CARPET);
         let stroke = Stroke::new(self.points(field.line_width_m).max(1.0), colors::LINE);
         for curve in field.curves() {

@@ -111,12 +111,6 @@ impl PictureCanvas {
         self.rect.min + self.scale * (vec2(pixel.x as f32, pixel.y as f32) + Vec2::splat(0.5))
     }
 
-    /// Which place in the picture is there on the screen.
-    pub fn pixel(&self, position: Pos2) -> DVec2 {
-        let offset = (position - self.rect.min) / self.scale - Vec2::splat(0.5);
-        DVec2::new(f64::from(offset.x), f64::from(offset.y))
-    }
-
     /// Draws polylines given in pixels, with a dark rim.
     pub fn polylines(&self, polylines: &[Vec<DVec2>], color: Color32) {
         for stroke in [Stroke::new(3.5, Color32::from_black_alpha(90)), Stroke::new(1.6, color)] {

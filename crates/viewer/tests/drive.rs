@@ -2,36 +2,23 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
+mod common;
+
 use std::{
     fs,
     path::{Path, PathBuf},
-    time::{Duration, Instant},
+    time::Duration,
 };
 
-use eframe::egui::{Key, Pos2, Rect, Vec2, ViewportId, accesskit::Role, vec2};
-use egui_kittest::{
-    Harness,
-    kittest::{NodeT, Queryable},
-};
+use eframe::egui::{Key, Pos2, Rect, ViewportId, accesskit::Role, vec2};
+use egui_kittest::kittest::{NodeT, Queryable};
 use reality_sim_core::sequence::Sequence;
 use reality_sim_db::{Database, PoseEstimate, PoseSource};
-use reality_sim_viewer::{ViewerApp, ViewerOptions};
 use tempfile::TempDir;
 
-type Window = Harness<'static, ViewerApp>;
+use common::{choose, click, drag, until, until_label, until_part, viewer, walk};
 
-/// Far more than any of this takes.
-const LIMIT: Duration = Duration::from_secs(120);
-const SIZE: Vec2 = vec2(1280.0, 820.0);
-
-fn walk() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk")
-}
-
-fn window(open: PathBuf) -> Window {
-    let options = ViewerOptions { open, demonstration: None, devices: Vec::new() };
-    Harness::builder().with_size(SIZE).build_eframe(|cc| ViewerApp::new(cc, options))
-}
+type Window = common::Viewer<'static>;
 
 /// A database of the demonstration walk with all its pictures.
 fn database(folder: &Path) -> PathBuf {
@@ -43,41 +30,12 @@ fn database(folder: &Path) -> PathBuf {
     path
 }
 
-fn wait(window: &mut Window, until: impl Fn(&Window) -> bool) {
-    let start = Instant::now();
-    loop {
-        window.step();
-        if until(window) {
-            return;
-        }
-        assert!(start.elapsed() < LIMIT, "{:#?}", window.root());
-        std::thread::sleep(Duration::from_millis(5));
-    }
-}
-
-fn wait_for(window: &mut Window, words: &str) {
-    wait(window, |window| window.query_all_by_label_contains(words).next().is_some());
-}
-
 /// The window with a database, when the first picture has come.
 fn driving() -> (Window, TempDir) {
     let folder = tempfile::tempdir().unwrap();
-    let mut window = window(database(folder.path()));
-    wait_for(&mut window, "auto at x -1.79 m");
+    let mut window = viewer(&database(folder.path()));
+    until_part(&mut window, "auto at x -1.79 m");
     (window, folder)
-}
-
-/// Chooses from a list.
-fn pick(window: &mut Window, list: &str, what: &str) {
-    window.get_by_role_and_label(Role::ComboBox, list).click();
-    window.run_steps(4);
-    window.get_by_role_and_label(Role::Button, what).click();
-    window.run_steps(4);
-}
-
-fn click(window: &mut Window, label: &str) {
-    window.get_by_label(label).click();
-    window.run_steps(2);
 }
 
 /// A number of the robot's pose as it is shown.
@@ -100,19 +58,6 @@ fn on_screen(window: &Window, x_m: f64, y_m: f64) -> Pos2 {
     rect.center() + vec2((scale * x_m) as f32, (-scale * y_m) as f32)
 }
 
-fn drag(window: &mut Window, places: &[Pos2]) {
-    window.hover_at(places[0]);
-    window.step();
-    window.drag_at(places[0]);
-    window.step();
-    for &place in &places[1..] {
-        window.hover_at(place);
-        window.step();
-    }
-    window.drop_at(places[places.len() - 1]);
-    window.step();
-}
-
 #[test]
 fn the_robot_dragged_goes_with_the_mouse_and_another_picture_comes() {
     let (mut window, _folder) = driving();
@@ -123,7 +68,7 @@ fn the_robot_dragged_goes_with_the_mouse_and_another_picture_comes() {
     assert!((number(&window, "x") - x - 40.0 / scale).abs() < 0.02, "{}", number(&window, "x"));
     assert!((number(&window, "y") - y - 30.0 / scale).abs() < 0.02, "{}", number(&window, "y"));
     let words = format!("auto at x {:.2} m, y {:.2} m", number(&window, "x"), number(&window, "y"));
-    wait_for(&mut window, &words);
+    until_part(&mut window, &words);
 }
 
 #[test]
@@ -137,7 +82,7 @@ fn the_arrows_tip_turns_the_robot_and_leaves_it_where_it_is() {
     drag(&mut window, &[tip, tail + vec2(0.0, -40.0), tail + vec2(0.0, -80.0)]);
     assert!((number(&window, "yaw") - 90.0).abs() < 1.0, "{}", number(&window, "yaw"));
     assert!((number(&window, "x") - x).abs() < 1e-6 && (number(&window, "y") - y).abs() < 1e-6);
-    wait_for(&mut window, "yaw 90");
+    until_part(&mut window, "yaw 90");
 }
 
 #[test]
@@ -160,7 +105,7 @@ fn keys_walk_and_turn_and_the_picture_follows() {
     window.run_steps(3);
     assert_eq!(number(&window, "yaw"), still);
     let words = format!("auto at x {:.2} m", number(&window, "x"));
-    wait_for(&mut window, &words);
+    until_part(&mut window, &words);
 }
 
 #[test]
@@ -168,16 +113,16 @@ fn every_method_gives_its_picture_and_tells_where_each_pixel_came_from() {
     let (mut window, _folder) = driving();
     click(&mut window, "One");
     for method in ["nearest", "quadratic", "plane", "blend", "simulated"] {
-        pick(&mut window, "Picture", method);
-        wait_for(&mut window, &format!("{method} at x"));
+        choose(&mut window, "Picture", method);
+        until_part(&mut window, &format!("{method} at x"));
     }
-    pick(&mut window, "Picture", "blend");
-    pick(&mut window, "Show", "where each pixel came from");
-    wait_for(&mut window, "blend, where each pixel came from, at x");
-    wait_for(&mut window, "no recorded picture shows it");
-    wait_for(&mut window, "frame 0, ");
-    pick(&mut window, "Show", "how far to trust each pixel");
-    wait_for(&mut window, "white: fully");
+    choose(&mut window, "Picture", "blend");
+    choose(&mut window, "Show", "where each pixel came from");
+    until_part(&mut window, "blend, where each pixel came from, at x");
+    until_part(&mut window, "no recorded picture shows it");
+    until_part(&mut window, "frame 0, ");
+    choose(&mut window, "Show", "how far to trust each pixel");
+    until_part(&mut window, "white: fully");
 }
 
 #[test]
@@ -185,11 +130,11 @@ fn all_methods_are_seen_at_once_and_a_database_alone_has_no_true_picture() {
     let (mut window, _folder) = driving();
     click(&mut window, "All methods");
     for method in ["nearest", "quadratic", "plane", "blend", "simulated"] {
-        wait_for(&mut window, &format!("{method} at x"));
+        until_part(&mut window, &format!("{method} at x"));
     }
-    wait_for(&mut window, "No true picture is known");
+    until_part(&mut window, "No true picture is known");
     click(&mut window, "Compare with a recording…");
-    wait_for(&mut window, "Compare with the pictures of a recording");
+    until_part(&mut window, "Compare with the pictures of a recording");
 }
 
 #[test]
@@ -199,20 +144,20 @@ fn where_nothing_was_recorded_the_pane_says_so_until_best_effort_is_asked_for() 
     let (from, to) =
         (on_screen(&window, number(&window, "x"), number(&window, "y")), on_screen(&window, 3.4, -2.4));
     drag(&mut window, &[from, from + vec2(20.0, 0.0), to]);
-    wait_for(&mut window, "or ask for the best effort");
+    until_part(&mut window, "or ask for the best effort");
     click(&mut window, "Best effort");
-    wait_for(&mut window, "auto at x 3.");
+    until_part(&mut window, "auto at x 3.");
 }
 
 #[test]
 fn the_line_of_a_wipe_is_dragged() {
     let (mut window, _folder) = driving();
     click(&mut window, "Wipe");
-    wait_for(&mut window, "50 % of the width; then simulated at x");
+    until_part(&mut window, "50 % of the width; then simulated at x");
     let rect = window.get_by_label_contains("% of the width").rect();
     let to = rect.left_center() + vec2(0.25 * rect.width(), 0.0);
     drag(&mut window, &[rect.center(), rect.center() - vec2(20.0, 0.0), to]);
-    wait_for(&mut window, "25 % of the width");
+    until_part(&mut window, "25 % of the width");
 }
 
 #[test]
@@ -233,7 +178,7 @@ fn a_path_is_drawn_followed_stopped_and_cleared() {
     window.run_steps(4);
     assert_eq!(number(&window, "x"), x);
     click(&mut window, "Follow the path");
-    wait(&mut window, |window| window.query_by_label("Follow the path").is_some());
+    until_label(&mut window, "Follow the path");
     assert!(number(&window, "x").abs() < 0.05, "to its end: {}", number(&window, "x"));
     click(&mut window, "Clear the path");
     assert!(window.get_by_label("Follow the path").accesskit_node().is_disabled());
@@ -245,27 +190,27 @@ fn layers_and_coverage_are_switched_on() {
     for layer in ["neighbours", "triangulation", "recorded"] {
         click(&mut window, layer);
     }
-    pick(&mut window, "Coverage", "pictures taken there");
-    wait_for(&mut window, "in 25 cm × 25 cm");
-    pick(&mut window, "Coverage", "pixels to the nearest picture");
-    wait_for(&mut window, "300 px or more");
+    choose(&mut window, "Coverage", "pictures taken there");
+    until_part(&mut window, "in 25 cm × 25 cm");
+    choose(&mut window, "Coverage", "pixels to the nearest picture");
+    until_part(&mut window, "300 px or more");
 }
 
 #[test]
 fn a_recording_becomes_a_database_that_can_be_cancelled_and_its_true_pictures_are_reached() {
-    let mut window = window(walk());
-    wait(&mut window, |window| window.query_by_label("Drive").is_some());
+    let mut window = viewer(&walk());
+    until_label(&mut window, "Drive");
     window.get_by_label("Drive").click();
-    wait(&mut window, |window| window.query_by_label("Cancel").is_some());
+    until_label(&mut window, "Cancel");
     click(&mut window, "Cancel");
-    wait(&mut window, |window| window.query_by_label("Build the database").is_some());
+    until_label(&mut window, "Build the database");
     click(&mut window, "Build the database");
-    wait_for(&mut window, "auto at x");
-    pick(&mut window, "Right", "true picture");
-    wait_for(&mut window, "No true picture was taken within 20 px");
+    until_part(&mut window, "auto at x");
+    choose(&mut window, "Right", "true picture");
+    until_part(&mut window, "No true picture was taken within 20 px");
     click(&mut window, "Go there");
-    wait_for(&mut window, "true picture at x");
-    wait_for(&mut window, "PSNR");
+    until_part(&mut window, "true picture at x");
+    until_part(&mut window, "PSNR");
 }
 
 #[test]
@@ -273,9 +218,10 @@ fn at_rest_nothing_is_drawn_anew() {
     let (mut window, _folder) = driving();
     click(&mut window, "triangulation");
     window.remove_cursor();
-    let delay = |window: &Window| window.output().viewport_output[&ViewportId::ROOT].repaint_delay;
+    let delay =
+        |window: &common::Viewer<'_>| window.output().viewport_output[&ViewportId::ROOT].repaint_delay;
     // Pictures come and animations end; after that nobody asks for anything.
-    wait(&mut window, |window| delay(window) == Duration::MAX);
+    until(&mut window, "rest", |window| delay(window) == Duration::MAX);
     std::thread::sleep(Duration::from_millis(300));
     window.run_steps(3);
     for _ in 0..3 {
@@ -289,8 +235,8 @@ fn a_file_that_is_no_database_is_named_with_what_to_do() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("broken.db");
     fs::write(&path, "not a database at all, but long enough to be looked at").unwrap();
-    let mut window = window(path);
-    wait_for(&mut window, "broken.db: ");
+    let mut window = viewer(&path);
+    until_part(&mut window, "broken.db: ");
     assert!(window.query_by_label("Drive").is_none());
 }
 
@@ -310,10 +256,10 @@ fn a_recording_without_ground_truth_says_what_can_be_done() {
         let name = format!("images/{frame:06}.jpg");
         fs::copy(walk().join(&name), folder.path().join(&name)).unwrap();
     }
-    let mut window = window(folder.path().to_path_buf());
-    wait(&mut window, |window| window.query_by_label("Drive").is_some());
+    let mut window = viewer(folder.path());
+    until_label(&mut window, "Drive");
     click(&mut window, "Drive");
-    wait_for(&mut window, "It has no ground truth");
+    until_part(&mut window, "It has no ground truth");
     click(&mut window, "Find the poses and build");
-    wait_for(&mut window, "auto at x");
+    until_part(&mut window, "auto at x");
 }

@@ -21,8 +21,8 @@ use reality_sim_db::{Database, PoseEstimate, PoseSource};
 use tempfile::{TempDir, tempdir};
 
 use common::{
-    Viewer, click, demonstration, press, shows, texts, type_text, until, until_label, viewer, viewer_with,
-    walk,
+    SIZE, Viewer, click, demonstration, press, shows, texts, type_text, until, until_label, viewer,
+    viewer_with, walk,
 };
 
 /// A database of the walk's first pictures, in a folder of its own.
@@ -389,7 +389,7 @@ fn settings_survive_a_restart() {
     press(&mut first, Modifiers::COMMAND, Key::T);
     first.state_mut().save(&mut memory);
 
-    let mut second = viewer_with(&walk(), Some(&memory));
+    let mut second = viewer_with(&walk(), SIZE, Some(&memory));
     until_label(&mut second, "Walk");
     assert_eq!(theme(&second), "Dark");
     click(&mut second, "Open…");
@@ -406,7 +406,7 @@ fn settings_that_cannot_be_read_are_the_defaults() {
         ["", "garbage", "(theme:Purple)", "(recent:5,theme:", "()", "(theme:Dark,an_old_name:(1,2))", "\0"]
     {
         let memory = Memory(keys.iter().map(|key| (key.clone(), garbage.to_owned())).collect());
-        let mut viewer = viewer_with(&walk(), Some(&memory));
+        let mut viewer = viewer_with(&walk(), SIZE, Some(&memory));
         until_label(&mut viewer, "Walk");
         let expected = if garbage.contains("an_old_name") { "Dark" } else { "System" };
         assert_eq!(theme(&viewer), expected, "{garbage:?}");

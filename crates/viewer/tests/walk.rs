@@ -2,78 +2,38 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
+mod common;
+
 use std::{
-    path::{Path, PathBuf},
-    sync::Arc,
+    path::Path,
     thread,
     time::{Duration, Instant},
 };
 
-use eframe::egui::{Key, Pos2, Rect, Vec2};
-use egui_kittest::{Harness, SnapshotOptions, image_snapshot_options, kittest::Queryable};
+use eframe::egui::{Key, Pos2, Rect, Vec2, vec2};
+use egui_kittest::{SnapshotOptions, image_snapshot_options, kittest::Queryable};
 use image::RgbaImage;
-use reality_sim_core::backend::CpuBackend;
-use reality_sim_viewer::{Device, ViewerApp, ViewerOptions};
 
-type Window = Harness<'static, ViewerApp>;
+use common::{
+    PATIENCE, SIZE, choose, click, drag, rect_of, until, until_label, until_part, viewer_with, walk,
+};
 
-/// Longer than anything here takes, on the slowest machine.
-const PATIENCE: Duration = Duration::from_secs(120);
+type Window = common::Viewer<'static>;
 
 const POSE: [u8; 3] = [255, 45, 160];
 const TRUTH: [u8; 3] = [20, 130, 255];
 const BORDER: [u8; 3] = [255, 205, 0];
 
-fn assets() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk")
-}
-
 /// A window on the demonstration, with its first picture.
-fn window(size: [f32; 2]) -> Window {
-    window_on(&assets(), size)
+fn window() -> Window {
+    window_on(&walk(), SIZE)
 }
 
 /// A window on a recording, with its first picture.
-fn window_on(recording: &Path, size: [f32; 2]) -> Window {
-    let device = Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) };
-    let options = ViewerOptions { open: recording.to_path_buf(), demonstration: None, devices: vec![device] };
-    let builder = Harness::builder().with_size(size).with_max_steps(32);
-    let mut window = builder.wgpu().build_eframe(|cc| ViewerApp::new(cc, options));
-    until(&mut window, |window| window.query_by_label("Camera picture").is_some());
+fn window_on(recording: &Path, size: Vec2) -> Window {
+    let mut window = viewer_with(recording, size, None);
+    until_label(&mut window, "Camera picture");
     window
-}
-
-/// Lets the window and its threads work until something is so.
-fn until(window: &mut Window, is_so: impl Fn(&Window) -> bool) {
-    let begin = Instant::now();
-    loop {
-        window.step();
-        if is_so(window) {
-            return;
-        }
-        assert!(begin.elapsed() < PATIENCE, "it does not come; there is {:?}", window.root());
-        thread::sleep(Duration::from_millis(5));
-    }
-}
-
-fn until_label(window: &mut Window, label: &str) {
-    until(window, |window| window.query_by_label_contains(label).is_some());
-}
-
-fn click(window: &mut Window, label: &str) {
-    window.get_by_label(label).click();
-    window.step();
-}
-
-/// Chooses an entry of a combo box.
-fn choose(window: &mut Window, combo: &str, entry: &str) {
-    click(window, combo);
-    window.step();
-    click(window, entry);
-}
-
-fn rect_of(window: &Window, label: &str) -> Rect {
-    window.get_by_label(label).rect()
 }
 
 /// Pixels of nearly a colour in a part of the window.
@@ -105,23 +65,10 @@ fn brightness(window: &mut Window) -> f64 {
     grey.pixels().map(|pixel| f64::from(pixel.0[0])).sum::<f64>() / f64::from(grey.width() * grey.height())
 }
 
-fn drag(window: &mut Window, from: Pos2, to: Pos2) {
-    window.hover_at(from);
-    window.step();
-    window.drag_at(from);
-    window.step();
-    for step in 1..=4 {
-        window.hover_at(from + (to - from) * (step as f32 / 4.0));
-        window.step();
-    }
-    window.drop_at(to);
-    window.step();
-}
-
 #[test]
 fn the_first_picture_is_there_with_its_lines_and_nothing_moves() {
-    let mut window = window([1280.0, 820.0]);
-    until_label(&mut window, "picture 1 of 60");
+    let mut window = window();
+    until_part(&mut window, "picture 1 of 60");
     assert!(in_picture(&mut window, POSE) > 500);
     // Everything has settled: no frame is asked for until something happens.
     window.run();
@@ -130,55 +77,55 @@ fn the_first_picture_is_there_with_its_lines_and_nothing_moves() {
 
 #[test]
 fn space_plays_and_pauses_and_the_arrows_step() {
-    let mut window = window([1280.0, 820.0]);
+    let mut window = window();
     window.key_press(Key::Space);
-    until_label(&mut window, "picture 4 of 60");
+    until_part(&mut window, "picture 4 of 60");
     window.key_press(Key::Space);
-    until(&mut window, |window| window.query_by_label("Play").is_some());
+    until_label(&mut window, "Play");
     let at =
         (4..60).find(|at| window.query_by_label_contains(&format!("picture {at} of")).is_some()).unwrap();
     window.key_press(Key::ArrowRight);
-    until_label(&mut window, &format!("picture {} of 60", at + 1));
+    until_part(&mut window, &format!("picture {} of 60", at + 1));
     window.key_press(Key::ArrowLeft);
-    until_label(&mut window, &format!("picture {at} of 60"));
+    until_part(&mut window, &format!("picture {at} of 60"));
     window.key_press(Key::End);
-    until_label(&mut window, "picture 60 of 60");
+    until_part(&mut window, "picture 60 of 60");
     window.key_press(Key::Home);
-    until_label(&mut window, "picture 1 of 60");
+    until_part(&mut window, "picture 1 of 60");
 }
 
 #[test]
 fn buttons_do_what_the_keys_do() {
-    let mut window = window([1280.0, 820.0]);
+    let mut window = window();
     click(&mut window, "Next");
-    until_label(&mut window, "picture 2 of 60");
+    until_part(&mut window, "picture 2 of 60");
     click(&mut window, "Next");
-    until_label(&mut window, "picture 3 of 60");
+    until_part(&mut window, "picture 3 of 60");
     click(&mut window, "Back");
-    until_label(&mut window, "picture 2 of 60");
+    until_part(&mut window, "picture 2 of 60");
     click(&mut window, "Start");
-    until_label(&mut window, "picture 1 of 60");
+    until_part(&mut window, "picture 1 of 60");
     click(&mut window, "Play");
-    until(&mut window, |window| window.query_by_label("Pause").is_some());
-    until_label(&mut window, "picture 3 of 60");
+    until_label(&mut window, "Pause");
+    until_part(&mut window, "picture 3 of 60");
     click(&mut window, "Pause");
-    until(&mut window, |window| window.query_by_label("Play").is_some());
+    until_label(&mut window, "Play");
 }
 
 #[test]
 fn scrubbing_leads_to_the_picture_under_the_pointer() {
-    let mut window = window([1280.0, 820.0]);
+    let mut window = window();
     let slider = rect_of(&window, "Picture");
     let at = |share: f32| Pos2::new(slider.left() + share * slider.width(), slider.center().y);
-    drag(&mut window, at(0.0), at(0.5));
-    until(&mut window, |window| {
+    drag(&mut window, &[0.0, 0.2, 0.4, 0.5].map(at));
+    until(&mut window, "another picture", |window| {
         (28..=33).any(|at| window.query_by_label_contains(&format!("picture {at} of")).is_some())
     });
 }
 
 #[test]
 fn a_click_on_a_curve_leads_to_its_time() {
-    let mut window = window([1280.0, 820.0]);
+    let mut window = window();
     let label = window.get_by_label_contains("spread, cm").rect();
     let place = label.left_bottom() + Vec2::new(160.0, 80.0);
     window.hover_at(place);
@@ -186,12 +133,12 @@ fn a_click_on_a_curve_leads_to_its_time() {
     window.drag_at(place);
     window.step();
     window.drop_at(place);
-    until(&mut window, |window| window.query_by_label_contains("picture 1 of").is_none());
+    until(&mut window, "another picture", |window| window.query_by_label_contains("picture 1 of").is_none());
 }
 
 #[test]
 fn overlays_are_switched_on_and_off() {
-    let mut window = window([1280.0, 820.0]);
+    let mut window = window();
     for (label, color, is_on) in
         [("Pose found", POSE, true), ("Truth", TRUTH, true), ("Field's border", BORDER, false)]
     {
@@ -210,7 +157,7 @@ fn overlays_are_switched_on_and_off() {
 
 #[test]
 fn what_the_models_read_is_laid_over_the_picture() {
-    let mut window = window([1280.0, 820.0]);
+    let mut window = window();
     let bare = brightness(&mut window);
     let mut seen = vec![bare];
     for veil in ["blurred picture", "white-line evidence", "distances"] {
@@ -240,35 +187,36 @@ fn what_the_models_read_is_laid_over_the_picture() {
 
 #[test]
 fn another_model_and_fewer_particles_act_at_once() {
-    let mut window = window([1280.0, 820.0]);
+    let mut window = window();
     assert!(window.query_by_label("Gain").is_some() && window.query_by_label("α").is_none());
     choose(&mut window, "Model", "gauss");
-    until(&mut window, |window| window.query_by_label("α").is_some());
+    until_label(&mut window, "α");
     // A click on the number lets one type another.
     click(&mut window, "Particle count");
     window.step();
     window.get_by_label("Particle count").type_text("300");
     window.key_press(Key::Enter);
-    until(&mut window, |window| window.query_by_label("300").is_some());
-    until_label(&mut window, "picture 1 of 60");
+    until_label(&mut window, "300");
+    until_part(&mut window, "picture 1 of 60");
 }
 
 #[test]
 fn particles_dragged_away_find_back() {
-    let mut window = window([1280.0, 820.0]);
+    let mut window = window();
     click(&mut window, "Next");
-    until_label(&mut window, "picture 2 of 60");
+    until_part(&mut window, "picture 2 of 60");
     let field = rect_of(&window, "Field from above");
-    drag(&mut window, field.center(), field.center() + Vec2::new(0.25 * field.width(), 0.1 * field.height()));
-    until_label(&mut window, "not sure");
+    let away = Vec2::new(0.25 * field.width(), 0.1 * field.height());
+    drag(&mut window, &[field.center(), field.center() + 0.5 * away, field.center() + away]);
+    until_part(&mut window, "not sure");
     choose(&mut window, "Speed", "as fast as the filter");
     click(&mut window, "Play");
-    until(&mut window, |window| window.query_by_label("sure").is_some());
+    until_part(&mut window, "sure");
 }
 
 #[test]
 fn a_narrow_window_shows_picture_and_field_one_above_the_other() {
-    let window = window([640.0, 900.0]);
+    let window = window_on(&walk(), vec2(640.0, 900.0));
     let (picture, field) = (rect_of(&window, "Camera picture"), rect_of(&window, "Field from above"));
     assert!(picture.bottom() <= field.top());
     assert!(picture.width() > 150.0 && field.width() > 150.0);
@@ -277,16 +225,16 @@ fn a_narrow_window_shows_picture_and_field_one_above_the_other() {
 /// The first frames of the demonstration, without ground truth, start and odometry.
 fn bare_recording(folder: &Path, frames: usize) {
     for name in ["camera.toml", "field.toml"] {
-        std::fs::copy(assets().join(name), folder.join(name)).unwrap();
+        std::fs::copy(walk().join(name), folder.join(name)).unwrap();
     }
     let text = "name = \"bare\"\ncamera = \"camera.toml\"\nfield = \"field.toml\"\nframes = \"frames.csv\"\n";
     std::fs::write(folder.join("sequence.toml"), text).unwrap();
     std::fs::create_dir(folder.join("images")).unwrap();
-    let table = std::fs::read_to_string(assets().join("frames.csv")).unwrap();
+    let table = std::fs::read_to_string(walk().join("frames.csv")).unwrap();
     let mut bare = "timestamp_s,image,pitch_rad,roll_rad\n".to_owned();
     for line in table.lines().skip(1).take(frames) {
         let cells: Vec<&str> = line.split(',').collect();
-        std::fs::copy(assets().join(cells[1]), folder.join(cells[1])).unwrap();
+        std::fs::copy(walk().join(cells[1]), folder.join(cells[1])).unwrap();
         bare += &format!("{},{},{},{}\n", cells[0], cells[1], cells[5], cells[6]);
     }
     std::fs::write(folder.join("frames.csv"), bare).unwrap();
@@ -296,34 +244,34 @@ fn bare_recording(folder: &Path, frames: usize) {
 fn a_recording_without_truth_start_and_odometry_is_searched_and_shown_without_them() {
     let folder = tempfile::tempdir().unwrap();
     bare_recording(folder.path(), 4);
-    let mut window = window_on(folder.path(), [1280.0, 820.0]);
-    until_label(&mut window, "after a search");
+    let mut window = window_on(folder.path(), SIZE);
+    until_part(&mut window, "after a search");
     assert!(window.query_by_label("Truth").is_none());
     assert!(window.query_by_label_contains("error, cm").is_none());
     window.key_press(Key::End);
-    until_label(&mut window, "picture 4 of 4");
+    until_part(&mut window, "picture 4 of 4");
 }
 
 #[test]
 fn a_recording_of_one_picture_is_shown() {
     let folder = tempfile::tempdir().unwrap();
     bare_recording(folder.path(), 1);
-    let mut window = window_on(folder.path(), [1280.0, 820.0]);
-    until_label(&mut window, "picture 1 of 1");
+    let mut window = window_on(folder.path(), SIZE);
+    until_part(&mut window, "picture 1 of 1");
     for key in [Key::ArrowRight, Key::ArrowLeft, Key::End, Key::Home, Key::Space] {
         window.key_press(key);
         window.step();
     }
-    until(&mut window, |window| window.query_by_label("Play").is_some());
+    until_label(&mut window, "Play");
     let slider = rect_of(&window, "Picture");
-    drag(&mut window, slider.left_center(), slider.right_center());
-    until_label(&mut window, "picture 1 of 1");
+    drag(&mut window, &[slider.left_center(), slider.right_center()]);
+    until_part(&mut window, "picture 1 of 1");
 }
 
 #[test]
 fn the_panel_looks_as_it_did() {
-    let mut window = window([760.0, 520.0]);
-    until_label(&mut window, "sure");
+    let mut window = window_on(&walk(), vec2(760.0, 520.0));
+    until_part(&mut window, "sure");
     // Times differ from run to run: picture and field alone.
     let views = rect_of(&window, "Camera picture").union(rect_of(&window, "Field from above"));
     let picture = window.render().unwrap();

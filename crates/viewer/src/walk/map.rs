@@ -1,7 +1,10 @@
 //! The field from above: particles, paths, the pose found and the true one; particles can be dragged away.
 
 use eframe::egui::{Color32, CursorIcon, PointerButton, Stroke, Ui, Vec2};
-use reality_sim_core::{pose::Pose2, sequence::Sequence};
+use reality_sim_core::{
+    pose::{CameraPose, Pose2},
+    sequence::Sequence,
+};
 
 use super::{
     frame::FrameView,
@@ -83,7 +86,7 @@ impl Map {
 }
 
 fn draw_odometry(canvas: &FieldCanvas, sequence: &Sequence, frame: &FrameView, at: usize) {
-    let start = sequence.groundtruth[0].map(|truth| truth.planar()).or(sequence.start);
+    let start = sequence.groundtruth[0].map(CameraPose::planar).or(sequence.start);
     let Some(start) = start.or((at == 0).then(|| frame.record.pose.planar())) else { return };
     let path = odometry_path(sequence, start, at);
     canvas.path(path.iter().map(|pose| pose.position_in_world()), Stroke::new(1.5, colors::ODOMETRY));

@@ -57,10 +57,10 @@ fn next(player: &mut Player) -> Message {
 }
 
 /// The next frame; a problem ends the test.
-fn next_frame(player: &mut Player) -> Box<FrameView> {
+fn next_frame(player: &mut Player) -> FrameView {
     loop {
         match next(player) {
-            Message::Frame(frame) => return frame,
+            Message::Frame(frame) => return *frame,
             Message::Problem(reason) => panic!("{reason}"),
             Message::Begun | Message::Playing(_) => {}
         }
@@ -76,12 +76,12 @@ fn next_problem(player: &mut Player) -> String {
 }
 
 /// All frames until it stands still.
-fn play(player: &mut Player) -> Vec<Box<FrameView>> {
+fn play(player: &mut Player) -> Vec<FrameView> {
     player.tell(Command::Play);
     let (mut frames, mut has_played) = (Vec::new(), false);
     loop {
         match next(player) {
-            Message::Frame(frame) => frames.push(frame),
+            Message::Frame(frame) => frames.push(*frame),
             Message::Playing(is_playing) if is_playing => has_played = true,
             Message::Playing(_) if has_played => return frames,
             Message::Problem(reason) => panic!("{reason}"),

@@ -1,6 +1,7 @@
 //! The window's content, driven by clicks and keys, without a window.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+#![allow(dead_code, reason = "each test program uses some of them")]
 
 use std::{
     path::{Path, PathBuf},
@@ -11,7 +12,7 @@ use std::{
 
 use eframe::{
     Storage,
-    egui::{Event, Key, Modifiers},
+    egui::{Event, Key, Modifiers, Pos2, Rect, Vec2, accesskit::Role, vec2},
 };
 use egui_kittest::{
     Harness,
@@ -21,7 +22,9 @@ use reality_sim_core::backend::CpuBackend;
 use reality_sim_viewer::{Device, ViewerApp, ViewerOptions};
 
 /// Longer than anything takes on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(60);
+pub const PATIENCE: Duration = Duration::from_secs(120);
+/// The size of a window, points.
+pub const SIZE: Vec2 = vec2(1280.0, 820.0);
 
 /// The window's content.
 pub type Viewer<'a> = Harness<'a, ViewerApp>;
@@ -33,15 +36,15 @@ pub fn walk() -> PathBuf {
 
 /// A window that opens a path, on the processor.
 pub fn viewer<'a>(open: &Path) -> Viewer<'a> {
-    viewer_with(open, None)
+    viewer_with(open, SIZE, None)
 }
 
-/// A window that opens a path and remembers what is stored.
-pub fn viewer_with<'a>(open: &Path, storage: Option<&'a dyn Storage>) -> Viewer<'a> {
+/// A window of a size, points, that opens a path and remembers what is stored.
+pub fn viewer_with<'a>(open: &Path, size: Vec2, storage: Option<&'a dyn Storage>) -> Viewer<'a> {
     let device = Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) };
     let options =
         ViewerOptions { open: open.to_path_buf(), demonstration: Some(walk()), devices: vec![device] };
-    Harness::builder().with_size([1280.0, 820.0]).build_eframe(|cc| {
+    Harness::builder().with_size(size).build_eframe(|cc| {
         cc.storage = storage;
         ViewerApp::new(cc, options)
     })
@@ -74,6 +77,12 @@ pub fn until_label(viewer: &mut Viewer<'_>, label: &str) {
     until(viewer, label, |viewer| shows(viewer, label));
 }
 
+/// Draws frames until something is shown whose name contains a part.
+#[track_caller]
+pub fn until_part(viewer: &mut Viewer<'_>, part: &str) {
+    until(viewer, part, |viewer| viewer.query_all_by_label_contains(part).next().is_some());
+}
+
 /// Whether this very text is shown.
 pub fn shows(viewer: &Viewer<'_>, label: &str) -> bool {
     viewer.query_all_by_label(label).next().is_some()
@@ -97,6 +106,35 @@ pub fn click(viewer: &mut Viewer<'_>, label: &str) {
     viewer.get_by_label(label).click();
     viewer.step();
     viewer.step();
+}
+
+/// Chooses from a list.
+#[track_caller]
+pub fn choose(viewer: &mut Viewer<'_>, list: &str, entry: &str) {
+    viewer.get_by_role_and_label(Role::ComboBox, list).click();
+    viewer.run_steps(4);
+    viewer.get_by_role_and_label(Role::Button, entry).click();
+    viewer.run_steps(4);
+}
+
+/// Where something is, points.
+#[track_caller]
+pub fn rect_of(viewer: &Viewer<'_>, label: &str) -> Rect {
+    viewer.get_by_label(label).rect()
+}
+
+/// Drags the mouse along places.
+pub fn drag(viewer: &mut Viewer<'_>, places: &[Pos2]) {
+    viewer.hover_at(places[0]);
+    viewer.step();
+    viewer.drag_at(places[0]);
+    viewer.step();
+    for &place in &places[1..] {
+        viewer.hover_at(place);
+        viewer.step();
+    }
+    viewer.drop_at(places[places.len() - 1]);
+    viewer.run_steps(2);
 }
 
 /// Presses a key.
