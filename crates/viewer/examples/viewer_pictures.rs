@@ -28,7 +28,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut window = open(&root.join("assets/walk"));
 
     until(&mut window, "the walk", |window| window.query_by_label("Next").is_some());
-    window.get_by_label("Field's border").click();
     window.key_press(Key::Space);
     until(&mut window, "picture 30", |window| window.query_by_label_contains("picture 30 of").is_some());
     window.key_press(Key::Space);
@@ -76,6 +75,8 @@ fn until(window: &mut Window, what: &str, is_there: impl Fn(&Window) -> bool) {
 }
 
 fn save(window: &mut Window, path: &PathBuf) -> Result<(), Box<dyn std::error::Error>> {
+    window.remove_cursor();
+    window.step();
     let picture = DynamicImage::from(window.render()?).into_rgb8();
     JpegEncoder::new_with_quality(std::fs::File::create(path)?, 88).encode_image(&picture)?;
     println!("{}", path.display());
