@@ -36,6 +36,8 @@ pub struct ViewerApp {
     screenshot: Screenshot,
     problems: Problems,
     notice: String,
+    /// What the panels show.
+    shown_path: Option<PathBuf>,
     help_is_open: bool,
     shown: PanelKind,
     walk: Option<WalkPanel>,
@@ -65,6 +67,7 @@ impl ViewerApp {
             screenshot: Screenshot::default(),
             problems: Problems::default(),
             notice: String::new(),
+            shown_path: None,
             help_is_open: false,
             shown: PanelKind::default(),
             walk: None,
@@ -109,6 +112,7 @@ impl ViewerApp {
         if self.demonstration.as_deref() != Some(path) {
             self.settings.remember(path);
         }
+        self.shown_path = Some(path.to_path_buf());
         match opened {
             Opened::Recording(sequence) => {
                 self.drive = Some(DrivePanel::of_recording(sequence.clone()));
@@ -168,7 +172,8 @@ impl ViewerApp {
         let has = [(PanelKind::Walk, self.walk.is_some()), (PanelKind::Drive, self.drive.is_some())];
         let panels: Vec<PanelKind> =
             has.into_iter().filter(|(_, has)| *has).map(|(panel, _)| panel).collect();
-        let toolbar = Toolbar { panels: &panels, shown: self.shown, theme: self.settings.theme };
+        let open = self.shown_path.as_deref();
+        let toolbar = Toolbar { panels: &panels, shown: self.shown, open, theme: self.settings.theme };
         if let Some(action) = toolbar.ui(ui) {
             self.act(ui.ctx(), action);
         }

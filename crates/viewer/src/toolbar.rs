@@ -1,5 +1,7 @@
 //! The bar along the top: panels, what to open, light or dark, a screenshot, help.
 
+use std::path::Path;
+
 use eframe::egui::{self, ThemePreference, Ui};
 
 use crate::shortcuts::{self, Action};
@@ -17,6 +19,8 @@ pub struct Toolbar<'a> {
     /// The panels that have something to show.
     pub panels: &'a [PanelKind],
     pub shown: PanelKind,
+    /// What is open.
+    pub open: Option<&'a Path>,
     pub theme: ThemePreference,
 }
 
@@ -48,6 +52,10 @@ impl Toolbar<'_> {
             }
         };
         button(ui, "Open…", Action::OpenPath, "Open a recording or a database");
+        if let Some(path) = self.open {
+            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+            ui.add(egui::Label::new(name).truncate()).on_hover_text(path.display().to_string());
+        }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             button(ui, "?", Action::Help, "Keys and mouse");
             button(ui, "Screenshot", Action::Screenshot, "Save a picture of this window");
