@@ -7,6 +7,9 @@ use reality_sim_core::sequence::Sequence;
 use super::{frame::Record, history::History};
 use crate::colors;
 
+/// Points of a curve at most: more than a curve is wide in pixels, and than can be drawn in no time.
+const MOST_POINTS: usize = 1000;
+
 /// One curve: its title with the unit, and where its values come from.
 struct Curve {
     title: &'static str,
@@ -65,50 +68,56 @@ impl Curve {
         at: usize,
         height: f32,
     ) -> Option<usize> {
-        let time_s = |index: usize| sequence.frames[index].timestamp_s - sequence.frames[0].timestamp_s;
-        let last = history.records().find(|record| record.index == at).and_then(self.value);
+        let now = history.records().find(|record| record.index == at).and_then(self.value);
         let title =
-            last.map_or_else(|| self.title.to_owned(), |value| format!("{}: {}", self.title, rounded(value)));
+            now.map_or_else(|| self.title.to_owned(), |value| format!("{}: {}", self.title, rounded(value)));
         ui.label(title).on_hover_text(self.explanation);
-        let points: Vec<[f64; 2]> = history
-            .records()
-            .filter_map(|record| Some([time_s(record.index), (self.value)(record)?]))
-            .collect();
-        let searched: Vec<[f64; 2]> = history
-            .records()
-            .filter(|record| record.searched)
-            .filter_map(|record| Some([time_s(record.index), (self.value)(record)?]))
-            .collect();
-        let end_s = time_s(sequence.frames.len() - 1);
-        let plot = Plot::new(self.title)
-            .height(height)
-            .include_x(0.0)
-            .include_x(end_s)
-            .include_y(0.0)
-            .allow_drag(false)
-            .allow_zoom(false)
-            .allow_scroll(false)
-            .allow_boxed_zoom(false)
-            .show_axes([true, true])
-            .y_axis_min_width(28.0)
-            .x_axis_formatter(|mark, _| format!("{} s", mark.value))
-            .label_formatter(|hover: &HoverPosition<'_>| match hover {
-                HoverPosition::NearDataPoint { position, .. } => {
-                    Some(format!("{:.1} s: {:.2}", position.x, position.y))
-                }
-                HoverPosition::Elsewhere { .. } => None,
-            });
-        let playhead =
-            VLine::new("", time_s(at)).color(ui.visuals().weak_text_color()).width(1.0).allow_hover(false);
-        let response = plot.show(ui, |plot| {
+        let step = sequence.frames.len().div_ceil(MOST_POINTS);
+        let points = |is_wanted: &dyn Fn(&Record) -> bool| -> PlotPoints<'_> {
+            let wanted = history.records().filter(|record| is_wanted(record));
+            wanted
+                .filter_map(|record| Some([time_s(sequence, record.index), (self.value)(record)?]))
+                .collect()
+        };
+        let (all, searched) = (points(&|record| record.index % step == 0), points(&|record| record.searched));
+        let grey = ui.visuals().weak_text_color();
+        let playhead = VLine::new("", time_s(sequence, at)).color(grey).width(1.0).allow_hover(false);
+        let response = plot(self.title, sequence, height).show(ui, |plot| {
             plot.vline(playhead);
-            plot.line(Line::new(self.title, PlotPoints::from(points)).color(self.color).width(1.5));
-            plot.points(Points::new("searched", PlotPoints::from(searched)).color(colors::TRUTH).radius(3.0));
+            plot.line(Line::new(self.title, all).color(self.color).width(1.5));
+            plot.points(Points::new("searched", searched).color(colors::TRUTH).radius(3.0));
             plot.pointer_coordinate()
         });
         let clicked_s = response.response.clicked().then_some(response.inner?.x)?;
         Some(frame_at(sequence, clicked_s))
     }
+}
+
+/// Axes over the whole recording, that neither move nor zoom.
+fn plot<'a>(name: &str, sequence: &Sequence, height: f32) -> Plot<'a> {
+    Plot::new(name)
+        .height(height)
+        .include_x(0.0)
+        .include_x(time_s(sequence, sequence.frames.len() - 1))
+        .include_y(0.0)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .show_axes([true, true])
+        .y_axis_min_width(28.0)
+        .x_axis_formatter(|mark, _| format!("{} s", mark.value))
+        .label_formatter(|hover: &HoverPosition<'_>| match hover {
+            HoverPosition::NearDataPoint { position, .. } => {
+                Some(format!("{:.1} s: {:.2}", position.x, position.y))
+            }
+            HoverPosition::Elsewhere { .. } => None,
+        })
+}
+
+/// Time since the first frame.
+fn time_s(sequence: &Sequence, index: usize) -> f64 {
+    sequence.frames[index].timestamp_s - sequence.frames[0].timestamp_s
 }
 
 /// Three digits.
