@@ -117,19 +117,14 @@ impl FieldCanvas {
         length_m as f32 * self.px_per_m
     }
 
-    /// Joins places, but for steps that no robot walks.
-    pub fn path(&self, places: impl IntoIterator<Item = DVec2>, stroke: impl Into<Stroke>) {
+    /// Joins places, of which only every so many are given, but for steps that no robot walks.
+    pub fn path(&self, places: &[DVec2], every: usize, stroke: impl Into<Stroke>) {
         let stroke = stroke.into();
-        let mut piece: Vec<Pos2> = Vec::new();
-        let mut before: Option<DVec2> = None;
-        for place in places {
-            if before.is_some_and(|before| before.distance(place) > MAX_PATH_STEP_M) {
-                self.painter.add(Shape::line(std::mem::take(&mut piece), stroke));
-            }
-            piece.push(self.at(place));
-            before = Some(place);
+        let longest_m = MAX_PATH_STEP_M * every as f64;
+        for piece in places.chunk_by(|a, b| a.distance(*b) <= longest_m) {
+            let points = piece.iter().map(|place| self.at(*place)).collect();
+            self.painter.add(Shape::line(points, stroke));
         }
-        self.painter.add(Shape::line(piece, stroke));
     }
 
     /// The outline of the ground in view, see [`crate::footprint::footprint`].

@@ -24,7 +24,8 @@ pub struct OpenWindow {
     wants_focus: bool,
     purpose: Purpose,
     path: String,
-    dialog: Option<Task<Option<PathBuf>>>,
+    /// A dialog of the system, and what its answer is wanted for.
+    dialog: Option<(Purpose, Task<Option<PathBuf>>)>,
     /// The last dialog gave no path: it was cancelled, or never came up, which nobody can tell apart.
     dialog_gave_nothing: bool,
 }
@@ -43,7 +44,11 @@ impl OpenWindow {
 
     /// Shows the window while it is open.
     pub fn ui(&mut self, ui: &Ui, recent: &[PathBuf], demonstration: Option<&Path>) -> Option<Chosen> {
-        let from_dialog = self.take_from_dialog();
+        // The answer counts even where this window was closed meanwhile.
+        if let Some(chosen) = self.take_from_dialog() {
+            self.is_open = false;
+            return Some(chosen);
+        }
         if !self.is_open {
             return None;
         }
@@ -55,7 +60,7 @@ impl OpenWindow {
         let window = egui::Window::new(title).open(&mut is_open).collapsible(false).default_width(520.0);
         let shown = window.show(ui.ctx(), |ui| self.content(ui, recent, demonstration));
         self.is_open = is_open && !ui.input(|input| input.key_pressed(Key::Escape));
-        let path = from_dialog.or_else(|| shown?.inner.flatten())?;
+        let path = shown?.inner.flatten()?;
         self.is_open = false;
         Some(Chosen { purpose: self.purpose, path })
     }
@@ -84,10 +89,10 @@ impl OpenWindow {
                 ui.disable();
             }
             if ui.button("Choose a folder…").clicked() {
-                self.dialog = Some(dialog(ui.ctx(), Kind::Folder));
+                self.dialog = Some((self.purpose, dialog(ui.ctx(), Kind::Folder)));
             }
             if self.purpose == Purpose::Open && ui.button("Choose a database…").clicked() {
-                self.dialog = Some(dialog(ui.ctx(), Kind::File));
+                self.dialog = Some((self.purpose, dialog(ui.ctx(), Kind::File)));
             }
         });
         if self.dialog_gave_nothing {
@@ -109,15 +114,16 @@ impl OpenWindow {
         chosen
     }
 
-    fn take_from_dialog(&mut self) -> Option<PathBuf> {
-        let outcome = self.dialog.as_ref()?.poll()?;
-        self.dialog = None;
+    fn take_from_dialog(&mut self) -> Option<Chosen> {
+        let (_, task) = self.dialog.as_ref()?;
+        let outcome = task.poll()?;
+        let (purpose, _) = self.dialog.take()?;
         let path = match outcome {
             Outcome::Done(path) => path,
             Outcome::Failed(_) | Outcome::Cancelled => None,
         };
         self.dialog_gave_nothing = path.is_none();
-        path
+        path.map(|path| Chosen { purpose, path })
     }
 }
 
@@ -154,7 +160,7 @@ mod tests {
         let mut window = OpenWindow::default();
         window.ask(Purpose::Open);
         let task = Task::spawn(&egui::Context::default(), "", |_| Ok(answer));
-        window.dialog = Some(task);
+        window.dialog = Some((Purpose::Open, task));
         let show = |ui: &mut Ui, (window, chosen): &mut (OpenWindow, Option<PathBuf>)| {
             if let Some(Chosen { path, .. }) = window.ui(ui, &[], None) {
                 *chosen = Some(path);

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use eframe::egui::{
-    Color32, ColorImage, Context, CursorIcon, Painter, Pos2, Rect, Response, Role, Sense, Stroke,
-    TextureHandle, TextureId, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Color32, ColorImage, Context, CursorIcon, FontId, Painter, Pos2, Rect, Response, Role, Sense,
+    Stroke, TextureHandle, TextureId, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use image::{GrayImage, RgbImage};
@@ -104,6 +104,13 @@ impl PictureCanvas {
             Color32::WHITE,
             (1.5, Color32::from_black_alpha(160)),
         );
+    }
+
+    /// Says something in the middle of it, on black.
+    pub fn words(&self, text: &str) {
+        self.painter.rect_filled(self.rect, 0.0, Color32::from_black_alpha(190));
+        let font = FontId::proportional(15.0);
+        self.painter.text(self.rect.center(), Align2::CENTER_CENTER, text, font, Color32::from_gray(220));
     }
 
     /// Where a place in the picture is on the screen. A pixel's middle has integer coordinates.

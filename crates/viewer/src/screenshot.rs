@@ -13,7 +13,7 @@ use image::RgbaImage;
 /// A picture that was asked for.
 #[derive(Default)]
 pub struct Screenshot {
-    answer: Option<mpsc::Receiver<Result<PathBuf, String>>>,
+    answers: Vec<mpsc::Receiver<Result<PathBuf, String>>>,
 }
 
 impl Screenshot {
@@ -28,20 +28,16 @@ impl Screenshot {
                 repaint.request_repaint();
             });
         });
-        self.answer = Some(receiver);
+        self.answers.push(receiver);
     }
 
-    /// Where it went, once.
+    /// Where one went, once.
     pub fn poll(&mut self) -> Option<Result<PathBuf, String>> {
-        let answer = match self.answer.as_ref()?.try_recv() {
-            Ok(answer) => answer,
-            Err(mpsc::TryRecvError::Empty) => return None,
-            Err(mpsc::TryRecvError::Disconnected) => {
-                Err("the window gave no picture: try it again".to_owned())
-            }
-        };
-        self.answer = None;
-        Some(answer)
+        let answers = self.answers.iter().map(mpsc::Receiver::try_recv).enumerate();
+        let (place, answer) =
+            answers.into_iter().find(|(_, answer)| *answer != Err(mpsc::TryRecvError::Empty))?;
+        self.answers.remove(place);
+        Some(answer.unwrap_or_else(|_| Err("the window gave no picture: try it again".to_owned())))
     }
 }
 
@@ -155,7 +151,7 @@ mod tests {
     #[test]
     fn a_window_that_gives_no_picture_is_a_problem_once() {
         let (sender, receiver) = mpsc::channel();
-        let mut screenshot = Screenshot { answer: Some(receiver) };
+        let mut screenshot = Screenshot { answers: vec![receiver] };
         assert!(screenshot.poll().is_none());
         drop(sender);
         assert!(matches!(screenshot.poll(), Some(Err(_))));

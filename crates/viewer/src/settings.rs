@@ -3,17 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use eframe::{Storage, egui::ThemePreference};
-use serde::{Deserialize, Serialize};
+use serde::de::DeserializeOwned;
 
 use crate::{drive::DriveSettings, walk::WalkSettings};
 
-const KEY: &str = "settings";
 /// Files remembered.
 const RECENT: usize = 8;
 
-/// Everything that a person sets.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default)]
+/// Everything that a person sets. Each part is stored under its own name: where one cannot be read, since another version
+/// wrote it, the others can.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings {
     pub theme: ThemePreference,
     /// Recordings and databases, the last opened first.
@@ -23,14 +22,22 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Those of the last time, or the defaults where there was none, or another version.
+    /// Those of the last time, and the defaults of what there was not.
     pub fn load(storage: Option<&dyn Storage>) -> Self {
-        storage.and_then(|storage| eframe::get_value(storage, KEY)).unwrap_or_default()
+        Self {
+            theme: part(storage, "theme"),
+            recent: part(storage, "recent"),
+            walk: part(storage, "walk"),
+            drive: part(storage, "drive"),
+        }
     }
 
     /// For the next time.
     pub fn store(&self, storage: &mut dyn Storage) {
-        eframe::set_value(storage, KEY, self);
+        eframe::set_value(storage, "theme", &self.theme);
+        eframe::set_value(storage, "recent", &self.recent);
+        eframe::set_value(storage, "walk", &self.walk);
+        eframe::set_value(storage, "drive", &self.drive);
     }
 
     /// Puts a path to the front of the recent ones. One that is no text cannot be stored: it is left out.
@@ -42,6 +49,10 @@ impl Settings {
         self.recent.insert(0, path.to_path_buf());
         self.recent.truncate(RECENT);
     }
+}
+
+fn part<T: DeserializeOwned + Default>(storage: Option<&dyn Storage>, name: &str) -> T {
+    storage.and_then(|storage| eframe::get_value(storage, name)).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -117,7 +117,15 @@ pub fn held(ui: &Ui, place: Place) -> Vec<Action> {
 /// The key of an action, for buttons' hover texts.
 pub fn name(ui: &Ui, action: Action) -> String {
     let found = TABLE.iter().find(|(_, _, other, _)| *other == action);
-    found.map_or_else(String::new, |(_, shortcut, ..)| ui.ctx().format_shortcut(shortcut))
+    found.map_or_else(String::new, |(_, shortcut, ..)| written(ui, shortcut))
+}
+
+/// As it stands on the key.
+fn written(ui: &Ui, shortcut: &KeyboardShortcut) -> String {
+    match shortcut.logical_key {
+        Key::Questionmark => "?".to_owned(),
+        _ => ui.ctx().format_shortcut(shortcut),
+    }
 }
 
 /// The list of all keys.
@@ -125,7 +133,7 @@ pub fn window(ui: &Ui, is_open: &mut bool) {
     if *is_open && ui.input(|input| input.key_pressed(Key::Escape)) {
         *is_open = false;
     }
-    egui::Window::new("Keys and mouse").open(is_open).resizable(false).collapsible(false).show(
+    egui::Window::new("Keys and mouse").open(is_open).resizable(false).collapsible(false).vscroll(true).show(
         ui.ctx(),
         |ui| {
             for (title, place) in
@@ -134,7 +142,7 @@ pub fn window(ui: &Ui, is_open: &mut bool) {
                 ui.strong(title);
                 egui::Grid::new(title).num_columns(2).spacing([24.0, 2.0]).show(ui, |ui| {
                     for (_, shortcut, _, text) in TABLE.iter().filter(|(heard, ..)| *heard == place) {
-                        ui.monospace(ui.ctx().format_shortcut(shortcut));
+                        ui.monospace(written(ui, shortcut));
                         ui.label(*text);
                         ui.end_row();
                     }

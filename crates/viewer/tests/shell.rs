@@ -408,9 +408,21 @@ fn settings_that_cannot_be_read_are_the_defaults() {
         let memory = Memory(keys.iter().map(|key| (key.clone(), garbage.to_owned())).collect());
         let mut viewer = viewer_with(&walk(), SIZE, Some(&memory));
         until_label(&mut viewer, "Walk");
-        let expected = if garbage.contains("an_old_name") { "Dark" } else { "System" };
-        assert_eq!(theme(&viewer), expected, "{garbage:?}");
+        assert_eq!(theme(&viewer), "System", "{garbage:?}");
     }
+}
+
+#[test]
+fn a_part_of_the_settings_that_cannot_be_read_leaves_the_others() {
+    let mut memory = Memory::default();
+    let mut first = demonstration();
+    press(&mut first, Modifiers::COMMAND, Key::T);
+    first.state_mut().save(&mut memory);
+    assert!(memory.0.contains_key("walk") && memory.0.contains_key("drive"));
+    memory.0.insert("walk".to_owned(), "(speed:Warp)".to_owned());
+    let mut second = viewer_with(&walk(), SIZE, Some(&memory));
+    until_label(&mut second, "Walk");
+    assert_eq!(theme(&second), "Light");
 }
 
 #[test]

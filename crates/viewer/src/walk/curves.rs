@@ -1,14 +1,14 @@
-//! Curves over the recording's time; a click leads to that time.
+//! Curves over the time as it is played; a click leads to that time.
 
-use eframe::egui::{Color32, Ui};
-use egui_plot::{HoverPosition, Line, Plot, PlotPoints, Points, VLine};
-use reality_sim_core::sequence::Sequence;
+use eframe::egui::{self, Color32, Ui};
+use egui_plot::{GridMark, HoverPosition, Line, Plot, PlotPoints, Points, VLine};
 
-use super::{frame::Record, history::History};
+use super::{
+    frame::Record,
+    history::{History, Thinned},
+    timeline::Timeline,
+};
 use crate::colors;
-
-/// Points of a curve at most: more than a curve is wide in pixels, and than can be drawn in no time.
-const MOST_POINTS: usize = 1000;
 
 /// One curve: its title with the unit, and where its values come from.
 struct Curve {
@@ -18,13 +18,14 @@ struct Curve {
     color: Color32,
 }
 
-const CURVES: [Curve; 4] = [
-    Curve {
-        title: "error, cm",
-        explanation: "Distance on the ground between the pose found and the true one",
-        value: |record| record.error_m.map(|metres| 100.0 * metres),
-        color: colors::POSE,
-    },
+const ERROR: Curve = Curve {
+    title: "error, cm",
+    explanation: "Distance on the ground between the pose found and the true one",
+    value: |record| record.error_m.map(|metres| 100.0 * metres),
+    color: colors::POSE,
+};
+
+const OTHERS: [Curve; 3] = [
     Curve {
         title: "effective sample size",
         explanation: "Of the filter's last iteration: as many equally heavy particles would be worth as much",
@@ -45,60 +46,87 @@ const CURVES: [Curve; 4] = [
     },
 ];
 
+/// What all hover texts end with.
+const SIGNS: &str = "White dots: the field was searched. Broken lines: settings were changed. Time as it is played, pauses cut short; a click leads there.";
+
 /// Draws the curves side by side; gives the frame that was clicked.
-pub fn ui(ui: &mut Ui, sequence: &Sequence, history: &History, at: usize, height: f32) -> Option<usize> {
-    let has_truth = sequence.groundtruth.iter().any(Option::is_some);
-    let shown = CURVES.iter().skip(usize::from(!has_truth));
-    let count = CURVES.len() - usize::from(!has_truth);
+pub fn ui(
+    ui: &mut Ui,
+    timeline: &Timeline,
+    history: &History,
+    at: usize,
+    has_truth: bool,
+    height: f32,
+) -> Option<usize> {
+    let curves: Vec<&Curve> = has_truth.then_some(&ERROR).into_iter().chain(&OTHERS).collect();
+    let records = history.records();
     let mut clicked = None;
-    ui.columns(count, |columns| {
-        for (curve, ui) in shown.zip(columns) {
-            clicked = clicked.or(curve.ui(ui, sequence, history, at, height));
+    ui.columns(curves.len(), |columns| {
+        for (curve, ui) in curves.into_iter().zip(columns) {
+            curve.title_ui(ui, history.get(at));
+            clicked = clicked.or(curve.plot_ui(ui, timeline, history, &records, at, height));
         }
     });
     clicked
 }
 
 impl Curve {
-    fn ui(
+    fn title_ui(&self, ui: &mut Ui, now: Option<&Record>) {
+        let value = now.and_then(self.value);
+        let title = value
+            .map_or_else(|| self.title.to_owned(), |value| format!("{}: {}", self.title, rounded(value)));
+        ui.add(egui::Label::new(title).truncate()).on_hover_text(format!("{}\n{SIGNS}", self.explanation));
+    }
+
+    fn plot_ui(
         &self,
         ui: &mut Ui,
-        sequence: &Sequence,
+        timeline: &Timeline,
         history: &History,
+        records: &Thinned<Record>,
         at: usize,
         height: f32,
     ) -> Option<usize> {
-        let now = history.records().find(|record| record.index == at).and_then(self.value);
-        let title =
-            now.map_or_else(|| self.title.to_owned(), |value| format!("{}: {}", self.title, rounded(value)));
-        ui.label(title).on_hover_text(self.explanation);
-        let step = sequence.frames.len().div_ceil(MOST_POINTS);
-        let points = |is_wanted: &dyn Fn(&Record) -> bool| -> PlotPoints<'_> {
-            let wanted = history.records().filter(|record| is_wanted(record));
-            wanted
-                .filter_map(|record| Some([time_s(sequence, record.index), (self.value)(record)?]))
-                .collect()
-        };
-        let (all, searched) = (points(&|record| record.index % step == 0), points(&|record| record.searched));
+        let point = |record: &Record| Some([timeline.at_s(record.index), (self.value)(record)?]);
         let grey = ui.visuals().weak_text_color();
-        let playhead = VLine::new("", time_s(sequence, at)).color(grey).width(1.0).allow_hover(false);
-        let response = plot(self.title, sequence, height).show(ui, |plot| {
-            plot.vline(playhead);
-            plot.line(Line::new(self.title, all).color(self.color).width(1.5));
-            plot.points(Points::new("searched", searched).color(colors::TRUTH).radius(3.0));
+        let dot = ui.visuals().strong_text_color();
+        let response = plot(self.title, timeline, height).show(ui, |plot| {
+            plot.vline(VLine::new("", timeline.at_s(at)).color(grey).width(1.0).allow_hover(false));
+            for &index in history.changes() {
+                let change = VLine::new("", timeline.at_s(index)).color(grey).width(1.0).allow_hover(false);
+                plot.vline(change.style(egui_plot::LineStyle::dashed_dense()));
+            }
+            for run in runs(records) {
+                let points: PlotPoints<'_> = run.iter().filter_map(point).collect();
+                if run.len() == 1 {
+                    plot.points(Points::new(self.title, points).color(self.color).radius(1.5));
+                } else {
+                    plot.line(Line::new(self.title, points).color(self.color).width(1.5).allow_band(false));
+                }
+            }
+            let searched: PlotPoints<'_> = history.searched().iter().filter_map(point).collect();
+            plot.points(Points::new("searched", searched).color(dot).radius(2.5));
             plot.pointer_coordinate()
         });
         let clicked_s = response.response.clicked().then_some(response.inner?.x)?;
-        Some(frame_at(sequence, clicked_s))
+        Some(timeline.frame_at(clicked_s))
     }
 }
 
+/// Records that follow each other: a curve does not lead over frames that were never seen.
+fn runs(records: &Thinned<Record>) -> impl Iterator<Item = &[Record]> {
+    // Thinned records of frames that all were seen are a step apart; a frame left out here and there does not show.
+    let widest = if records.step == 1 { 1 } else { 2 * records.step };
+    records.points.chunk_by(move |a, b| b.index - a.index <= widest)
+}
+
 /// Axes over the whole recording, that neither move nor zoom.
-fn plot<'a>(name: &str, sequence: &Sequence, height: f32) -> Plot<'a> {
+fn plot<'a>(name: &str, timeline: &Timeline, height: f32) -> Plot<'a> {
+    let marks = time_marks(timeline.end_s());
     Plot::new(name)
         .height(height)
         .include_x(0.0)
-        .include_x(time_s(sequence, sequence.frames.len() - 1))
+        .include_x(timeline.end_s())
         .include_y(0.0)
         .allow_drag(false)
         .allow_zoom(false)
@@ -106,7 +134,8 @@ fn plot<'a>(name: &str, sequence: &Sequence, height: f32) -> Plot<'a> {
         .allow_boxed_zoom(false)
         .show_axes([true, true])
         .y_axis_min_width(28.0)
-        .x_axis_formatter(|mark, _| format!("{} s", mark.value))
+        .x_grid_spacer(move |_| marks.clone())
+        .x_axis_formatter(|mark, _| format!("{} s", (1e3 * mark.value).round() / 1e3))
         .label_formatter(|hover: &HoverPosition<'_>| match hover {
             HoverPosition::NearDataPoint { position, .. } => {
                 Some(format!("{:.1} s: {:.2}", position.x, position.y))
@@ -115,9 +144,17 @@ fn plot<'a>(name: &str, sequence: &Sequence, height: f32) -> Plot<'a> {
         })
 }
 
-/// Time since the first frame.
-fn time_s(sequence: &Sequence, index: usize) -> f64 {
-    sequence.frames[index].timestamp_s - sequence.frames[0].timestamp_s
+/// Round times, two or three of them with zero.
+fn time_marks(end_s: f64) -> Vec<GridMark> {
+    let rough_s = (0.45 * end_s).max(0.01);
+    let power = 10_f64.powf(rough_s.log10().floor());
+    let step_size = [8.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.5, 1.0]
+        .map(|digit| digit * power)
+        .into_iter()
+        .find(|step| *step <= rough_s);
+    let step_size = step_size.unwrap_or(power);
+    let count = (end_s / step_size).floor() as usize;
+    (0..=count).map(|number| GridMark { value: number as f64 * step_size, step_size }).collect()
 }
 
 /// Three digits.
@@ -126,15 +163,17 @@ fn rounded(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-/// The frame nearest to a time after the first one.
-fn frame_at(sequence: &Sequence, time_s: f64) -> usize {
-    let wanted_s = sequence.frames[0].timestamp_s + time_s;
-    let after = sequence.frames.partition_point(|frame| frame.timestamp_s < wanted_s);
-    let distance = |index: &usize| {
-        sequence.frames.get(*index).map_or(f64::INFINITY, |frame| (frame.timestamp_s - wanted_s).abs())
-    };
-    [after.saturating_sub(1), after]
-        .into_iter()
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
-        .unwrap_or_default()
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_axis_has_two_or_three_round_times() {
+        for end_s in [0.2, 0.9, 1.0, 11.8, 60.0, 99.0, 4000.0, 6543.0] {
+            let marks: Vec<f64> = time_marks(end_s).iter().map(|mark| mark.value).collect();
+            assert!((3..=5).contains(&marks.len()), "{end_s}: {marks:?}");
+            assert!(marks[0] == 0.0 && marks[marks.len() - 1] <= end_s, "{end_s}: {marks:?}");
+        }
+        assert_eq!(time_marks(0.0).len(), 1);
+    }
 }

@@ -7,7 +7,7 @@ use eframe::egui::ColorImage;
 use glam::DVec2;
 use reality_sim_core::{
     field::{project_lines, project_polygon},
-    filter::normalise,
+    filter::{best_index, normalise},
     observation::{CpuScorer, Scorer},
     pose::{CameraPose, Pose2, wrap_angle},
     preprocess::{Attitude, Prepared, distance_field, gaussian_blur},
@@ -142,17 +142,19 @@ impl Seen {
         }
     }
 
-    /// The particles by the weight that the observation model gives each of them.
+    /// The particles by the weight that the observation model gives each of them: of many every so many, and the best one.
     fn weighted_particles(&self, scorer: &mut CpuScorer) -> Vec<WeightedParticle> {
-        let step = self.particles.len().div_ceil(SHOWN_PARTICLES).max(1);
-        let shown: Vec<CameraPose> = self.particles.iter().copied().step_by(step).collect();
         scorer.load(&self.prepared);
-        let weights = normalise(&scorer.log_weights(&shown));
-        let most = weights.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let weighted = |(pose, weight): (&CameraPose, f64)| WeightedParticle {
-            pose: pose.planar(),
-            relative_weight: (weight / most) as f32,
+        let log_weights = scorer.log_weights(&self.particles);
+        let Some(best) = best_index(&log_weights) else { return Vec::new() };
+        let weights = normalise(&log_weights);
+        let most = weights[best].max(f64::MIN_POSITIVE);
+        let weighted = |index: usize| WeightedParticle {
+            pose: self.particles[index].planar(),
+            relative_weight: (weights[index] / most) as f32,
         };
-        shown.iter().zip(weights).map(weighted).collect()
+        let step = self.particles.len().div_ceil(SHOWN_PARTICLES).max(1);
+        let others = (0..self.particles.len()).step_by(step).filter(|index| *index != best);
+        others.chain([best]).map(weighted).collect()
     }
 }

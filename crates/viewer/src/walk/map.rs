@@ -1,6 +1,7 @@
 //! The field from above: particles, paths, the pose found and the true one; particles can be dragged away.
 
 use eframe::egui::{Color32, CursorIcon, PointerButton, Stroke, Ui, Vec2};
+use glam::DVec2;
 use reality_sim_core::{
     pose::{CameraPose, Pose2},
     sequence::Sequence,
@@ -8,7 +9,7 @@ use reality_sim_core::{
 
 use super::{
     frame::FrameView,
-    history::{History, odometry_path, true_path},
+    history::{History, Thinned, odometry_path, true_path},
     settings::Layers,
 };
 use crate::{
@@ -30,27 +31,36 @@ impl Map {
         &mut self,
         ui: &mut Ui,
         sequence: &Sequence,
-        frame: &FrameView,
+        frame: Option<&FrameView>,
         history: &History,
-        layers: &Layers,
+        layers: &mut Layers,
         room: Vec2,
     ) -> Option<Pose2> {
-        if layers.follow && self.dragged.is_none() {
+        if let Some(frame) = frame
+            && layers.follow
+            && self.dragged.is_none()
+        {
             self.view.follow(frame.record.pose.planar().position_in_world());
         }
         let canvas = self.view.show(ui, &sequence.field, room, "Field from above");
+        let frame = frame?;
         let at = frame.record.index;
+        let pans = [PointerButton::Secondary, PointerButton::Middle];
+        if pans.iter().any(|button| canvas.response.dragged_by(*button)) {
+            // Who moves the view wants to look elsewhere.
+            layers.follow = false;
+        }
         if layers.footprint {
             canvas.footprint(&footprint(&sequence.setup.camera, frame.record.pose));
         }
         if layers.odometry {
-            draw_odometry(&canvas, sequence, frame, at);
+            draw_odometry(&canvas, sequence, history, at);
         }
         if layers.truth {
-            canvas.path(true_path(sequence, at), Stroke::new(2.0, colors::TRUTH.gamma_multiply(0.7)));
+            draw_path(&canvas, &true_path(sequence, at), colors::TRUTH);
         }
         if layers.path {
-            canvas.path(history.path(at), Stroke::new(2.0, colors::POSE.gamma_multiply(0.7)));
+            draw_path(&canvas, &history.path(at), colors::POSE);
         }
         if layers.particles {
             draw_particles(&canvas, frame);
@@ -74,6 +84,9 @@ impl Map {
         {
             let place = canvas.in_world(pointer);
             self.dragged = Some(Pose2::new(place.x, place.y, pose.yaw_rad));
+        } else if !response.drag_stopped() {
+            // A drag may end where this field is not shown.
+            self.dragged = None;
         }
         if let Some(dragged) = self.dragged {
             ui.set_cursor_icon(CursorIcon::Grabbing);
@@ -85,13 +98,17 @@ impl Map {
     }
 }
 
-fn draw_odometry(canvas: &FieldCanvas, sequence: &Sequence, frame: &FrameView, at: usize) {
+fn draw_path(canvas: &FieldCanvas, path: &Thinned<DVec2>, color: Color32) {
+    canvas.path(&path.points, path.step, Stroke::new(2.0, color.gamma_multiply(0.7)));
+}
+
+fn draw_odometry(canvas: &FieldCanvas, sequence: &Sequence, history: &History, at: usize) {
     let start = sequence.groundtruth[0].map(CameraPose::planar).or(sequence.start);
-    let Some(start) = start.or((at == 0).then(|| frame.record.pose.planar())) else { return };
-    let path = odometry_path(sequence, start, at);
-    canvas.path(path.iter().map(|pose| pose.position_in_world()), Stroke::new(1.5, colors::ODOMETRY));
-    if let Some(last) = path.last() {
-        canvas.painter.circle_filled(canvas.at(last.position_in_world()), 3.5, colors::ODOMETRY);
+    let Some(known) = start.map(|start| (0, start)).or(history.first()) else { return };
+    let path = odometry_path(sequence, known, at);
+    canvas.path(&path.points, path.step, Stroke::new(1.5, colors::ODOMETRY));
+    if let Some(last) = path.points.last() {
+        canvas.painter.circle_filled(canvas.at(*last), 3.5, colors::ODOMETRY);
     }
 }
 

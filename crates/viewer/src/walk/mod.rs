@@ -10,6 +10,7 @@ mod player;
 mod settings;
 #[cfg(test)]
 mod tests;
+mod timeline;
 mod transport;
 
 use std::sync::Arc;
@@ -24,10 +25,12 @@ use self::{
     frame::{FrameView, Record},
     history::History,
     map::Map,
-    player::{Command, Message, Player},
+    player::{Command, Message, Player, State},
+    timeline::Timeline,
 };
 use crate::{
     device::Device,
+    picture_view::PictureCanvas,
     problems::Problems,
     shortcuts::{self, Place},
 };
@@ -47,9 +50,13 @@ pub struct WalkPanel {
     player: Player,
     /// What the player was told last.
     told: WalkSettings,
-    is_playing: bool,
-    /// The player was told something and has not answered yet.
-    is_waiting: bool,
+    /// How many commands it was told, for it to say how many it has heard.
+    commands: u64,
+    state: State,
+    timeline: Timeline,
+    has_truth: bool,
+    /// There was a problem before the first frame.
+    has_failed: bool,
     frame: Option<Box<FrameView>>,
     history: History,
     map: Map,
@@ -62,12 +69,15 @@ impl WalkPanel {
         let WalkSettings { filter, speed, layers } = settings.clone();
         let player = Player::spawn(ctx, sequence.clone(), devices.to_vec(), filter, speed, layers.veil);
         Self {
-            history: History::new(sequence.frames.len()),
+            history: History::default(),
+            timeline: Timeline::new(&sequence),
+            has_truth: sequence.groundtruth.iter().any(Option::is_some),
             sequence,
             player,
             told: settings.clone(),
-            is_playing: false,
-            is_waiting: false,
+            commands: 0,
+            has_failed: false,
+            state: State::default(),
             frame: None,
             map: Map::default(),
             textures: CameraTextures::default(),
@@ -78,13 +88,16 @@ impl WalkPanel {
     fn listen(&mut self, problems: &mut Problems) {
         while let Some(message) = self.player.poll() {
             match message {
-                Message::Begun => self.history = History::new(self.sequence.frames.len()),
+                Message::Begun => self.history = History::default(),
                 Message::Frame(frame) => {
                     self.history.add(frame.record);
                     self.frame = Some(frame);
                 }
-                Message::Playing(is_playing) => (self.is_playing, self.is_waiting) = (is_playing, false),
-                Message::Problem(reason) => problems.add(reason),
+                Message::State(state) => self.state = state,
+                Message::Problem(reason) => {
+                    self.has_failed = true;
+                    problems.add(reason);
+                }
             }
         }
     }
@@ -93,7 +106,10 @@ impl WalkPanel {
     fn new_settings(&mut self, settings: &WalkSettings) -> Vec<Command> {
         let told = std::mem::replace(&mut self.told, settings.clone());
         let changed = [
-            (settings.filter != told.filter).then(|| Command::Filter(settings.filter.clone())),
+            (settings.filter != told.filter).then(|| {
+                self.history.mark_change(self.state.at);
+                Command::Filter(settings.filter.clone())
+            }),
             (settings.speed != told.speed).then_some(Command::Speed(settings.speed)),
             (settings.layers.veil != told.layers.veil).then_some(Command::Veil(settings.layers.veil)),
         ];
@@ -109,55 +125,66 @@ impl WalkPanel {
         problems: &mut Problems,
     ) {
         self.listen(problems);
-        let Some(frame) = self.frame.take() else {
-            egui::CentralPanel::default().show(ui, |ui| {
-                ui.centered_and_justified(|ui| ui.label("Looking at the first picture …"));
-            });
-            return;
-        };
-        let mut commands = self.content(ui, &frame, settings, devices);
-        self.frame = Some(frame);
+        let frame = self.frame.take();
+        let mut commands = self.content(ui, frame.as_deref(), settings, devices);
+        self.frame = frame;
         commands.extend(self.new_settings(settings));
-        self.is_waiting |= !commands.is_empty();
+        self.commands += commands.len() as u64;
         commands.into_iter().for_each(|command| self.player.tell(command));
+    }
+
+    /// Whether the player works on something that was asked for.
+    fn is_working(&self) -> bool {
+        let is_starting = self.frame.is_none() && !self.has_failed;
+        is_starting || self.state.heard < self.commands
     }
 
     fn content(
         &mut self,
         ui: &mut Ui,
-        frame: &FrameView,
+        frame: Option<&FrameView>,
         settings: &mut WalkSettings,
         devices: &[Device],
     ) -> Vec<Command> {
-        let Self { sequence, history, is_playing, is_waiting, .. } = self;
-        let (at, last) = (frame.record.index, sequence.frames.len() - 1);
+        let State { at, is_playing, .. } = self.state;
+        let last = self.sequence.frames.len() - 1;
         let mut commands: Vec<Command> = shortcuts::pressed(ui, Place::Walk)
             .into_iter()
-            .filter_map(|action| transport::command(action, at, last, *is_playing))
+            .filter_map(|action| transport::command(action, at, last, is_playing))
             .collect();
         egui::Panel::right("walk settings").resizable(false).exact_size(SETTINGS_WIDTH).show(ui, |ui| {
             egui::ScrollArea::vertical().show(ui, |ui| {
-                facts(ui, &frame.record, *is_waiting && !*is_playing);
+                facts(ui, frame.map(|frame| &frame.record), self.is_working());
                 ui.separator();
-                controls::layers(ui, &mut settings.layers, frame.truth.is_some());
+                controls::layers(ui, &mut settings.layers, self.has_truth);
                 ui.separator();
                 controls::filter(ui, &mut settings.filter, devices);
             });
         });
-        let curve_height =
-            (ui.available_height() - TRANSPORT_HEIGHT - height_within(ui.available_width(), sequence))
-                .clamp(*CURVE_HEIGHTS.start(), *CURVE_HEIGHTS.end());
-        egui::Panel::bottom("time").show(ui, |ui| {
-            ui.add_space(4.0);
-            commands.extend(transport::ui(ui, sequence, at, *is_playing, &mut settings.speed));
-            commands.extend(curves::ui(ui, sequence, history, at, curve_height).map(Command::GoTo));
-        });
+        egui::Panel::bottom("time").show(ui, |ui| commands.extend(self.time_ui(ui, settings)));
         egui::CentralPanel::default().show(ui, |ui| commands.extend(self.views(ui, frame, settings)));
         commands
     }
 
+    /// Everything along the bottom: it takes what picture and field side by side leave.
+    fn time_ui(&self, ui: &mut Ui, settings: &mut WalkSettings) -> Vec<Command> {
+        let Self { sequence, timeline, history, state, has_truth, .. } = self;
+        let views_height = height_within(ui.available_width(), sequence);
+        let left = ui.available_height() - TRANSPORT_HEIGHT - views_height;
+        let curve_height = left.clamp(*CURVE_HEIGHTS.start(), *CURVE_HEIGHTS.end());
+        ui.add_space(4.0);
+        let asked = transport::ui(ui, sequence, *state, &mut settings.speed);
+        let clicked = curves::ui(ui, timeline, history, state.at, *has_truth, curve_height);
+        asked.into_iter().chain(clicked.map(Command::GoTo)).collect()
+    }
+
     /// The camera's picture and the field, side by side or one above the other.
-    fn views(&mut self, ui: &mut Ui, frame: &FrameView, settings: &WalkSettings) -> Option<Command> {
+    fn views(
+        &mut self,
+        ui: &mut Ui,
+        frame: Option<&FrameView>,
+        settings: &mut WalkSettings,
+    ) -> Option<Command> {
         let room = ui.available_size();
         let is_wide = room.x > WIDE * room.y;
         let camera = &self.sequence.setup.camera;
@@ -172,10 +199,18 @@ impl WalkPanel {
             (vec2(room.x, height), vec2(room.x, height))
         };
         let layout = if is_wide { egui::Layout::left_to_right(egui::Align::Min) } else { *ui.layout() };
-        let layers = &settings.layers;
+        let at = self.state.at;
+        let words = match frame {
+            _ if self.is_working() => None,
+            Some(frame) if frame.record.index == at => None,
+            _ => Some(format!("picture {} cannot be shown", at + 1)),
+        };
         let dropped = ui.with_layout(layout, |ui| {
-            camera::ui(ui, frame, layers, &mut self.textures, picture);
-            self.map.ui(ui, &self.sequence, frame, &self.history, layers, field)
+            let size = [camera.width as usize, camera.height as usize];
+            let canvas = PictureCanvas::allocate(ui, size, picture, "Camera picture");
+            frame.into_iter().for_each(|frame| self.textures.draw(ui, &canvas, frame, &settings.layers));
+            words.into_iter().for_each(|words| canvas.words(&words));
+            self.map.ui(ui, &self.sequence, frame, &self.history, &mut settings.layers, field)
         });
         dropped.inner.map(Command::Place)
     }
@@ -188,9 +223,13 @@ fn height_within(width: f32, sequence: &Sequence) -> f32 {
 }
 
 /// What was found in the picture shown.
-fn facts(ui: &mut Ui, record: &Record, is_waiting: bool) {
+fn facts(ui: &mut Ui, record: Option<&Record>, is_working: bool) {
+    let Some(record) = record else {
+        ui.weak(if is_working { "working …" } else { "nothing seen yet" });
+        return;
+    };
     let state = match (record.sure, record.searched) {
-        _ if is_waiting => "working …",
+        _ if is_working => "working …",
         (true, false) => "sure",
         (true, true) => "sure, after a search",
         (false, false) => "not sure",
@@ -211,6 +250,6 @@ fn facts(ui: &mut Ui, record: &Record, is_waiting: bool) {
             let text = format!("{:.2} cm, {:.2}°", 100.0 * error_m, error_yaw_rad.to_degrees());
             fact(ui, "error", text);
         }
-        fact(ui, "particles", record.particles.to_string());
+        fact(ui, "particles", format!("{} weighed", record.particles));
     });
 }

@@ -10,6 +10,7 @@ use std::{
 };
 
 use eframe::egui::Context;
+use image::RgbImage;
 use reality_sim_core::{
     backend::{Backend, BackendError, CpuBackend},
     observation::CpuScorer,
@@ -22,13 +23,12 @@ use reality_sim_core::{
 use super::{
     frame::{FrameView, Seen},
     settings::{FilterSettings, Speed, Veil},
+    timeline::Timeline,
 };
 use crate::device::{Device, by_name};
 
 /// Frames on their way to the window at most.
 const QUEUE: usize = 2;
-/// Pauses in a recording longer than this are played as this long, seconds.
-const LONGEST_PAUSE_S: f64 = 2.0;
 
 /// What the window wants.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,10 +51,20 @@ pub enum Message {
     /// It begins again: what was found before counts no longer.
     Begun,
     Frame(Box<FrameView>),
-    /// The player stands still, or plays.
-    Playing(bool),
-    /// In words. It stands still.
+    /// Sent after every piece of work.
+    State(State),
+    /// In words.
     Problem(String),
+}
+
+/// Where the player is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct State {
+    /// The frame that it is at; the last [`Message::Frame`] is of another one where this one's picture cannot be read.
+    pub at: usize,
+    pub is_playing: bool,
+    /// Commands heard so far.
+    pub heard: u64,
 }
 
 /// The window's end.
@@ -117,16 +127,29 @@ impl Outbox {
     }
 }
 
-/// What is to be done after the commands were heard.
-#[derive(Clone, Copy, PartialEq)]
-enum Todo {
-    Nothing,
+/// What is to be done after the commands were heard: of several places and frames the last ones count.
+#[derive(Default)]
+struct Todo {
+    /// Forget everything first.
+    restart: bool,
+    go_to: Option<usize>,
+    place: Option<Pose2>,
     /// Send what was seen last once more: the window wants other layers.
-    Show,
-    /// Look at the frame shown once more, from where the particles are, or from here.
-    LookAgain(Option<Pose2>),
-    GoTo(usize),
-    Restart,
+    show: bool,
+}
+
+/// What went wrong.
+enum Fault {
+    /// With one picture; the next one may be whole.
+    Picture(String),
+    /// With the device.
+    Device(String),
+}
+
+impl From<BackendError> for Fault {
+    fn from(error: BackendError) -> Self {
+        Self::Device(error.to_string())
+    }
 }
 
 /// The thread's own state.
@@ -141,8 +164,11 @@ struct Playing {
     /// With the name of the device it was opened for.
     backend: Option<(String, Arc<dyn Backend>)>,
     scorer: CpuScorer,
+    /// None before the first frame, and after settings that it does not have yet.
     tagger: Option<Tagger>,
+    state: State,
     seen: Option<Seen>,
+    timeline: Timeline,
     /// The poses found so far: where the filter goes on when it is sent back.
     poses: Vec<Option<Pose2>>,
     /// When the next frame is due; `None` while paused.
@@ -162,6 +188,7 @@ impl Playing {
         Self {
             preprocessor: Preprocessor::new(camera, field.line_width_m),
             scorer: CpuScorer::new(camera, field, settings.observation),
+            timeline: Timeline::new(&sequence),
             poses: vec![None; sequence.frames.len()],
             sequence,
             devices,
@@ -171,18 +198,15 @@ impl Playing {
             outbox,
             backend: None,
             tagger: None,
+            state: State::default(),
             seen: None,
             due: None,
         }
     }
 
     fn run(mut self, commands: &mpsc::Receiver<Command>) {
-        let mut todo = Todo::Restart;
-        loop {
-            let done = self.work(todo);
-            if done.is_err() {
-                return;
-            }
+        let mut todo = Todo { restart: true, ..Todo::default() };
+        while self.work(&todo).is_ok() {
             todo = match self.wait(commands) {
                 Ok(Some(command)) => self.hear(command, commands),
                 Ok(None) => self.advance(),
@@ -201,83 +225,76 @@ impl Playing {
         }
     }
 
-    /// Hears a command and all that wait behind it: of several places to go to, the last one counts.
+    /// Hears a command and all that wait behind it.
     fn hear(&mut self, first: Command, commands: &mpsc::Receiver<Command>) -> Todo {
-        let mut todo = Todo::Nothing;
+        let mut todo = Todo::default();
         for command in std::iter::once(first).chain(commands.try_iter()) {
-            todo = self.obey(command, todo);
+            self.state.heard += 1;
+            self.obey(command, &mut todo);
         }
         todo
     }
 
-    fn obey(&mut self, command: Command, todo: Todo) -> Todo {
+    fn obey(&mut self, command: Command, todo: &mut Todo) {
         match command {
             Command::Play => {
                 self.due = Some(Instant::now());
-                if self.at() + 1 == self.sequence.frames.len() { Todo::Restart } else { todo }
+                todo.restart |= todo.go_to.unwrap_or(self.state.at) == self.last();
             }
-            Command::Pause => {
-                self.due = None;
-                todo
-            }
-            Command::GoTo(index) => Todo::GoTo(index.min(self.sequence.frames.len() - 1)),
-            Command::Restart => Todo::Restart,
+            Command::Pause => self.due = None,
+            Command::GoTo(index) => todo.go_to = Some(index.min(self.last())),
+            Command::Restart => *todo = Todo { restart: true, ..Todo::default() },
             Command::Speed(speed) => {
                 self.speed = speed;
                 self.due = self.due.map(|_| Instant::now());
-                todo
             }
             Command::Veil(veil) => {
                 self.veil = veil;
-                if todo == Todo::Nothing { Todo::Show } else { todo }
+                todo.show = true;
             }
             Command::Filter(settings) => {
                 self.settings = settings;
                 let Sequence { setup, field, .. } = &*self.sequence;
                 self.scorer = CpuScorer::new(&setup.camera, field, self.settings.observation);
-                if matches!(todo, Todo::Nothing | Todo::Show) { Todo::LookAgain(None) } else { todo }
+                self.tagger = None;
             }
-            Command::Place(pose) => Todo::LookAgain(Some(pose)),
+            Command::Place(pose) => todo.place = Some(pose),
         }
     }
 
     /// The next frame, or the end.
     fn advance(&mut self) -> Todo {
-        let next = self.at() + 1;
-        if next < self.sequence.frames.len() {
-            return Todo::GoTo(next);
+        if self.state.at < self.last() {
+            return Todo { go_to: Some(self.state.at + 1), ..Todo::default() };
         }
         self.due = None;
-        Todo::Nothing
+        Todo::default()
     }
 
-    fn at(&self) -> usize {
-        self.seen.as_ref().map_or(0, |seen| seen.index)
+    fn last(&self) -> usize {
+        self.sequence.frames.len() - 1
     }
 
     /// Does it, and sends what came of it.
-    fn work(&mut self, todo: Todo) -> Result<(), Closed> {
-        let worked = match todo {
-            Todo::Nothing => Ok(false),
-            Todo::Show => Ok(true),
-            Todo::Restart => {
-                self.outbox.send(Message::Begun)?;
-                self.restart().map(|()| true)
-            }
-            Todo::LookAgain(place) => self.look_again(place).map(|()| true),
-            Todo::GoTo(index) => self.go_to(index).map(|()| true),
-        };
+    fn work(&mut self, todo: &Todo) -> Result<(), Closed> {
+        if todo.restart {
+            self.outbox.send(Message::Begun)?;
+            self.poses.fill(None);
+            self.tagger = None;
+        }
+        let looks = todo.restart || todo.go_to.is_some() || todo.place.is_some() || self.tagger.is_none();
+        let worked = if looks { self.look(todo) } else { Ok(()) };
         match worked {
-            Ok(true) => self.show()?,
-            Ok(false) => {}
-            Err(reason) => {
+            Ok(()) if looks || todo.show => self.show()?,
+            Ok(()) => {}
+            Err(Fault::Picture(reason)) => self.outbox.send(Message::Problem(reason))?,
+            Err(Fault::Device(reason)) => {
                 self.due = None;
-                // What the filter believed may be worth nothing now: it begins anew from what is known.
-                self.tagger = None;
                 self.outbox.send(Message::Problem(reason))?;
             }
         }
-        self.outbox.send(Message::Playing(self.due.is_some()))
+        self.state.is_playing = self.due.is_some();
+        self.outbox.send(Message::State(self.state))
     }
 
     fn show(&mut self) -> Result<(), Closed> {
@@ -287,43 +304,38 @@ impl Playing {
         self.outbox.send(Message::Frame(Box::new(view)))
     }
 
-    fn restart(&mut self) -> Result<(), String> {
-        self.poses.fill(None);
-        self.begin(self.sequence.start)?;
-        self.look(0)
-    }
-
-    fn look_again(&mut self, place: Option<Pose2>) -> Result<(), String> {
-        let index = self.at();
-        let start = place.or(self.poses[index]).or(self.sequence.start.filter(|_| index == 0));
-        self.begin(start)?;
-        self.look(index)
-    }
-
-    fn go_to(&mut self, index: usize) -> Result<(), String> {
-        let is_next = self.seen.as_ref().is_some_and(|seen| seen.index + 1 == index);
-        // The frame before was seen just now: the filter follows. Where it has been, it begins where it was; elsewhere it
-        // is carried on by the odometry, and searches the field where that is not enough.
-        if self.tagger.is_none() || (!is_next && self.poses[index].is_some()) {
-            self.begin(self.poses[index].or(self.nearest_known(index)))?;
+    /// Looks at the frame that is wanted. From the frame before the filter follows; where it has been, it begins where it
+    /// was; elsewhere it is carried on by the odometry, and searches the field where that is not enough.
+    fn look(&mut self, todo: &Todo) -> Result<(), Fault> {
+        let before = self.state.at;
+        let index = todo.go_to.unwrap_or(if todo.restart { 0 } else { before });
+        self.state.at = index;
+        self.schedule(index);
+        let picture = self.sequence.load_image(index).map_err(|error| Fault::Picture(error.to_string()))?;
+        let follows = todo.place.is_none() && (before + 1 == index || self.poses[index].is_none());
+        if self.tagger.is_none() || !follows {
+            self.begin(todo.place.or(self.poses[index]).or(self.nearest_known(index)))?;
         }
-        self.look(index)
+        self.tag(index, &Arc::new(picture))
     }
 
-    /// The pose of the last frame before that was seen, carried on by the odometry.
+    /// The pose of the last frame that was seen before this one, or the recording's start, carried on by the odometry.
     fn nearest_known(&self, index: usize) -> Option<Pose2> {
-        let (known, pose) = (0..index).rev().find_map(|known| Some((known, self.poses[known]?)))?;
+        let seen = (0..index).rev().find_map(|known| Some((known, self.poses[known]?)));
+        let (known, pose) = seen.or(self.sequence.start.map(|start| (0, start)))?;
+        if known == index {
+            return Some(pose);
+        }
         let odometry = |index: usize| self.sequence.frames[index].odometry;
         Some(pose.moved(odometry(known)?.motion_to(odometry(index)?)))
     }
 
     /// A new filter around a pose, or all over the field.
-    fn begin(&mut self, start: Option<Pose2>) -> Result<(), String> {
-        let words = |error: BackendError| error.to_string();
-        let backend = self.backend().map_err(words)?;
+    fn begin(&mut self, start: Option<Pose2>) -> Result<(), BackendError> {
+        let backend = self.backend()?;
         let Sequence { setup, field, .. } = &*self.sequence;
-        let tagger = Tagger::with_backend(&setup.camera, field, start, self.settings.config(), backend);
-        self.tagger = Some(tagger.map_err(words)?);
+        let config = self.settings.config();
+        self.tagger = Some(Tagger::with_backend(&setup.camera, field, start, config, backend)?);
         Ok(())
     }
 
@@ -339,16 +351,15 @@ impl Playing {
         Ok(backend)
     }
 
-    /// Looks at a frame.
-    fn look(&mut self, index: usize) -> Result<(), String> {
+    fn tag(&mut self, index: usize, picture: &Arc<RgbImage>) -> Result<(), Fault> {
         let Some(tagger) = &mut self.tagger else { return Ok(()) };
-        let picture = Arc::new(self.sequence.load_image(index).map_err(|error| error.to_string())?);
-        let recorded = recorded(&self.sequence, index, &picture);
-        let tagged = tagger.tag(&recorded).map_err(|error| error.to_string())?;
-        let particles = tagger.particles();
-        let prepared = self.preprocessor.prepare(picture, recorded.attitude);
+        let recorded = recorded(&self.sequence, index, picture);
+        let tagged = tagger.tag(&recorded);
+        // A device that has failed is opened anew the next time.
+        let tagged = tagged.inspect_err(|_| (self.tagger, self.backend) = (None, None))?;
+        let particles = self.tagger.as_ref().map_or_else(Vec::new, Tagger::particles);
+        let prepared = self.preprocessor.prepare(picture.clone(), recorded.attitude);
         self.poses[index] = Some(tagged.pose.planar());
-        self.schedule(index);
         self.seen = Some(Seen::new(index, prepared, recorded.attitude, tagged, particles));
         Ok(())
     }
@@ -356,11 +367,7 @@ impl Playing {
     /// Says when the frame after this one is due, while playing.
     fn schedule(&mut self, index: usize) {
         let Some(due) = self.due else { return };
-        let time_s = |index: usize| self.sequence.frames.get(index).map(|frame| frame.timestamp_s);
-        let pause_s = match (time_s(index), time_s(index + 1)) {
-            (Some(now), Some(next)) => (next - now).clamp(0.0, LONGEST_PAUSE_S) / self.speed.factor(),
-            _ => 0.0,
-        };
+        let pause_s = self.timeline.pause_after_s(index) / self.speed.factor();
         // A player that lags behind does not hurry to make up for it.
         self.due = Some((due + Duration::from_secs_f64(pause_s)).max(Instant::now()));
     }

@@ -17,7 +17,7 @@ use reality_sim_core::{
 
 use super::{
     frame::FrameView,
-    player::{Command, Message, Player},
+    player::{Command, Message, Player, State},
     settings::{FilterSettings, Speed, Veil},
 };
 use crate::Device;
@@ -62,7 +62,7 @@ fn next_frame(player: &mut Player) -> FrameView {
         match next(player) {
             Message::Frame(frame) => return *frame,
             Message::Problem(reason) => panic!("{reason}"),
-            Message::Begun | Message::Playing(_) => {}
+            Message::Begun | Message::State(_) => {}
         }
     }
 }
@@ -82,10 +82,10 @@ fn play(player: &mut Player) -> Vec<FrameView> {
     loop {
         match next(player) {
             Message::Frame(frame) => frames.push(*frame),
-            Message::Playing(is_playing) if is_playing => has_played = true,
-            Message::Playing(_) if has_played => return frames,
+            Message::State(state) if state.is_playing => has_played = true,
+            Message::State(_) if has_played => return frames,
             Message::Problem(reason) => panic!("{reason}"),
-            Message::Begun | Message::Playing(_) => {}
+            Message::Begun | Message::State(_) => {}
         }
     }
 }
@@ -202,19 +202,89 @@ fn the_heaviest_particle_is_bright_and_the_lines_run_through_the_picture() {
     assert!(near * 20 > truth.len() * 19, "{near} of {}", truth.len());
 }
 
+/// What is sent until the player has heard so many commands and stands still.
+fn until_still(player: &mut Player, commands: u64) -> (Vec<FrameView>, Vec<String>, State) {
+    let (mut frames, mut problems) = (Vec::new(), Vec::new());
+    loop {
+        match next(player) {
+            Message::Frame(frame) => frames.push(*frame),
+            Message::Problem(reason) => problems.push(reason),
+            Message::State(state) if state.heard >= commands && !state.is_playing => {
+                return (frames, problems, state);
+            }
+            Message::Begun | Message::State(_) => {}
+        }
+    }
+}
+
+fn without_picture(frames: usize, missing: usize) -> Arc<Sequence> {
+    let mut sequence = Sequence::clone(&walk(frames));
+    sequence.frames[missing].image = "images/none.jpg".into();
+    Arc::new(sequence)
+}
+
 #[test]
-fn a_picture_that_is_missing_is_a_problem_and_the_next_is_shown_all_the_same() {
-    let mut sequence = Sequence::clone(&walk(4));
-    sequence.frames[1].image = "images/none.jpg".into();
-    let mut player = player(&Arc::new(sequence), FilterSettings::default());
+fn playing_goes_past_a_picture_that_is_missing_and_names_it() {
+    let mut player = player(&without_picture(5, 2), FilterSettings::default());
     next_frame(&mut player);
     player.tell(Command::Play);
-    let problem = next_problem(&mut player);
-    assert!(problem.contains("none.jpg"), "{problem}");
+    let (frames, problems, state) = until_still(&mut player, 1);
+    let indices: Vec<usize> = frames.iter().map(|frame| frame.record.index).collect();
+    assert_eq!((indices, state.at), (vec![1, 3, 4], 4));
+    assert!(problems.len() == 1 && problems[0].contains("none.jpg"), "{problems:?}");
+    assert!(frames.iter().all(|frame| error_m(frame) < 0.02));
+}
+
+#[test]
+fn stepping_goes_onto_a_picture_that_is_missing_and_past_it() {
+    let mut player = player(&without_picture(4, 1), FilterSettings::default());
+    next_frame(&mut player);
+    player.tell(Command::GoTo(1));
+    let (frames, problems, state) = until_still(&mut player, 1);
+    assert!(frames.is_empty() && problems.len() == 1 && state.at == 1);
     player.tell(Command::GoTo(2));
-    let frame = next_frame(&mut player);
-    assert_eq!(frame.record.index, 2);
-    assert!(error_m(&frame) < 0.02);
+    let (frames, problems, state) = until_still(&mut player, 2);
+    assert!(
+        frames[0].record.index == 2 && error_m(&frames[0]) < 0.02 && problems.is_empty() && state.at == 2
+    );
+}
+
+#[test]
+fn without_its_first_picture_a_recording_is_found_from_the_second() {
+    let mut player = player(&without_picture(4, 0), FilterSettings::default());
+    assert!(next_problem(&mut player).contains("none.jpg"));
+    player.tell(Command::GoTo(1));
+    let (frames, _, _) = until_still(&mut player, 1);
+    assert!(frames[0].record.index == 1 && error_m(&frames[0]) < 0.02);
+}
+
+#[test]
+fn settings_and_a_frame_asked_for_at_once_both_count() {
+    for is_settings_first in [true, false] {
+        let mut player = player(&walk(12), FilterSettings::default());
+        next_frame(&mut player);
+        // The player is busy while these three come in.
+        player.tell(Command::GoTo(1));
+        let filter = Command::Filter(FilterSettings { particles: 300, ..FilterSettings::default() });
+        let both = if is_settings_first { [filter, Command::GoTo(9)] } else { [Command::GoTo(9), filter] };
+        both.into_iter().for_each(|command| player.tell(command));
+        let (frames, _, state) = until_still(&mut player, 3);
+        let last = frames.last().unwrap().record;
+        assert_eq!((last.index, last.particles, state.at), (9, 300, 9));
+        assert!(last.error_m.unwrap() < 0.02);
+    }
+}
+
+#[test]
+fn particles_moved_on_the_way_to_another_frame_are_moved_there() {
+    let mut player = player(&walk(12), FilterSettings::default());
+    next_frame(&mut player);
+    player.tell(Command::GoTo(1));
+    player.tell(Command::GoTo(6));
+    player.tell(Command::Place(Pose2::new(1.5, -1.0, 0.5)));
+    let (frames, _, _) = until_still(&mut player, 3);
+    let last = frames.last().unwrap();
+    assert!(last.record.index == 6 && error_m(last) > 2.0);
 }
 
 #[test]

@@ -3,17 +3,15 @@
 use eframe::egui::{self, ComboBox, Slider, Ui};
 use reality_sim_core::sequence::Sequence;
 
-use super::{player::Command, settings::Speed};
+use super::{
+    player::{Command, State},
+    settings::Speed,
+};
 use crate::shortcuts::{self, Action};
 
 /// Shows the controls; what was asked for comes back.
-pub fn ui(
-    ui: &mut Ui,
-    sequence: &Sequence,
-    at: usize,
-    is_playing: bool,
-    speed: &mut Speed,
-) -> Option<Command> {
+pub fn ui(ui: &mut Ui, sequence: &Sequence, state: State, speed: &mut Speed) -> Option<Command> {
+    let State { at, is_playing, .. } = state;
     let mut asked = None;
     let last = sequence.frames.len() - 1;
     ui.horizontal_wrapped(|ui| {
