@@ -18,7 +18,7 @@ use egui_kittest::{SnapshotOptions, image_snapshot_options, kittest::Queryable};
 use image::RgbaImage;
 
 use common::{
-    PATIENCE, SIZE, choose, click, drag, rect_of, until, until_label, until_part, viewer_with, walk,
+    PATIENCE, SIZE, choose, click, drag, rect_of, shows, until, until_label, until_part, viewer_with, walk,
 };
 
 type Window = common::Viewer<'static>;
@@ -35,7 +35,7 @@ fn window() -> Window {
 /// A window on a recording, with its first picture.
 fn window_on(recording: &Path, size: Vec2) -> Window {
     let mut window = viewer_with(recording, size, None);
-    until_label(&mut window, "Camera picture");
+    until_part(&mut window, "weighed");
     window
 }
 
@@ -213,7 +213,8 @@ fn particles_dragged_away_find_back() {
     until_part(&mut window, "not sure");
     choose(&mut window, "Speed", "as fast as the filter");
     click(&mut window, "Play");
-    until_label(&mut window, "sure");
+    let sure = ["sure", "sure, after a search"];
+    until(&mut window, "sure of the pose", |window| sure.iter().any(|label| shows(window, label)));
 }
 
 #[test]
@@ -277,7 +278,7 @@ fn a_recording_whose_first_picture_is_broken_is_walked_through_all_the_same() {
     let first = folder.path().join("images/000000.jpg");
     let bytes = std::fs::read(&first).unwrap();
     std::fs::write(&first, &bytes[..bytes.len() / 2]).unwrap();
-    let mut window = window_on(folder.path(), SIZE);
+    let mut window = viewer_with(folder.path(), SIZE, None);
     until_part(&mut window, "000000.jpg");
     click(&mut window, "Next");
     until_part(&mut window, "picture 2 of 3");

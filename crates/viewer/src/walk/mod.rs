@@ -55,8 +55,8 @@ pub struct WalkPanel {
     state: State,
     timeline: Timeline,
     has_truth: bool,
-    /// There was a problem before the first frame.
-    has_failed: bool,
+    /// There was a frame, or a problem in its place.
+    has_answered: bool,
     frame: Option<Box<FrameView>>,
     history: History,
     map: Map,
@@ -76,7 +76,7 @@ impl WalkPanel {
             player,
             told: settings.clone(),
             commands: 0,
-            has_failed: false,
+            has_answered: false,
             state: State::default(),
             frame: None,
             map: Map::default(),
@@ -90,12 +90,13 @@ impl WalkPanel {
             match message {
                 Message::Begun => self.history = History::default(),
                 Message::Frame(frame) => {
+                    self.has_answered = true;
                     self.history.add(frame.record);
                     self.frame = Some(frame);
                 }
                 Message::State(state) => self.state = state,
                 Message::Problem(reason) => {
-                    self.has_failed = true;
+                    self.has_answered = true;
                     problems.add(reason);
                 }
             }
@@ -135,8 +136,7 @@ impl WalkPanel {
 
     /// Whether the player works on something that was asked for.
     fn is_working(&self) -> bool {
-        let is_starting = self.frame.is_none() && !self.has_failed;
-        is_starting || self.state.heard < self.commands
+        !self.has_answered || self.state.heard < self.commands
     }
 
     fn content(
@@ -161,17 +161,18 @@ impl WalkPanel {
                 controls::filter(ui, &mut settings.filter, devices);
             });
         });
-        egui::Panel::bottom("time").show(ui, |ui| commands.extend(self.time_ui(ui, settings)));
+        // Curves take what picture and field side by side leave.
+        let views_height = height_within(ui.available_width(), &self.sequence);
+        let left = ui.available_height() - TRANSPORT_HEIGHT - views_height;
+        let curve_height = left.clamp(*CURVE_HEIGHTS.start(), *CURVE_HEIGHTS.end());
+        egui::Panel::bottom("time").show(ui, |ui| commands.extend(self.time_ui(ui, settings, curve_height)));
         egui::CentralPanel::default().show(ui, |ui| commands.extend(self.views(ui, frame, settings)));
         commands
     }
 
-    /// Everything along the bottom: it takes what picture and field side by side leave.
-    fn time_ui(&self, ui: &mut Ui, settings: &mut WalkSettings) -> Vec<Command> {
+    /// Everything along the bottom.
+    fn time_ui(&self, ui: &mut Ui, settings: &mut WalkSettings, curve_height: f32) -> Vec<Command> {
         let Self { sequence, timeline, history, state, has_truth, .. } = self;
-        let views_height = height_within(ui.available_width(), sequence);
-        let left = ui.available_height() - TRANSPORT_HEIGHT - views_height;
-        let curve_height = left.clamp(*CURVE_HEIGHTS.start(), *CURVE_HEIGHTS.end());
         ui.add_space(4.0);
         let asked = transport::ui(ui, sequence, *state, &mut settings.speed);
         let clicked = curves::ui(ui, timeline, history, state.at, *has_truth, curve_height);
