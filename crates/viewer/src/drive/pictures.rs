@@ -63,6 +63,8 @@ pub struct Gallery<'a> {
     pub archive: &'a Archive,
     pub painted: &'a BTreeMap<View, Painted>,
     pub probe: Option<NearProbe>,
+    /// The robot's pose: pictures may still be of one before.
+    pub pose: CameraPose,
 }
 
 /// Pictures on the screen.
@@ -149,7 +151,7 @@ impl Pictures {
         let pixels = size_of(gallery.archive);
         let width = (room / vec2(pixels[0] as f32, pixels[1] as f32)).min_elem() * pixels[0] as f32;
         ui.set_width(width.max(40.0));
-        head(ui, view, painted);
+        head(ui, view, painted, gallery.pose);
         let canvas = PictureCanvas::allocate(ui, pixels, room, &described(view, painted));
         match painted.map(|painted| &painted.result) {
             Some(Ok(drawn)) => {
@@ -179,7 +181,7 @@ impl Pictures {
         {
             ui.horizontal(|ui| {
                 ui.weak(*side);
-                head(ui, *view, painted);
+                head(ui, *view, painted, gallery.pose);
             });
         }
         let names = [0, 1].map(|side| described(views[side], painted[side]));
@@ -246,16 +248,22 @@ fn shown_box(ui: &mut Ui, settings: &mut DriveSettings) {
     chosen.response.labelled_by(label.id);
 }
 
-/// What a picture is, and what is known of it.
-fn head(ui: &mut Ui, view: View, painted: Option<&Painted>) {
+/// What a picture is, what is known of it, and whether it is of another pose than the robot's.
+fn head(ui: &mut Ui, view: View, painted: Option<&Painted>, pose: CameraPose) {
     let facts = painted.and_then(|painted| painted.result.as_ref().ok()).map(|drawn| &drawn.facts);
-    ui.allocate_ui_with_layout(vec2(ui.available_width(), HEAD), Flow::left_to_right(Align::Center), |ui| {
+    let names = |ui: &mut Ui| {
         ui.label(RichText::new(view.kind.name()).strong()).on_hover_text(view.kind.meaning());
         if let Some(facts) = facts {
             let text = facts_in_words(view.kind, facts);
             ui.add(egui::Label::new(RichText::new(&text).weak()).truncate())
                 .on_hover_text(format!("{text}\n{FACTS_MEAN}"));
         }
+    };
+    ui.allocate_ui_with_layout(vec2(ui.available_width(), HEAD), Flow::right_to_left(Align::Center), |ui| {
+        if painted.is_some_and(|painted| painted.pose != pose) {
+            ui.weak("updating …").on_hover_text("This is the picture at a pose before");
+        }
+        ui.with_layout(Flow::left_to_right(Align::Center), names);
     });
 }
 
@@ -311,11 +319,22 @@ fn words(ui: &mut Ui, rect: Rect, view: View, reason: &str, probe: Option<NearPr
         UiBuilder::new().max_rect(inside).layout(Flow::top_down(Align::Center)).id_salt(view.kind.name()),
     );
     child.set_clip_rect(rect.intersect(ui.clip_rect()));
-    child.add_space(0.28 * inside.height());
-    child.add(egui::Label::new(RichText::new(reason).color(Color32::from_gray(205))).wrap());
-    let probe = probe.filter(|_| view.kind == PictureKind::Truth)?;
-    child.add_space(6.0);
-    child.add(Button::new("Go there")).clicked().then_some(probe.pose)
+    // In a small picture every line counts, and what has no room is scrolled to.
+    let is_small = inside.height() < 140.0;
+    child.add_space(if is_small { 0.0 } else { 0.28 * inside.height() });
+    let probe = probe.filter(|_| view.kind == PictureKind::Truth);
+    egui::ScrollArea::vertical()
+        .show(&mut child, |ui| {
+            let text = RichText::new(reason).color(Color32::from_gray(205));
+            let text = if is_small { text.small() } else { text };
+            // The way out comes before its reason where both have no room.
+            let go = |ui: &mut Ui| probe.filter(|_| ui.add(Button::new("Go there")).clicked());
+            let before = if is_small { go(ui) } else { None };
+            ui.add(egui::Label::new(text).wrap());
+            let after = if is_small { None } else { go(ui) };
+            before.or(after).map(|probe| probe.pose)
+        })
+        .inner
 }
 
 /// What the colours mean.
