@@ -84,6 +84,9 @@ fn frame_with_new_picture(window: &mut Window) -> Duration {
 
 /// Which picture is shown, in words.
 fn picture_shown(window: &Window) -> String {
-    let shown = window.get_by_label_contains("picture ").accesskit_node();
-    shown.label().or_else(|| shown.value()).unwrap_or_default()
+    let texts = window.query_all_by_label_contains("picture ").map(|node| {
+        let node = node.accesskit_node();
+        node.label().or_else(|| node.value()).unwrap_or_default()
+    });
+    texts.filter(|text| text.starts_with("picture ")).collect()
 }

@@ -212,10 +212,9 @@ fn every_layer_changes_what_is_drawn_of_the_field_and_back() {
             assert!(started.elapsed() < PATIENCE, "{layer} leaves something");
         }
     }
-    for (coverage, legend) in [
-        ("pictures taken there", "in 25 cm × 25 cm"),
-        ("pixels to the nearest picture", "300 px or more"),
-    ] {
+    for (coverage, legend) in
+        [("pictures taken there", "in 25 cm × 25 cm"), ("pixels to the nearest picture", "300 px or more")]
+    {
         let before = picture_of_field(&mut window);
         choose(&mut window, "Coverage", coverage);
         until_part(&mut window, legend);

@@ -122,9 +122,7 @@ impl Driving {
     }
 
     fn wish(&mut self, ui: &Ui, settings: &DriveSettings, devices: &[Device]) {
-        let painter = self
-            .painter
-            .get_or_insert_with(|| Painter::spawn(ui.ctx(), self.source.clone()));
+        let painter = self.painter.get_or_insert_with(|| Painter::spawn(ui.ctx(), self.source.clone()));
         painter.wish(Wish {
             pose: self.robot.pose(),
             views: settings.layout.views(settings),

@@ -214,8 +214,10 @@ impl Map {
 
     /// The layers to switch, each with its colour.
     pub fn layers_ui(&mut self, ui: &mut Ui, scene: &Scene, layers: &mut Layers) {
-        let used_mean =
-            format!("The images that the picture “{}” is made of, in the colours of its origins", scene.used_by);
+        let used_mean = format!(
+            "The images that the picture “{}” is made of, in the colours of its origins",
+            scene.used_by
+        );
         ui.horizontal_wrapped(|ui| {
             let boxes: [(&mut bool, &str, Color32, &str); 6] = [
                 (&mut layers.images, "recorded", IMAGES, "Where pictures were recorded, and where they look"),

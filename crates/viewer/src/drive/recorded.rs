@@ -104,7 +104,8 @@ impl Recorded {
                 "It has no ground truth: where its {pictures} were taken is not known. The particle filter can find the poses; pictures that it is not sure of are left out."
             );
         }
-        let of_those = if poses < frames { format!("{poses} of its {pictures}") } else { format!("its {pictures}") };
+        let of_those =
+            if poses < frames { format!("{poses} of its {pictures}") } else { format!("its {pictures}") };
         let held = if holds_back(poses) {
             " Every fifth is held back, as the true picture to compare with."
         } else {

@@ -207,7 +207,11 @@ fn origins_and_trust_are_of_the_same_picture_and_a_simulated_one_has_none() {
         view(PictureKind::Blend, Shown::Trust),
         view(PictureKind::Simulated, Shown::Origins),
     ];
-    let wish = Wish { views, edges_in: Some([DVec2::splat(-9.0), DVec2::splat(9.0)]), ..wish(&source, probe(&source).1) };
+    let wish = Wish {
+        views,
+        edges_in: Some([DVec2::splat(-9.0), DVec2::splat(9.0)]),
+        ..wish(&source, probe(&source).1)
+    };
     let (around, painted) = fulfilled(&mut painter(&source), &wish);
     let drawn = |index: usize| painted[&wish.views[index]].result.as_ref();
     let used = |index: usize| &drawn(index).unwrap().facts.used;
@@ -270,7 +274,8 @@ fn what_was_drawn_already_is_not_drawn_again_for_another_part_of_the_map() {
     let mut painter = painter(&source);
     let first = wish(&source, probe(&source).1);
     fulfilled(&mut painter, &first);
-    let views = vec![View::picture(PictureKind::Blend), View { kind: PictureKind::Blend, shown: Shown::Trust }];
+    let views =
+        vec![View::picture(PictureKind::Blend), View { kind: PictureKind::Blend, shown: Shown::Trust }];
     let part = [DVec2::new(-9.0, -9.0), DVec2::new(0.0, 9.0)];
     painter.wish(Wish { views, edges_in: Some(part), ..first });
     let start = Instant::now();
@@ -312,7 +317,10 @@ fn another_device_is_opened_at_once_and_once() {
     assert_eq!(opened.load(Ordering::SeqCst), 0);
     let second = Wish { device: Some(device), ..first };
     fulfilled(&mut painter, &second);
-    fulfilled(&mut painter, &Wish { pose: CameraPose { x_m: second.pose.x_m + 0.01, ..second.pose }, ..second });
+    fulfilled(
+        &mut painter,
+        &Wish { pose: CameraPose { x_m: second.pose.x_m + 0.01, ..second.pose }, ..second },
+    );
     assert_eq!(opened.load(Ordering::SeqCst), 1);
 }
 
@@ -432,7 +440,8 @@ fn recordings_that_cannot_be_compared_are_refused_by_name() {
         (changed(|recording| recording.setup.camera.fx += 1.0), "another lens"),
         (
             changed(|recording| {
-                recording.setup.camera.image_circle = Some(ImageCircle { cx: 319.5, cy: 239.5, radius: 99.0 });
+                recording.setup.camera.image_circle =
+                    Some(ImageCircle { cx: 319.5, cy: 239.5, radius: 99.0 });
             }),
             "part of the lens's image",
         ),
