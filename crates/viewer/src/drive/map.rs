@@ -158,6 +158,15 @@ impl Default for Map {
     }
 }
 
+/// Counting holds the database, which may be a temporary one: it is waited for.
+impl Drop for Map {
+    fn drop(&mut self) {
+        if let Counted::Counting(task) = std::mem::replace(&mut self.coverage, Counted::Never) {
+            task.finish();
+        }
+    }
+}
+
 impl Map {
     /// Shows the field as large as fits into some room, and lets the robot be dragged.
     pub fn ui(&mut self, ui: &mut Ui, room: Vec2, scene: &Scene, robot: &mut Robot) {

@@ -114,7 +114,7 @@ pub enum Answer {
     Problem(String),
 }
 
-/// The thread, seen from the window. Dropping this waits until it has ended: at most as long as a picture takes.
+/// The thread, seen from the window. Dropping this waits until it has ended: at most as long as a picture takes, or a device to open.
 pub struct Painter {
     /// Before the thread: that ends when nobody can wish any more.
     wishes: mpsc::Sender<Wish>,
