@@ -16,7 +16,7 @@ use reality_sim_core::sequence::Sequence;
 use reality_sim_db::{Database, PoseEstimate, PoseSource};
 use tempfile::TempDir;
 
-use common::{PATIENCE, SIZE, choose, click, drag, until, until_label, until_part, viewer, walk};
+use common::{PATIENCE, SIZE, choose, click, drag, shows, until, until_label, until_part, viewer, walk};
 
 type Window = common::Viewer<'static>;
 
@@ -225,7 +225,7 @@ fn every_layer_changes_what_is_drawn_of_the_field_and_back() {
 #[test]
 fn a_picture_of_a_pose_before_is_marked_until_the_new_one_comes() {
     let (mut window, _folder) = driving();
-    let is_marked = |window: &Window| window.query_all_by_label("updating …").next().is_some();
+    let is_marked = |window: &common::Viewer<'_>| shows(window, "updating …");
     until(&mut window, "both pictures", |window| !is_marked(window));
     window.key_down(Key::Q);
     window.run_steps(2);
