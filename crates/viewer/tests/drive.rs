@@ -234,6 +234,31 @@ fn a_picture_of_a_pose_before_is_marked_until_the_new_one_comes() {
     until(&mut window, "both pictures again", |window| !is_marked(window));
 }
 
+#[test]
+fn the_fields_panel_is_as_wide_as_it_was_dragged_to_be_in_proportion_to_the_window() {
+    let (mut window, _folder) = driving();
+    let rect = field(&window).0;
+    let edge = rect.left_center() - vec2(8.0, 0.0);
+    let width = |window: &Window| f64::from(field(window).0.width());
+    let before = width(&window);
+    let edges: Vec<Pos2> = (-8..=8).map(|offset| edge + vec2(offset as f32, 0.0)).collect();
+    // The line between the panels is where the mouse says so.
+    for at in edges {
+        drag(&mut window, &[at, at + vec2(50.0, 0.0), at + vec2(100.0, 0.0)]);
+        if width(&window) < before - 50.0 {
+            break;
+        }
+    }
+    let dragged = width(&window);
+    assert!(dragged < before - 50.0, "{before} {dragged}");
+    window.set_size(vec2(1000.0, 820.0));
+    window.run_steps(3);
+    assert!(width(&window) < dragged - 20.0, "{dragged} {}", width(&window));
+    window.set_size(SIZE);
+    window.run_steps(3);
+    assert!((width(&window) - dragged).abs() < 2.0, "{dragged} {}", width(&window));
+}
+
 /// The demonstration walk again and again: a database of it takes long enough to be cancelled in time.
 fn long_walk(folder: &Path, times: usize) {
     for name in ["sequence.toml", "camera.toml", "field.toml"] {

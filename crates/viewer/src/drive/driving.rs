@@ -42,6 +42,8 @@ pub struct Driving {
     painted: BTreeMap<View, Painted>,
     /// Width of all of it in the last frame, points.
     width: f32,
+    /// Width of the field's panel in the last frame, points.
+    map_width: f32,
 }
 
 impl Driving {
@@ -60,6 +62,7 @@ impl Driving {
             around: None,
             painted: BTreeMap::new(),
             width: 0.0,
+            map_width: 0.0,
         }
     }
 
@@ -148,9 +151,9 @@ impl Driving {
     /// The field at the right, as wide as it was dragged to be: in proportion, for windows of any width.
     fn map_panel(&mut self, ui: &mut Ui, settings: &mut DriveSettings, devices: &[Device]) -> bool {
         let width = ui.available_width();
-        let (least, most) = (260.0, (0.55 * width).max(270.0));
-        let given = (settings.map_share * width).clamp(least, most);
-        let panel = egui::Panel::right("drive map").default_size(given).size_range(least..=most);
+        let panel = egui::Panel::right("drive map")
+            .default_size(settings.map_share * width)
+            .size_range(260.0..=(0.55 * width).max(270.0));
         let is_new = std::mem::replace(&mut self.width, width) != width;
         if is_new {
             // What egui remembers is the width in points.
@@ -158,9 +161,10 @@ impl Driving {
             ui.data_mut(|data| data.remove::<egui::PanelState>(id));
         }
         let shown = panel.show(ui, |ui| self.map_ui(ui, settings, devices));
-        let shown_width = shown.response.rect.width();
-        if ui.input(|input| input.pointer.any_down()) && (shown_width - given).abs() > 1.0 {
-            settings.map_share = shown_width / width;
+        let map_width = shown.response.rect.width();
+        let is_changed = std::mem::replace(&mut self.map_width, map_width) != map_width;
+        if is_changed && !is_new && ui.input(|input| input.pointer.any_down()) {
+            settings.map_share = map_width / width;
         }
         shown.inner
     }
