@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use eframe::egui::{
     self, Align, Button, Color32, ColorImage, ComboBox, Layout as Flow, Rect, RichText, TextureId, Ui,
-    UiBuilder, Vec2, vec2,
+    UiBuilder, Vec2, emath::GuiRounding as _, vec2,
 };
 use reality_sim_core::pose::CameraPose;
 use reality_sim_synthesis::Archive;
@@ -252,7 +252,8 @@ fn shown_box(ui: &mut Ui, settings: &mut DriveSettings) {
 fn head(ui: &mut Ui, view: View, painted: Option<&Painted>, pose: CameraPose) {
     let facts = painted.and_then(|painted| painted.result.as_ref().ok()).map(|drawn| &drawn.facts);
     let names = |ui: &mut Ui| {
-        ui.label(RichText::new(view.kind.name()).strong()).on_hover_text(view.kind.meaning());
+        ui.add(egui::Label::new(RichText::new(view.kind.name()).strong()).truncate())
+            .on_hover_text(view.kind.meaning());
         if let Some(facts) = facts {
             let text = facts_in_words(view.kind, facts);
             ui.add(egui::Label::new(RichText::new(&text).weak()).truncate())
@@ -314,7 +315,7 @@ fn waiting(ui: &mut Ui, rect: Rect) -> Option<CameraPose> {
 
 /// Why there is no picture, in its place, and a way to one.
 fn words(ui: &mut Ui, rect: Rect, view: View, reason: &str, probe: Option<NearProbe>) -> Option<CameraPose> {
-    let inside = rect.shrink(0.06 * rect.width());
+    let inside = rect.shrink(0.06 * rect.width()).round_ui();
     let mut child = ui.new_child(
         UiBuilder::new().max_rect(inside).layout(Flow::top_down(Align::Center)).id_salt(view.kind.name()),
     );
