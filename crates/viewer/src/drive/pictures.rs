@@ -21,6 +21,8 @@ use crate::picture_view::{PictureCanvas, Uploaded};
 
 /// A line of text above a picture, points.
 const HEAD: f32 = 22.0;
+/// Narrower heads, points, have no room for both numbers and the mark of an old picture.
+const ROOM_FOR_FACTS: f32 = 200.0;
 /// What the numbers above a picture mean.
 const FACTS_MEAN: &str = "px away: by how many pixels the picture moves from there to here, root mean square\nPSNR: likeness to the true picture at this very pose, over the carpet; higher is better\nrecorded: the share of the pixels that recorded pictures show; the others are filled in\nms: the time that it took";
 /// Shares below this are not listed.
@@ -250,7 +252,10 @@ fn shown_box(ui: &mut Ui, settings: &mut DriveSettings) {
 
 /// What a picture is, what is known of it, and whether it is of another pose than the robot's.
 fn head(ui: &mut Ui, view: View, painted: Option<&Painted>, pose: CameraPose) {
-    let facts = painted.and_then(|painted| painted.result.as_ref().ok()).map(|drawn| &drawn.facts);
+    let is_old = painted.is_some_and(|painted| painted.pose != pose);
+    let has_room = !is_old || ui.available_width() > ROOM_FOR_FACTS;
+    let drawn = painted.and_then(|painted| painted.result.as_ref().ok());
+    let facts = drawn.map(|drawn| &drawn.facts).filter(|_| has_room);
     let names = |ui: &mut Ui| {
         ui.add(egui::Label::new(RichText::new(view.kind.name()).strong()).truncate())
             .on_hover_text(view.kind.meaning());
@@ -261,7 +266,7 @@ fn head(ui: &mut Ui, view: View, painted: Option<&Painted>, pose: CameraPose) {
         }
     };
     ui.allocate_ui_with_layout(vec2(ui.available_width(), HEAD), Flow::right_to_left(Align::Center), |ui| {
-        if painted.is_some_and(|painted| painted.pose != pose) {
+        if is_old {
             ui.weak("updating …").on_hover_text("This is the picture at a pose before");
         }
         ui.with_layout(Flow::left_to_right(Align::Center), names);
