@@ -69,6 +69,43 @@ impl Coverage {
     /// Looks at the carpet of a field in cells of about this size, metres. Distances are those of a camera at this height,
     /// pitch and roll. Pictures taken beside the carpet count in no cell.
     pub fn new(index: &PoseIndex, field: &FieldDimensions, usual: CameraPose, cell_m: f64) -> Self {
+        let grid = Grid::new(index, field, cell_m);
+        let cells = grid.numbers().map(|number| grid.cell(index, usual, number)).collect();
+        grid.coverage(cells)
+    }
+
+    /// As [`Coverage::new`], as long as `goes_on` says true, which is asked before every cell; `None` where it said false.
+    pub fn new_while(
+        index: &PoseIndex,
+        field: &FieldDimensions,
+        usual: CameraPose,
+        cell_m: f64,
+        goes_on: impl Fn() -> bool + Sync,
+    ) -> Option<Self> {
+        let grid = Grid::new(index, field, cell_m);
+        let cell = |number| goes_on().then(|| grid.cell(index, usual, number));
+        let cells: Option<Vec<_>> = grid.numbers().map(cell).collect();
+        Some(grid.coverage(cells?))
+    }
+
+    /// The share of all places and headings with a picture nearer than this, root mean square pixels.
+    pub fn share_within(&self, distance_px: f64) -> f64 {
+        let near = self.cells.iter().flat_map(|cell| cell.distance_px).filter(|found| *found < distance_px);
+        near.count() as f64 / (HEADINGS * self.cells.len()) as f64
+    }
+}
+
+/// Where the cells are, and the pictures taken in each.
+struct Grid {
+    cell_m: f64,
+    size: [usize; 2],
+    /// The corner with the smallest x and y, world axes, metres.
+    corner: DVec2,
+    counts: Vec<[u32; HEADINGS]>,
+}
+
+impl Grid {
+    fn new(index: &PoseIndex, field: &FieldDimensions, cell_m: f64) -> Self {
         let half = field.carpet_half_extent_m();
         let cell_m = cell_m.max(2.0 * half.max_element() / MOST_CELLS_ALONG);
         let size = (2.0 * half / cell_m).ceil().max(DVec2::ONE);
@@ -82,24 +119,27 @@ impl Coverage {
                 counts[cell.y as usize * size[0] + cell.x as usize][heading_of(pose.yaw_rad)] += 1;
             }
         }
-        let cell = |(number, pictures): (usize, [u32; HEADINGS])| {
-            let place = DVec2::new((number % size[0]) as f64, (number / size[0]) as f64);
-            let middle_in_world = corner + cell_m * (place + 0.5);
-            let distance_px = std::array::from_fn(|heading| {
-                let yaw_rad = TAU * heading as f64 / HEADINGS as f64;
-                let pose = usual.with_planar(Pose2::new(middle_in_world.x, middle_in_world.y, yaw_rad));
-                index.nearest(pose, 1).map_or(f64::INFINITY, |nearest| nearest[0].distance_px)
-            });
-            CoverageCell { middle_in_world, pictures, distance_px }
-        };
-        let cells = counts.into_par_iter().enumerate().map(cell).collect();
-        Self { cell_m, size, cells }
+        Self { cell_m, size, corner, counts }
     }
 
-    /// The share of all places and headings with a picture nearer than this, root mean square pixels.
-    pub fn share_within(&self, distance_px: f64) -> f64 {
-        let near = self.cells.iter().flat_map(|cell| cell.distance_px).filter(|found| *found < distance_px);
-        near.count() as f64 / (HEADINGS * self.cells.len()) as f64
+    fn numbers(&self) -> rayon::range::Iter<usize> {
+        (0..self.counts.len()).into_par_iter()
+    }
+
+    fn cell(&self, index: &PoseIndex, usual: CameraPose, number: usize) -> CoverageCell {
+        let along = self.size[0];
+        let place = DVec2::new((number % along) as f64, (number / along) as f64);
+        let middle_in_world = self.corner + self.cell_m * (place + 0.5);
+        let distance_px = std::array::from_fn(|heading| {
+            let yaw_rad = TAU * heading as f64 / HEADINGS as f64;
+            let pose = usual.with_planar(Pose2::new(middle_in_world.x, middle_in_world.y, yaw_rad));
+            index.nearest(pose, 1).map_or(f64::INFINITY, |nearest| nearest[0].distance_px)
+        });
+        CoverageCell { middle_in_world, pictures: self.counts[number], distance_px }
+    }
+
+    fn coverage(self, cells: Vec<CoverageCell>) -> Coverage {
+        Coverage { cell_m: self.cell_m, size: self.size, cells }
     }
 }
 
@@ -109,16 +149,39 @@ fn heading_of(yaw_rad: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use reality_sim_core::camera::{Camera, Distortion};
 
     use super::*;
     use crate::metric::PixelMetric;
 
+    fn usual() -> CameraPose {
+        CameraPose { height_m: 0.5, pitch_rad: 0.4, ..Default::default() }
+    }
+
+    fn index(field: &FieldDimensions, poses: Vec<CameraPose>) -> PoseIndex {
+        let camera = Camera::new([640, 480], [215.0, 215.0, 319.5, 239.5], Distortion::Pinhole).unwrap();
+        PoseIndex::new(PixelMetric::new(&camera, usual(), field).unwrap(), poses)
+    }
+
+    #[test]
+    fn as_long_as_it_goes_on_the_coverage_is_the_same_and_then_it_stops_before_the_next_cells() {
+        let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
+        let index = index(&field, vec![usual()]);
+        let whole = Coverage::new(&index, &field, usual(), 0.25);
+        assert_eq!(Coverage::new_while(&index, &field, usual(), 0.25, || true).as_ref(), Some(&whole));
+        let asked = AtomicUsize::new(0);
+        let stopped =
+            Coverage::new_while(&index, &field, usual(), 0.25, || asked.fetch_add(1, Ordering::Relaxed) < 3);
+        assert_eq!(stopped, None);
+        assert!(asked.into_inner() < whole.cells.len());
+    }
+
     #[test]
     fn every_picture_on_the_carpet_is_counted_where_it_was_taken_and_where_it_looks() {
         let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
-        let camera = Camera::new([640, 480], [215.0, 215.0, 319.5, 239.5], Distortion::Pinhole).unwrap();
-        let usual = CameraPose { height_m: 0.5, pitch_rad: 0.4, ..Default::default() };
+        let usual = usual();
         let pose = |x, y, yaw| usual.with_planar(Pose2::new(x, y, yaw));
         let poses = vec![
             pose(1.05, 0.6, 0.1),
@@ -127,7 +190,7 @@ mod tests {
             pose(-2.05, -1.1, -3.1),
             pose(90.0, 0.0, 0.0),
         ];
-        let index = PoseIndex::new(PixelMetric::new(&camera, usual, &field).unwrap(), poses);
+        let index = index(&field, poses);
         let coverage = Coverage::new(&index, &field, usual, 0.25);
         assert_eq!(coverage.cells.iter().map(CoverageCell::count).sum::<u32>(), 4, "one was taken outside");
         let cell_at = |x: f64, y: f64| {

@@ -46,22 +46,31 @@ impl Database {
         sequence: &Sequence,
         poses: &[Option<PoseEstimate>],
         source: &PoseSource,
-        mut progress: impl FnMut(usize),
+        progress: impl FnMut(usize),
     ) -> Result<IngestReport, DbError> {
-        self.ingest_while(sequence, poses, source, |done| {
-            progress(done);
-            true
-        })
+        self.ingest_batches(sequence, poses, source, |_| true, progress)
     }
 
-    /// As [`Database::ingest`], as long as `progress` says true: after the batch where it does not, the rest is left for
-    /// another call.
+    /// As [`Database::ingest`], but `progress` gets the number of frames done after every frame, before it is committed, and
+    /// only as long as it says true: where it does not, the frames done are committed, and the rest is left for another call.
     pub fn ingest_while(
         &mut self,
         sequence: &Sequence,
         poses: &[Option<PoseEstimate>],
         source: &PoseSource,
-        mut progress: impl FnMut(usize) -> bool,
+        progress: impl FnMut(usize) -> bool,
+    ) -> Result<IngestReport, DbError> {
+        self.ingest_batches(sequence, poses, source, progress, |_| {})
+    }
+
+    /// `goes_on` gets the number of frames done after every frame, `committed` after every batch.
+    fn ingest_batches(
+        &mut self,
+        sequence: &Sequence,
+        poses: &[Option<PoseEstimate>],
+        source: &PoseSource,
+        mut goes_on: impl FnMut(usize) -> bool,
+        mut committed: impl FnMut(usize),
     ) -> Result<IngestReport, DbError> {
         let path = self.path().to_path_buf();
         let fail = |fault| DbError::new(&path, fault);
@@ -72,16 +81,18 @@ impl Database {
         let recording = Recording::new(&path, sequence, poses, source)?;
         let connection = self.connection.get_mut().unwrap_or_else(PoisonError::into_inner);
         let mut report = IngestReport::default();
-        let mut done = 0;
-        while done < poses.len() {
+        let (mut done, mut is_wanted) = (0, true);
+        while done < poses.len() && is_wanted {
             let transaction = connection
                 .transaction_with_behavior(TransactionBehavior::Immediate)
                 .map_err(|error| fail(error.into()))?;
-            done = recording.add_batch(&transaction, done, &mut report)?;
+            let mut goes_on = |done| {
+                is_wanted = goes_on(done);
+                is_wanted
+            };
+            done = recording.add_batch(&transaction, done, &mut report, &mut goes_on)?;
             transaction.commit().map_err(|error| fail(error.into()))?;
-            if !progress(done) {
-                break;
-            }
+            committed(done);
         }
         Ok(report)
     }
@@ -127,12 +138,13 @@ impl<'a> Recording<'a> {
         Ok(Self { path, sequence, poses, source, first_frame: first_frame(sequence), camera, field })
     }
 
-    /// Adds frames from this one on, and says which is next.
+    /// Adds frames from this one on, as long as `goes_on` says true after each, and says which is next.
     fn add_batch(
         &self,
         transaction: &Transaction<'_>,
         first: usize,
         report: &mut IngestReport,
+        goes_on: &mut dyn FnMut(usize) -> bool,
     ) -> Result<usize, DbError> {
         let shared = self.shared(transaction).map_err(|error| DbError::new(self.path, error))?;
         let end = self.poses.len().min(first + BATCH_FRAMES);
@@ -141,16 +153,20 @@ impl<'a> Recording<'a> {
             if held_bytes >= BATCH_BYTES {
                 return Ok(index);
             }
-            let Some(estimate) = &self.poses[index] else {
-                report.without_pose += 1;
-                continue;
-            };
-            let bytes = self.sequence.image_bytes(index)?;
-            held_bytes += bytes.len();
-            let is_new = self
-                .add_frame(transaction, &shared, index, estimate, &bytes)
-                .map_err(|fault| DbError::new(self.path, fault))?;
-            *(if is_new { &mut report.added } else { &mut report.already_there }) += 1;
+            match &self.poses[index] {
+                None => report.without_pose += 1,
+                Some(estimate) => {
+                    let bytes = self.sequence.image_bytes(index)?;
+                    held_bytes += bytes.len();
+                    let is_new = self
+                        .add_frame(transaction, &shared, index, estimate, &bytes)
+                        .map_err(|fault| DbError::new(self.path, fault))?;
+                    *(if is_new { &mut report.added } else { &mut report.already_there }) += 1;
+                }
+            }
+            if !goes_on(index + 1) {
+                return Ok(index + 1);
+            }
         }
         Ok(end)
     }

@@ -2,7 +2,7 @@
 
 use std::{
     sync::{
-        Arc,
+        Arc, Mutex, PoisonError,
         atomic::{AtomicBool, AtomicUsize, Ordering},
         mpsc,
     },
@@ -15,11 +15,19 @@ use eframe::egui;
 pub struct Progress {
     done: AtomicUsize,
     total: AtomicUsize,
+    /// The part of the work under way, where it has parts.
+    phase: Mutex<Option<&'static str>>,
     is_cancelled: AtomicBool,
     ctx: egui::Context,
 }
 
 impl Progress {
+    /// Another part of the work begins: it is shown in place of the title. How long it takes is not known yet.
+    pub fn begin(&self, phase: &'static str) {
+        *self.phase.lock().unwrap_or_else(PoisonError::into_inner) = Some(phase);
+        self.set(0, 0);
+    }
+
     /// So many of so many steps are done.
     pub fn set(&self, done: usize, total: usize) {
         self.done.store(done, Ordering::Relaxed);
@@ -30,6 +38,10 @@ impl Progress {
     /// Whether the work should stop as soon as it can.
     pub fn is_cancelled(&self) -> bool {
         self.is_cancelled.load(Ordering::Relaxed)
+    }
+
+    fn phase(&self) -> Option<&'static str> {
+        *self.phase.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The share that is done; `None` while that is not known.
@@ -53,6 +65,7 @@ pub struct Task<T> {
     pub title: String,
     progress: Arc<Progress>,
     result: mpsc::Receiver<Result<T, String>>,
+    thread: Option<thread::JoinHandle<()>>,
 }
 
 impl<T: Send + 'static> Task<T> {
@@ -65,19 +78,20 @@ impl<T: Send + 'static> Task<T> {
         let progress = Arc::new(Progress {
             done: AtomicUsize::new(0),
             total: AtomicUsize::new(0),
+            phase: Mutex::new(None),
             is_cancelled: AtomicBool::new(false),
             ctx: ctx.clone(),
         });
         let (sender, result) = mpsc::channel();
         let (its_progress, ctx) = (progress.clone(), ctx.clone());
-        thread::spawn(move || {
+        let thread = thread::spawn(move || {
             // Dropped in reverse order, after a panic too: when the window wakes up, the channel is closed.
             let _wake = Wake(ctx);
             let sender = sender;
             // Nobody listens any more once the task was dropped.
             let _ = sender.send(work(&its_progress));
         });
-        Self { title: title.into(), progress, result }
+        Self { title: title.into(), progress, result, thread: Some(thread) }
     }
 
     /// The end of it, once.
@@ -100,10 +114,17 @@ impl<T: Send + 'static> Task<T> {
         self.progress.is_cancelled()
     }
 
+    /// Asks it to stop, and waits until it has.
+    pub fn finish(mut self) {
+        self.progress.is_cancelled.store(true, Ordering::Relaxed);
+        // A panic is told by `poll`, and here nobody asks any more.
+        self.thread.take().map(thread::JoinHandle::join);
+    }
+
     /// What is being done, how much of it is, and a button that stops it.
     pub fn ui(&self, ui: &mut egui::Ui) {
         ui.horizontal(|ui| {
-            ui.label(&self.title);
+            ui.label(self.progress.phase().unwrap_or(&self.title));
             match self.progress.share() {
                 Some(share) => {
                     ui.add(egui::ProgressBar::new(share).desired_width(160.0).show_percentage());
@@ -124,6 +145,23 @@ impl<T: Send + 'static> Task<T> {
 impl<T> Drop for Task<T> {
     fn drop(&mut self) {
         self.progress.is_cancelled.store(true, Ordering::Relaxed);
+    }
+}
+
+/// A thread that is waited for when this is dropped.
+pub struct Joined(Option<thread::JoinHandle<()>>);
+
+impl Joined {
+    /// That of a thread.
+    pub fn new(thread: thread::JoinHandle<()>) -> Self {
+        Self(Some(thread))
+    }
+}
+
+impl Drop for Joined {
+    fn drop(&mut self) {
+        // That it panicked shows in what it no longer sends.
+        self.0.take().map(thread::JoinHandle::join);
     }
 }
 
@@ -199,6 +237,36 @@ mod tests {
         assert!(task.poll().is_none(), "it ended by itself");
         drop(task);
         stopped.recv_timeout(Duration::from_secs(60)).unwrap();
+    }
+
+    #[test]
+    fn who_finishes_a_task_waits_until_all_that_it_held_is_gone() {
+        let (held, progress_seen) = (Arc::new(()), Arc::new(AtomicBool::new(false)));
+        let (its, seen) = (held.clone(), progress_seen.clone());
+        let task = Task::spawn(&egui::Context::default(), "", move |progress| {
+            while !progress.is_cancelled() {
+                thread::sleep(Duration::from_millis(1));
+            }
+            seen.store(true, Ordering::SeqCst);
+            Ok(its)
+        });
+        task.finish();
+        assert!(progress_seen.load(Ordering::SeqCst));
+        assert_eq!(Arc::strong_count(&held), 1, "the result is not kept either");
+    }
+
+    #[test]
+    fn a_part_that_begins_is_shown_in_place_of_the_title() {
+        let (told, wait) = (mpsc::channel::<()>(), mpsc::channel::<()>());
+        let task = Task::spawn(&egui::Context::default(), "Cooking", move |progress| {
+            progress.set(3, 4);
+            progress.begin("Washing up");
+            told.0.send(()).map_err(|error| error.to_string())?;
+            wait.1.recv().map_err(|error| error.to_string())
+        });
+        told.1.recv_timeout(Duration::from_secs(60)).unwrap();
+        assert_eq!((task.progress.phase(), task.progress.share()), (Some("Washing up"), None));
+        wait.0.send(()).unwrap();
     }
 
     #[test]

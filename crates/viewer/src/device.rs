@@ -13,6 +13,13 @@ pub struct Device {
     pub open: Arc<dyn Fn() -> Result<Arc<dyn Backend>, BackendError> + Send + Sync>,
 }
 
+/// Devices of one name are one.
+impl PartialEq for Device {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
 impl fmt::Debug for Device {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.debug_tuple("Device").field(&self.name).finish()

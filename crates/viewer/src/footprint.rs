@@ -14,6 +14,23 @@ const PLACES: u32 = 40;
 /// Halvings of the step between places on the way to where the picture ends: a millimetre is left.
 const HALVINGS: u32 = 7;
 
+/// The footprint of a pose, kept for as long as the pose stays.
+#[derive(Debug, Clone, Default)]
+pub struct Footprint {
+    of: Option<CameraPose>,
+    outline: Vec<DVec2>,
+}
+
+impl Footprint {
+    /// As [`footprint`]. All calls are for the same camera.
+    pub fn outline(&mut self, camera: &Camera, pose: CameraPose) -> &[DVec2] {
+        if self.of != Some(pose) {
+            (self.of, self.outline) = (Some(pose), footprint(camera, pose));
+        }
+        &self.outline
+    }
+}
+
 /// The outline of the ground in a picture, world axes, metres, cut off at some distance: the far side counter-clockwise,
 /// then the near side back. Empty where no ground is seen.
 pub fn footprint(camera: &Camera, pose: CameraPose) -> Vec<DVec2> {
@@ -99,6 +116,14 @@ mod tests {
         assert!(outline.iter().all(|point| (*point - DVec2::new(1.0, -0.5)).dot(forward) > 0.0));
         assert!(distances.iter().all(|distance| *distance <= FAR_M + 1e-9));
         assert!(distances.iter().any(|distance| *distance > FAR_M - 1e-9), "the horizon is in the picture");
+    }
+
+    #[test]
+    fn what_is_kept_is_the_present_poses_footprint() {
+        let mut kept = Footprint::default();
+        for pose in [pose(0.3), pose(0.3), pose(0.8), pose(0.3)] {
+            assert_eq!(kept.outline(&camera(), pose), footprint(&camera(), pose));
+        }
     }
 
     #[test]

@@ -7,7 +7,7 @@ mod common;
 use std::{
     fs,
     path::{Path, PathBuf},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use eframe::egui::{Key, Pos2, Rect, ViewportId, accesskit::Role, vec2};
@@ -16,7 +16,7 @@ use reality_sim_core::sequence::Sequence;
 use reality_sim_db::{Database, PoseEstimate, PoseSource};
 use tempfile::TempDir;
 
-use common::{choose, click, drag, until, until_label, until_part, viewer, walk};
+use common::{PATIENCE, SIZE, choose, click, drag, shows, until, until_label, until_part, viewer, walk};
 
 type Window = common::Viewer<'static>;
 
@@ -184,33 +184,153 @@ fn a_path_is_drawn_followed_stopped_and_cleared() {
     assert!(window.get_by_label("Follow the path").accesskit_node().is_disabled());
 }
 
-#[test]
-fn layers_and_coverage_are_switched_on() {
-    let (mut window, _folder) = driving();
-    for layer in ["neighbours", "triangulation", "recorded"] {
-        click(&mut window, layer);
-    }
-    choose(&mut window, "Coverage", "pictures taken there");
-    until_part(&mut window, "in 25 cm × 25 cm");
-    choose(&mut window, "Coverage", "pixels to the nearest picture");
-    until_part(&mut window, "300 px or more");
+/// What is drawn of the field, without texts: pictures of it differ where something on it does.
+fn picture_of_field(window: &mut Window) -> Vec<u8> {
+    window.remove_cursor();
+    window.run_steps(3);
+    let rect = window.get_by_label("the field from above").rect();
+    let [x, y, width, height] =
+        [rect.left(), rect.top(), rect.width(), rect.height()].map(|points| points as u32);
+    let picture = window.render().unwrap();
+    image::imageops::crop_imm(&picture, x, y, width, height).to_image().into_raw()
 }
 
 #[test]
-fn a_recording_becomes_a_database_that_can_be_cancelled_and_its_true_pictures_are_reached() {
-    let mut window = viewer(&walk());
+fn every_layer_changes_what_is_drawn_of_the_field_and_back() {
+    let (mut window, _folder) = driving();
+    until_part(&mut window, "% recorded");
+    for layer in ["neighbours", "triangulation", "recorded", "in use", "ground seen"] {
+        let before = picture_of_field(&mut window);
+        click(&mut window, layer);
+        // Edges come from the thread.
+        let started = Instant::now();
+        while picture_of_field(&mut window) == before {
+            assert!(started.elapsed() < PATIENCE, "{layer} changes nothing");
+        }
+        click(&mut window, layer);
+        while picture_of_field(&mut window) != before {
+            assert!(started.elapsed() < PATIENCE, "{layer} leaves something");
+        }
+    }
+    for (coverage, legend) in
+        [("pictures taken there", "in 25 cm × 25 cm"), ("pixels to the nearest picture", "300 px or more")]
+    {
+        let before = picture_of_field(&mut window);
+        choose(&mut window, "Coverage", coverage);
+        until_part(&mut window, legend);
+        assert!(picture_of_field(&mut window) != before, "{coverage}");
+    }
+}
+
+#[test]
+fn a_picture_of_a_pose_before_is_marked_until_the_new_one_comes() {
+    let (mut window, _folder) = driving();
+    let is_marked = |window: &common::Viewer<'_>| shows(window, "updating …");
+    until(&mut window, "both pictures", |window| !is_marked(window));
+    window.key_down(Key::Q);
+    window.run_steps(2);
+    assert!(is_marked(&window), "it has turned, and no picture can have come");
+    window.key_up(Key::Q);
+    until(&mut window, "both pictures again", |window| !is_marked(window));
+}
+
+#[test]
+fn the_fields_panel_is_as_wide_as_it_was_dragged_to_be_in_proportion_to_the_window() {
+    let (mut window, _folder) = driving();
+    let rect = field(&window).0;
+    let edge = rect.left_center() - vec2(8.0, 0.0);
+    let width = |window: &Window| f64::from(field(window).0.width());
+    let before = width(&window);
+    let edges: Vec<Pos2> = (-8..=8).map(|offset| edge + vec2(offset as f32, 0.0)).collect();
+    // The line between the panels is where the mouse says so.
+    for at in edges {
+        drag(&mut window, &[at, at + vec2(50.0, 0.0), at + vec2(100.0, 0.0)]);
+        if width(&window) < before - 50.0 {
+            break;
+        }
+    }
+    let dragged = width(&window);
+    assert!(dragged < before - 50.0, "{before} {dragged}");
+    window.set_size(vec2(1000.0, 820.0));
+    window.run_steps(3);
+    assert!(width(&window) < dragged - 20.0, "{dragged} {}", width(&window));
+    window.set_size(SIZE);
+    window.run_steps(3);
+    assert!((width(&window) - dragged).abs() < 2.0, "{dragged} {}", width(&window));
+}
+
+/// The demonstration walk again and again: a database of it takes long enough to be cancelled in time.
+fn long_walk(folder: &Path, times: usize) {
+    for name in ["sequence.toml", "camera.toml", "field.toml"] {
+        fs::copy(walk().join(name), folder.join(name)).unwrap();
+    }
+    let repeated = |name: &str, separator: char, header: usize| {
+        let text = fs::read_to_string(walk().join(name)).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        let mut repeated: Vec<String> = lines[..header].iter().map(|&line| line.to_owned()).collect();
+        for round in 0..times {
+            for line in &lines[header..] {
+                let (time, rest) = line.split_once(separator).unwrap();
+                let time_s: f64 = time.parse::<f64>().unwrap() + 100.0 * round as f64;
+                repeated.push(format!("{time_s:.3}{separator}{rest}"));
+            }
+        }
+        fs::write(folder.join(name), repeated.join("\n") + "\n").unwrap();
+    };
+    repeated("frames.csv", ',', 1);
+    repeated("groundtruth.tum", ' ', 0);
+    fs::create_dir(folder.join("images")).unwrap();
+    for entry in fs::read_dir(walk().join("images")).unwrap() {
+        let entry = entry.unwrap();
+        fs::copy(entry.path(), folder.join("images").join(entry.file_name())).unwrap();
+    }
+}
+
+#[test]
+fn making_a_database_of_a_recording_is_cancelled_and_begun_again() {
+    let folder = tempfile::tempdir().unwrap();
+    long_walk(folder.path(), 30);
+    let mut window = viewer(folder.path());
     until_label(&mut window, "Drive");
     window.get_by_label("Drive").click();
-    until_label(&mut window, "Cancel");
+    until_label(&mut window, "Storing the pictures …");
     click(&mut window, "Cancel");
     until_label(&mut window, "Build the database");
     click(&mut window, "Build the database");
+    until_label(&mut window, "Cancel");
+}
+
+#[test]
+fn a_recording_becomes_a_database_and_its_true_pictures_are_reached() {
+    let mut window = viewer(&walk());
+    until_label(&mut window, "Drive");
+    window.get_by_label("Drive").click();
     until_part(&mut window, "auto at x");
     choose(&mut window, "Right", "true picture");
     until_part(&mut window, "No true picture was taken within 20 px");
     click(&mut window, "Go there");
     until_part(&mut window, "true picture at x");
     until_part(&mut window, "PSNR");
+}
+
+#[test]
+fn in_the_smallest_window_the_way_to_a_true_picture_is_reached_and_the_field_grows_with_the_window() {
+    let mut window = viewer(&walk());
+    until_label(&mut window, "Drive");
+    window.get_by_label("Drive").click();
+    until_part(&mut window, "auto at x");
+    let wide = window.get_by_label("the field from above").rect().width();
+    window.set_size(vec2(640.0, 420.0));
+    window.run_steps(3);
+    let narrow = window.get_by_label("the field from above").rect().width();
+    click(&mut window, "All methods");
+    until_label(&mut window, "Go there");
+    click(&mut window, "Go there");
+    until_part(&mut window, "true picture at x");
+    window.set_size(SIZE);
+    window.run_steps(3);
+    let again = window.get_by_label("the field from above").rect().width();
+    assert!(narrow < 0.8 * wide && (again - wide).abs() < 2.0, "{wide} {narrow} {again}");
 }
 
 #[test]

@@ -51,6 +51,25 @@ fn frames_without_a_pose_are_left_out_until_they_have_one() {
 }
 
 #[test]
+fn adding_that_is_stopped_in_the_middle_of_a_batch_keeps_what_was_done_and_goes_on_from_there() {
+    let sequence = long_walk(100);
+    let folder = tempfile::tempdir().unwrap();
+    let mut database = Database::create_or_open(&folder.path().join("a.db")).unwrap();
+    let mut seen = Vec::new();
+    let stop_at_70 = |done| {
+        seen.push(done);
+        done < 70
+    };
+    let poses = estimates(&sequence);
+    let report = database.ingest_while(&sequence, &poses, &PoseSource::GroundTruth, stop_at_70).unwrap();
+    assert_eq!(report.added, 70);
+    assert_eq!(seen, (1..=70).collect::<Vec<_>>(), "every frame is told");
+    assert_eq!(database.images().unwrap().len(), 70);
+    let report = add(&mut database, &sequence).unwrap();
+    assert_eq!((report.added, report.already_there), (30, 70));
+}
+
+#[test]
 fn recordings_of_one_name_are_told_apart_and_share_camera_and_field() {
     let (_folder, path) = database_of(&short_walk(3));
     let mut other = short_walk(3);

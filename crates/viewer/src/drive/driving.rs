@@ -3,10 +3,15 @@
 use std::{collections::BTreeMap, sync::Arc};
 
 use eframe::egui::{self, DragValue, Ui, vec2};
-use reality_sim_core::{pose::CameraPose, sequence::Sequence};
+use reality_sim_core::{
+    camera::Camera,
+    field::FieldDimensions,
+    pose::{CameraPose, wrap_angle},
+    sequence::Sequence,
+};
 
 use super::{
-    DriveSettings,
+    DriveSettings, counted, device_ui,
     kind::{PictureKind, View},
     map::{Map, Scene},
     painter::{Answer, Around, Painted, Painter, Wish},
@@ -15,7 +20,7 @@ use super::{
     source::{Probes, Source},
 };
 use crate::{
-    device::Device,
+    device::{Device, by_name},
     problems::Problems,
     shortcuts::{self, Action, Place},
 };
@@ -35,6 +40,10 @@ pub struct Driving {
     pictures: Pictures,
     around: Option<Around>,
     painted: BTreeMap<View, Painted>,
+    /// Width of all of it in the last frame, points.
+    width: f32,
+    /// Width of the field's panel in the last frame, points.
+    map_width: f32,
 }
 
 impl Driving {
@@ -52,17 +61,21 @@ impl Driving {
             pictures: Pictures::default(),
             around: None,
             painted: BTreeMap::new(),
+            width: 0.0,
+            map_width: 0.0,
         }
     }
 
     /// Takes other true pictures to compare with.
     pub fn compare_with(&mut self, sequence: &Arc<Sequence>) -> Result<(), String> {
         let folder = sequence.folder.display();
-        let (own, other) = (&self.source.archive.setup().camera, &sequence.setup.camera);
-        if [own.width, own.height] != [other.width, other.height] {
+        let archive = &self.source.archive;
+        if let Some(difference) = camera_difference(&archive.setup().camera, &sequence.setup.camera) {
+            return Err(format!("{folder}: {difference}: choose a recording of the same camera"));
+        }
+        if !is_same_field(archive.field(), &sequence.field) {
             return Err(format!(
-                "{folder}: its pictures have {} x {} pixels, those of the database {} x {}: choose a recording of the same camera",
-                other.width, other.height, own.width, own.height
+                "{folder}: its field has other dimensions or colours than the database's: choose a recording on the same field"
             ));
         }
         let probes = Probes::of_recording(sequence).ok_or_else(|| {
@@ -83,17 +96,13 @@ impl Driving {
         self.listen(problems);
         self.move_robot(ui);
         self.map.poll(ui, &self.source, &mut settings.layers, problems);
-        let width = ui.available_width();
-        let is_asked = egui::Panel::right("drive map")
-            .default_size(0.37 * width)
-            .size_range(260.0..=(0.55 * width).max(270.0))
-            .show(ui, |ui| self.map_ui(ui, settings))
-            .inner;
+        let is_asked = self.map_panel(ui, settings, devices);
         egui::CentralPanel::default().show(ui, |ui| {
             Pictures::choice_ui(ui, settings);
             ui.separator();
             let probe = self.around.as_ref().and_then(|around| around.probe);
-            let gallery = Gallery { archive: &self.source.archive, painted: &self.painted, probe };
+            let (archive, painted) = (&*self.source.archive, &self.painted);
+            let gallery = Gallery { archive, painted, probe, pose: self.robot.pose() };
             if let Some(there) = self.pictures.ui(ui, settings, &gallery) {
                 self.robot.take(there);
             }
@@ -116,22 +125,21 @@ impl Driving {
     }
 
     fn wish(&mut self, ui: &Ui, settings: &DriveSettings, devices: &[Device]) {
-        let painter = self
-            .painter
-            .get_or_insert_with(|| Painter::spawn(ui.ctx(), self.source.clone(), devices.first().cloned()));
+        let painter = self.painter.get_or_insert_with(|| Painter::spawn(ui.ctx(), self.source.clone()));
         painter.wish(Wish {
             pose: self.robot.pose(),
             views: settings.layout.views(settings),
             is_best_effort: settings.is_best_effort,
-            wants_triangulation: settings.layers.triangulation,
+            edges_in: settings.layers.triangulation.then(|| self.map.seen()),
             probes: self.probes.clone(),
+            device: by_name(devices, &settings.device).cloned(),
         });
     }
 
     /// Keys and path.
     fn move_robot(&mut self, ui: &Ui) {
         if shortcuts::pressed(ui, Place::Drive).contains(&Action::PlayPause) {
-            self.robot.follow_or_stop();
+            self.map.follow_or_stop(&mut self.robot);
         }
         let seconds = f64::from(ui.input(|input| input.stable_dt)).min(LONGEST_STEP_S);
         let walks = self.robot.walk(&shortcuts::held(ui, Place::Drive), seconds);
@@ -140,19 +148,42 @@ impl Driving {
         }
     }
 
+    /// The field at the right, as wide as it was dragged to be: in proportion, for windows of any width.
+    fn map_panel(&mut self, ui: &mut Ui, settings: &mut DriveSettings, devices: &[Device]) -> bool {
+        let width = ui.available_width();
+        let panel = egui::Panel::right("drive map")
+            .default_size(settings.map_share * width)
+            .size_range(260.0..=(0.55 * width).max(270.0));
+        let is_new = std::mem::replace(&mut self.width, width) != width;
+        if is_new {
+            // What egui remembers is the width in points.
+            let id = ui.scope_id().with("drive map");
+            ui.data_mut(|data| data.remove::<egui::PanelState>(id));
+        }
+        let shown = panel.show(ui, |ui| self.map_ui(ui, settings, devices));
+        let map_width = shown.response.rect.width();
+        let is_changed = std::mem::replace(&mut self.map_width, map_width) != map_width;
+        if is_changed && !is_new && ui.input(|input| input.pointer.any_down()) {
+            settings.map_share = map_width / width;
+        }
+        shown.inner
+    }
+
     /// The field, and below it what it shows.
-    fn map_ui(&mut self, ui: &mut Ui, settings: &mut DriveSettings) -> bool {
+    fn map_ui(&mut self, ui: &mut Ui, settings: &mut DriveSettings, devices: &[Device]) -> bool {
         self.pose_ui(ui);
         let made = match settings.layout {
             Layout::All => View::picture(PictureKind::Blend),
             _ => View { kind: settings.left, shown: settings.shown },
         };
         let drawn = self.painted.get(&made).and_then(|painted| painted.result.as_ref().ok());
+        let used_by = made.kind.name();
         let scene = Scene {
             source: &self.source,
             layers: settings.layers,
             around: self.around.as_ref(),
             used: drawn.map_or(&[], |drawn| &drawn.facts.used),
+            used_by,
             probes: self.probes.as_ref(),
         };
         let room = vec2(ui.available_width(), (ui.available_height() - CONTROLS).max(160.0));
@@ -164,6 +195,7 @@ impl Driving {
                 self.map.layers_ui(ui, &scene, &mut settings.layers);
                 ui.separator();
                 near_ui(ui, &self.source, self.around.as_ref());
+                device_ui(ui, &mut settings.device, devices);
                 compare_ui(ui, self.probes.as_ref())
             })
             .inner
@@ -185,10 +217,28 @@ impl Driving {
         });
         ui.weak("Drag the arrow's tail to move, its tip to turn; or walk by W A S D and turn by Q E.");
         if wanted != pose {
-            self.robot
-                .take(CameraPose { yaw_rad: reality_sim_core::pose::wrap_angle(wanted.yaw_rad), ..wanted });
+            self.robot.take(CameraPose { yaw_rad: wrap_angle(wanted.yaw_rad), ..wanted });
         }
     }
+}
+
+/// How a recording's camera differs from the database's, in words; `None` where it does not.
+fn camera_difference(own: &Camera, other: &Camera) -> Option<String> {
+    let sizes = [other, own].map(|camera| format!("{} x {} pixels", camera.width, camera.height));
+    let [theirs, ours] = &sizes;
+    match () {
+        () if own == other => None,
+        () if theirs != ours => Some(format!("its pictures have {theirs}, those of the database {ours}")),
+        () if own.image_circle != other.image_circle => {
+            Some("its pictures show another part of the lens's image than those of the database".to_owned())
+        }
+        () => Some("its pictures were taken through another lens than those of the database".to_owned()),
+    }
+}
+
+/// Whether two fields have the same dimensions and colours, whatever they are called.
+fn is_same_field(own: &FieldDimensions, other: &FieldDimensions) -> bool {
+    *own == FieldDimensions { name: own.name.clone(), ..other.clone() }
 }
 
 #[derive(Clone, Copy)]
@@ -217,17 +267,17 @@ fn number(ui: &mut Ui, name: &str, value: &mut f64, unit: Unit) {
 
 /// How near the next picture is.
 fn near_ui(ui: &mut Ui, source: &Source, around: Option<&Around>) {
-    let count = source.archive.images().len();
+    let pictures = counted(source.archive.images().len(), "picture");
     let nearest = around.and_then(|around| around.nearest);
     ui.label(match nearest {
         Some(nearest) => {
             let frame = source.archive.images()[nearest.image as usize].frame_index;
             format!(
-                "{count} pictures in the database. The nearest, frame {frame}, is {:.0} px away.",
+                "{pictures} in the database. The nearest, frame {frame}, is {:.0} px away.",
                 nearest.distance_px
             )
         }
-        None => format!("{count} pictures in the database."),
+        None => format!("{pictures} in the database."),
     })
     .on_hover_text("By so many pixels the picture moves from there to here (root mean square)");
 }
@@ -236,8 +286,8 @@ fn near_ui(ui: &mut Ui, source: &Source, around: Option<&Around>) {
 fn compare_ui(ui: &mut Ui, probes: Option<&Probes>) -> bool {
     ui.horizontal_wrapped(|ui| {
         if let Some(probes) = probes {
-            let count = probes.poses().len();
-            ui.label(format!("{count} true pictures to compare with, of “{}”.", probes.name()));
+            let pictures = counted(probes.poses().len(), "true picture");
+            ui.label(format!("{pictures} to compare with, of “{}”.", probes.name()));
         }
         ui.button("Compare with a recording…")
             .on_hover_text("Take the pictures of another recording as the true ones")

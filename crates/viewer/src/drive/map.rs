@@ -12,6 +12,7 @@ use reality_sim_synthesis::{ORIGIN_HUES, Used};
 use serde::{Deserialize, Serialize};
 
 use super::{
+    edges::{Edges, Region},
     painter::Around,
     robot::Robot,
     source::{Probes, Source},
@@ -20,7 +21,7 @@ use crate::{
     background::{Outcome, Task},
     colors,
     field_view::{FieldCanvas, FieldView},
-    footprint::footprint,
+    footprint::Footprint,
     problems::Problems,
 };
 
@@ -32,10 +33,11 @@ const CELL_M: f64 = 0.25;
 const CATCH: f32 = 14.0;
 /// More marks than this are not seen one by one: every so many-th is drawn.
 const MOST_MARKS: usize = 3000;
-/// More lines than this are a grey area.
-const MOST_EDGES: usize = 6000;
 /// Weights below this are not written.
 const LEAST_WEIGHT: f64 = 0.005;
+
+/// What the layer of the neighbours shows.
+const NEIGHBOURS_MEAN: &str = "The natural neighbours with their weights by where pictures were taken (Sibson, 1981). How many pixels a picture gave in the end is another number: it is below the picture, after “made of”.";
 
 /// Recorded pictures' places.
 const IMAGES: Color32 = Color32::from_rgb(200, 205, 210);
@@ -127,6 +129,8 @@ pub struct Map {
     grip: Option<Grip>,
     is_drawing: bool,
     coverage: Counted,
+    footprint: Footprint,
+    seen: Region,
 }
 
 /// What there is to draw.
@@ -134,8 +138,10 @@ pub struct Scene<'a> {
     pub source: &'a Arc<Source>,
     pub layers: Layers,
     pub around: Option<&'a Around>,
-    /// The images that the picture on the left is made of.
+    /// The images that a picture is made of.
     pub used: &'a [Used],
+    /// Which picture.
+    pub used_by: &'static str,
     pub probes: Option<&'a Probes>,
 }
 
@@ -146,6 +152,17 @@ impl Default for Map {
             grip: None,
             is_drawing: false,
             coverage: Counted::NotYet,
+            footprint: Footprint::default(),
+            seen: [DVec2::ZERO; 2],
+        }
+    }
+}
+
+/// Counting holds the database, which may be a temporary one: it is waited for.
+impl Drop for Map {
+    fn drop(&mut self) {
+        if let Counted::Counting(task) = std::mem::replace(&mut self.coverage, Counted::Never) {
+            task.finish();
         }
     }
 }
@@ -158,11 +175,26 @@ impl Map {
         let height = (room.x * (extent.y / extent.x) as f32).min(room.y).max(80.0);
         let canvas = self.view.show(ui, field, vec2(room.x, height), "the field from above");
         self.drag(ui, &canvas, robot);
+        self.seen = region(&canvas);
         self.draw_coverage(&canvas, scene);
+        if scene.layers.footprint {
+            canvas.footprint(self.footprint.outline(&scene.source.archive.setup().camera, robot.pose()));
+        }
         draw_known(&canvas, scene, robot.pose());
         draw_path(&canvas, robot.path());
         canvas.arrow(robot.pose().planar(), colors::POSE);
         write_pointer(&canvas);
+    }
+
+    /// The part of the field that was shown last.
+    pub fn seen(&self) -> Region {
+        self.seen
+    }
+
+    /// Follows the path, or stops; what is dragged then is the robot.
+    pub fn follow_or_stop(&mut self, robot: &mut Robot) {
+        self.is_drawing = false;
+        robot.follow_or_stop();
     }
 
     /// Drawing, following and forgetting a path.
@@ -178,8 +210,7 @@ impl Map {
                 .on_disabled_hover_text("Draw a path first")
                 .clicked()
             {
-                self.is_drawing = false;
-                robot.follow_or_stop();
+                self.follow_or_stop(robot);
             }
             if ui.add_enabled(robot.has_path(), egui::Button::new("Clear the path")).clicked() {
                 robot.clear_path();
@@ -192,21 +223,15 @@ impl Map {
 
     /// The layers to switch, each with its colour.
     pub fn layers_ui(&mut self, ui: &mut Ui, scene: &Scene, layers: &mut Layers) {
+        let used_mean = format!(
+            "The images that the picture “{}” is made of, in the colours of its origins",
+            scene.used_by
+        );
         ui.horizontal_wrapped(|ui| {
             let boxes: [(&mut bool, &str, Color32, &str); 6] = [
                 (&mut layers.images, "recorded", IMAGES, "Where pictures were recorded, and where they look"),
-                (
-                    &mut layers.used,
-                    "in use",
-                    hue(0),
-                    "The images that the left picture is made of, in the colours of its origins",
-                ),
-                (
-                    &mut layers.neighbours,
-                    "neighbours",
-                    Color32::WHITE,
-                    "The natural neighbours with their weights (Sibson, 1981)",
-                ),
+                (&mut layers.used, "in use", hue(0), &used_mean),
+                (&mut layers.neighbours, "neighbours", Color32::WHITE, NEIGHBOURS_MEAN),
                 (
                     &mut layers.triangulation,
                     "triangulation",
@@ -230,6 +255,14 @@ impl Map {
                 ui.checkbox(is_on, (swatch(color), name)).on_hover_text(meaning);
             }
         });
+        if layers.used {
+            ui.weak(format!("in use: by the picture “{}”", scene.used_by));
+        }
+        if layers.neighbours {
+            ui.weak("neighbours: with their natural neighbour weights, not shares of pixels")
+                .on_hover_text(NEIGHBOURS_MEAN);
+        }
+        edges_ui(ui, layers.triangulation, scene.around);
         ui.horizontal_wrapped(|ui| {
             let label = ui.label("Coverage");
             egui::ComboBox::from_id_salt("coverage")
@@ -255,9 +288,11 @@ impl Map {
             Counted::NotYet => {
                 let source = source.clone();
                 self.coverage =
-                    Counted::Counting(Task::spawn(ui.ctx(), "Looking at the coverage …", move |_| {
-                        let archive = &source.archive;
-                        Ok(Coverage::new(archive.index(), archive.field(), archive.usual_pose(), CELL_M))
+                    Counted::Counting(Task::spawn(ui.ctx(), "Looking at the coverage …", move |progress| {
+                        let (archive, goes_on) = (&source.archive, || !progress.is_cancelled());
+                        let (field, usual) = (archive.field(), archive.usual_pose());
+                        let coverage = Coverage::new_while(archive.index(), field, usual, CELL_M, goes_on);
+                        coverage.ok_or_else(|| "cancelled".to_owned())
                     }));
             }
             Counted::Counting(task) => match task.poll() {
@@ -331,7 +366,8 @@ impl Map {
                 Grip::Draw => robot.draw_to(place),
             }
         }
-        if canvas.response.drag_stopped() {
+        // A drag may also end where the field is not shown.
+        if !canvas.response.dragged() {
             self.grip = None;
         }
     }
@@ -409,21 +445,12 @@ fn scale(ui: &mut Ui, color: impl Fn(f64) -> Color32) {
 }
 
 fn draw_known(canvas: &FieldCanvas, scene: &Scene, pose: CameraPose) {
-    let Scene { source, layers, around, used, probes } = scene;
-    let archive = &source.archive;
-    let poses = archive.index().poses();
-    if layers.footprint {
-        canvas.footprint(&footprint(&archive.setup().camera, pose));
-    }
+    let Scene { source, layers, around, used, probes, used_by: _ } = scene;
+    let poses = source.archive.index().poses();
     if layers.triangulation
         && let Some(around) = around
     {
-        draw_triangulation(canvas, around);
-    }
-    if layers.images {
-        for pose in poses.iter().step_by(poses.len().div_ceil(MOST_MARKS).max(1)) {
-            mark(canvas, pose.planar(), 1.6, IMAGES.gamma_multiply(0.8));
-        }
+        draw_triangulation(canvas, &around.edges);
     }
     if layers.probes
         && let Some(probes) = probes
@@ -431,6 +458,11 @@ fn draw_known(canvas: &FieldCanvas, scene: &Scene, pose: CameraPose) {
         let all = probes.poses();
         for (_, pose) in all.iter().step_by(all.len().div_ceil(MOST_MARKS).max(1)) {
             draw_probe(canvas, pose.planar());
+        }
+    }
+    if layers.images {
+        for pose in poses.iter().step_by(poses.len().div_ceil(MOST_MARKS).max(1)) {
+            mark(canvas, pose.planar(), 1.6, IMAGES.gamma_multiply(0.8));
         }
     }
     if layers.neighbours
@@ -456,21 +488,36 @@ fn mark(canvas: &FieldCanvas, planar: Pose2, radius: f32, color: Color32) {
     canvas.painter.line_segment([at, end], Stroke::new(0.6 * radius.min(3.0), color));
 }
 
+/// A small hollow diamond.
 fn draw_probe(canvas: &FieldCanvas, planar: Pose2) {
     let at = canvas.at(planar.position_in_world());
-    let corners = [vec2(0.0, -3.5), vec2(3.5, 0.0), vec2(0.0, 3.5), vec2(-3.5, 0.0)];
+    let corners = [vec2(0.0, -2.5), vec2(2.5, 0.0), vec2(0.0, 2.5), vec2(-2.5, 0.0)];
     let corners = corners.map(|offset| at + offset).to_vec();
-    canvas.painter.add(Shape::convex_polygon(corners, colors::TRUTH, Stroke::new(0.5, Color32::WHITE)));
+    canvas.painter.add(Shape::closed_line(corners, Stroke::new(1.0, colors::TRUTH)));
 }
 
-fn draw_triangulation(canvas: &FieldCanvas, around: &Around) {
-    for sector in &around.triangulations {
+/// The part of the field that is shown.
+fn region(canvas: &FieldCanvas) -> Region {
+    let (a, b) = (canvas.in_world(canvas.rect.min), canvas.in_world(canvas.rect.max));
+    [a.min(b), a.max(b)]
+}
+
+fn draw_triangulation(canvas: &FieldCanvas, sectors: &[Edges]) {
+    for sector in sectors {
         let color = EDGES.gamma_multiply(0.25 + 0.6 * sector.share as f32);
-        let ends = sector.edges_in_world.iter().map(|ends| ends.map(|end| canvas.at(end)));
-        let seen = ends.filter(|&[a, b]| Rect::from_two_pos(a, b).intersects(canvas.rect));
-        seen.take(MOST_EDGES).for_each(|ends| {
-            canvas.painter.line_segment(ends, Stroke::new(1.0, color));
-        });
+        for ends in &sector.shown_in_world {
+            canvas.painter.line_segment(ends.map(|end| canvas.at(end)), Stroke::new(1.0, color));
+        }
+    }
+}
+
+/// Says where not all edges are drawn.
+fn edges_ui(ui: &mut Ui, is_on: bool, around: Option<&Around>) {
+    let Some(around) = around.filter(|_| is_on) else { return };
+    let shown: usize = around.edges.iter().map(|sector| sector.shown_in_world.len()).sum();
+    let count: usize = around.edges.iter().map(|sector| sector.count).sum();
+    if shown < count {
+        ui.weak(format!("triangulation: {shown} of {count} edges shown"));
     }
 }
 
@@ -517,3 +564,6 @@ fn draw_path(canvas: &FieldCanvas, path: &[DVec2]) {
         canvas.painter.circle(*last, 4.0, PATH, Stroke::new(1.0, Color32::BLACK));
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,12 +4,15 @@
 //! and dragged; [`driving`] puts them together.
 
 mod driving;
+mod edges;
 mod kind;
 mod map;
 mod painter;
 mod pictures;
+mod recorded;
 mod robot;
 mod source;
+mod work_folder;
 
 #[cfg(test)]
 mod tests;
@@ -26,11 +29,11 @@ use self::{
     kind::{PictureKind, Shown},
     map::Layers,
     pictures::Layout,
-    source::{Poses, Source, build},
+    recorded::Recorded,
+    source::Source,
 };
 use crate::{
-    background::{Outcome, Task},
-    device::Device,
+    device::{Device, by_name},
     problems::Problems,
 };
 
@@ -48,6 +51,10 @@ pub struct DriveSettings {
     pub wipe_share: f32,
     pub is_best_effort: bool,
     pub layers: Layers,
+    /// Name of the device that draws and finds poses; where there is no such one, the first.
+    pub device: String,
+    /// How much of the window's width the field has.
+    pub map_share: f32,
 }
 
 impl Default for DriveSettings {
@@ -60,11 +67,13 @@ impl Default for DriveSettings {
             wipe_share: 0.5,
             is_best_effort: false,
             layers: Layers::default(),
+            device: String::new(),
+            map_share: 0.37,
         }
     }
 }
 
-/// The panel.
+/// The panel. Where it is dropped, work under way is stopped and waited for: a temporary database is deleted then.
 pub struct DrivePanel(State);
 
 enum State {
@@ -73,17 +82,10 @@ enum State {
     Driving(Box<Driving>),
 }
 
-/// A recording on its way to a database.
-struct Recorded {
-    sequence: Arc<Sequence>,
-    is_stopped: bool,
-    work: Option<Task<Source>>,
-}
-
 impl DrivePanel {
     /// For a recording: a database is made of it when the panel is first shown.
     pub fn of_recording(sequence: Arc<Sequence>) -> Self {
-        Self(State::Recorded(Recorded { sequence, is_stopped: false, work: None }))
+        Self(State::Recorded(Recorded::new(sequence)))
     }
 
     /// For a database.
@@ -111,7 +113,7 @@ impl DrivePanel {
         problems: &mut Problems,
     ) -> bool {
         if let State::Recorded(recorded) = &mut self.0
-            && let Some(source) = recorded.ui(ui, devices, problems)
+            && let Some(source) = recorded.ui(ui, settings, devices, problems)
         {
             self.0 = State::Driving(Box::new(Driving::new(source)));
         }
@@ -122,71 +124,22 @@ impl DrivePanel {
     }
 }
 
-impl Recorded {
-    /// Shows how far it is; returns what was made of it.
-    fn ui(&mut self, ui: &mut Ui, devices: &[Device], problems: &mut Problems) -> Option<Source> {
-        let has_poses = self.sequence.groundtruth.iter().any(Option::is_some);
-        if self.work.is_none() && has_poses && !self.is_stopped {
-            self.start(ui, devices);
-        }
-        match self.work.as_ref().and_then(Task::poll) {
-            Some(Outcome::Done(source)) => return Some(source),
-            Some(Outcome::Cancelled) => (self.work, self.is_stopped) = (None, true),
-            Some(Outcome::Failed(reason)) => {
-                (self.work, self.is_stopped) = (None, true);
-                problems.add(reason);
+/// The device of a person's choice, and a list to choose another from.
+fn device_ui(ui: &mut Ui, chosen: &mut String, devices: &[Device]) {
+    let shown = by_name(devices, chosen).map_or("", |device| &device.name).to_owned();
+    ui.horizontal(|ui| {
+        let label = ui.label("Computed by");
+        let list = egui::ComboBox::from_id_salt("drive device").selected_text(shown).width(150.0).truncate();
+        let list = list.show_ui(ui, |ui| {
+            for device in devices {
+                ui.selectable_value(chosen, device.name.clone(), &device.name);
             }
-            None => {}
-        }
-        egui::CentralPanel::default().show(ui, |ui| {
-            ui.vertical_centered(|ui| {
-                ui.add_space(0.3 * ui.available_height());
-                ui.set_max_width(460.0);
-                self.content(ui, has_poses, devices);
-            });
         });
-        None
-    }
+        list.response.labelled_by(label.id).on_hover_text("Where poses are found and pictures are drawn");
+    });
+}
 
-    fn content(&mut self, ui: &mut Ui, has_poses: bool, devices: &[Device]) {
-        let name = &self.sequence.name;
-        let pictures = self.sequence.frames.len();
-        ui.heading(format!("Drive through “{name}”"));
-        ui.add_space(8.0);
-        if has_poses {
-            ui.label(format!(
-                "To drive, its {pictures} pictures are put into a temporary database by the poses of its ground truth. Every fifth is held back, as the true picture to compare with."
-            ));
-        } else {
-            ui.label(format!(
-                "It has no ground truth: where its {pictures} pictures were taken is not known. The particle filter can find the poses; pictures that it is not sure of are left out."
-            ));
-        }
-        ui.add_space(12.0);
-        match &self.work {
-            Some(task) => {
-                // Centred rows are as wide as they turn out to be: this one is told.
-                ui.allocate_ui(egui::vec2(420.0, 24.0), |ui| task.ui(ui));
-            }
-            None => {
-                let button = if has_poses { "Build the database" } else { "Find the poses and build" };
-                if ui.button(button).clicked() {
-                    self.start(ui, devices);
-                }
-            }
-        }
-    }
-
-    fn start(&mut self, ui: &Ui, devices: &[Device]) {
-        let (sequence, device) = (self.sequence.clone(), devices.first().cloned());
-        let known = Poses::known(&sequence);
-        let title = if known.is_some() { "Making the database …" } else { "Finding the poses …" };
-        self.work = Some(Task::spawn(ui.ctx(), title, move |progress| {
-            let poses = match known {
-                Some(poses) => poses,
-                None => Poses::found(&sequence, device.as_ref(), progress)?,
-            };
-            build(&sequence, poses, progress)
-        }));
-    }
+/// So many things, in words: one needs no plural.
+fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }

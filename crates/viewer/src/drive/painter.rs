@@ -2,7 +2,7 @@
 //! one picture after the other.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     sync::{Arc, mpsc},
     thread,
     time::Instant,
@@ -14,18 +14,20 @@ use reality_sim_core::{
     pose::CameraPose,
     warp::{CpuWarper, Warper},
 };
-use reality_sim_db::index::{Neighbour, SectorTriangulation};
+use reality_sim_db::index::Neighbour;
 use reality_sim_sensor::{Renderer, SceneColors};
 use reality_sim_synthesis::{
-    Reconstruction, SynthesisConfig, Synthesizer, Used,
+    Archive, Reconstruction, SynthesisConfig, Synthesizer, Used,
     quality::{Mask, psnr_db},
 };
 
 use super::{
+    edges::{Edges, Region, edges},
     kind::{PictureKind, Shown, View},
     source::{NearProbe, Probes, Source},
 };
 use crate::{
+    background::Joined,
     device::Device,
     picture_view::{color_image, gray_image},
 };
@@ -42,9 +44,22 @@ pub struct Wish {
     pub views: Vec<View>,
     /// Pictures also where little was recorded.
     pub is_best_effort: bool,
-    /// The edges of the triangulation, too.
-    pub wants_triangulation: bool,
+    /// The edges of the triangulation there, too.
+    pub edges_in: Option<Region>,
     pub probes: Option<Probes>,
+    /// What draws; the processor where there is none.
+    pub device: Option<Device>,
+}
+
+impl Wish {
+    /// Whether the pictures of another wish are as good.
+    fn has_pictures_of(&self, other: &Self) -> bool {
+        let Self { pose, is_best_effort, probes, device, views: _, edges_in: _ } = self;
+        *pose == other.pose
+            && *is_best_effort == other.is_best_effort
+            && *probes == other.probes
+            && *device == other.device
+    }
 }
 
 /// What is known around a pose.
@@ -55,7 +70,7 @@ pub struct Around {
     /// The natural neighbours with their weights.
     pub natural: Vec<Neighbour>,
     /// What they are found in, where it was wished for.
-    pub triangulations: Vec<SectorTriangulation>,
+    pub edges: Vec<Edges>,
     /// The nearest true picture.
     pub probe: Option<NearProbe>,
 }
@@ -99,37 +114,39 @@ pub enum Answer {
     Problem(String),
 }
 
-/// The thread, seen from the window. It ends when this is dropped.
+/// The thread, seen from the window. Dropping this waits until it has ended: at most as long as a picture takes, or a device to open.
 pub struct Painter {
+    /// Before the thread: that ends when nobody can wish any more.
     wishes: mpsc::Sender<Wish>,
     answers: mpsc::Receiver<Answer>,
     wished: Option<Wish>,
     has_failed: bool,
+    _thread: Joined,
 }
 
 impl Painter {
-    /// Starts the thread. The device is opened there: that may take a while.
-    pub fn spawn(ctx: &Context, source: Arc<Source>, device: Option<Device>) -> Self {
+    /// Starts the thread. Devices are opened there: that may take a while.
+    pub fn spawn(ctx: &Context, source: Arc<Source>) -> Self {
         let (wishes, its_wishes) = mpsc::channel();
         let (its_answers, answers) = mpsc::channel();
         let ctx = ctx.clone();
-        thread::spawn(move || {
+        let thread = thread::spawn(move || {
             let say = |answer| {
                 let is_heard = its_answers.send(answer).is_ok();
                 ctx.request_repaint();
                 is_heard
             };
-            let mut studio = Studio::new(&source, device.as_ref(), |problem| {
-                say(Answer::Problem(problem));
-            });
-            while let Ok(wish) = its_wishes.recv() {
-                let wish = its_wishes.try_iter().last().unwrap_or(wish);
-                if !studio.fulfil(&wish, &say) {
+            let mut studio = Studio::new(&source);
+            let mut wishes = Wishes { coming: its_wishes, newest: None };
+            let mut turns = Turns::default();
+            while let Some(wish) = wishes.next() {
+                studio.choose_warper(wish.device.as_ref(), &say);
+                if !studio.fulfil(&wish, &mut turns, &mut wishes, &say) {
                     break;
                 }
             }
         });
-        Self { wishes, answers, wished: None, has_failed: false }
+        Self { wishes, answers, wished: None, has_failed: false, _thread: Joined::new(thread) }
     }
 
     /// Asks for pictures, unless they have been asked for.
@@ -157,8 +174,67 @@ impl Painter {
     }
 }
 
+/// Wishes on their way to the thread, of which only the newest counts.
+struct Wishes {
+    coming: mpsc::Receiver<Wish>,
+    newest: Option<Wish>,
+}
+
+impl Wishes {
+    /// The newest, waiting for one where there is none; `None` where nobody wishes any more.
+    fn next(&mut self) -> Option<Wish> {
+        let wish = self.newest.take().or_else(|| self.coming.recv().ok())?;
+        Some(self.coming.try_iter().last().unwrap_or(wish))
+    }
+
+    /// Whether what was wished for last no longer counts.
+    fn have_changed(&mut self) -> bool {
+        match self.coming.try_recv() {
+            Ok(wish) => {
+                self.newest = Some(wish);
+                true
+            }
+            Err(error) => self.newest.is_some() || error == mpsc::TryRecvError::Disconnected,
+        }
+    }
+}
+
+/// Whose turn it is: the view's that was drawn the longest ago, so that each gets its turn while wishes change faster than
+/// all of them are drawn.
+#[derive(Default)]
+struct Turns {
+    count: u64,
+    /// Views and the number of their last turn.
+    last: BTreeMap<View, u64>,
+    /// What was wished for last, and the views that were drawn just so.
+    wish: Option<Wish>,
+    drawn: BTreeSet<View>,
+}
+
+impl Turns {
+    /// What was drawn for the wish before stays, where its pictures are as good.
+    fn begin(&mut self, wish: &Wish) {
+        let before = self.wish.replace(wish.clone());
+        if !before.is_some_and(|before| before.has_pictures_of(wish)) {
+            self.drawn.clear();
+        }
+    }
+
+    /// The next view to draw; `None` when all are.
+    fn next(&mut self, wish: &Wish) -> Option<View> {
+        let left = wish.views.iter().filter(|view| !self.drawn.contains(view));
+        let view = *left.min_by_key(|view| self.last.get(view).copied())?;
+        self.count += 1;
+        self.last.insert(view, self.count);
+        self.drawn.insert(view);
+        Some(view)
+    }
+}
+
 /// Everything that draws.
 struct Studio {
+    /// What it was told to draw by.
+    device: Option<Device>,
     strict: Synthesizer,
     best_effort: Synthesizer,
     renderer: Renderer,
@@ -181,34 +257,50 @@ struct Made {
 }
 
 impl Studio {
-    fn new(source: &Source, device: Option<&Device>, tell: impl Fn(String)) -> Self {
+    /// Draws by the processor at first.
+    fn new(source: &Source) -> Self {
         let archive = &source.archive;
-        let warper = warper(device).unwrap_or_else(|problem| {
-            tell(format!("{problem}: pictures are drawn by the processor meanwhile"));
-            Arc::new(CpuWarper)
-        });
-        let config = SynthesisConfig::new(archive);
+        let [strict, best_effort] = synthesizers(archive, &(Arc::new(CpuWarper) as Arc<dyn Warper>));
         let setup = archive.setup();
-        let synthesizer =
-            |config| Synthesizer::with(archive.clone(), setup.camera.clone(), warper.clone(), config);
         let colors = SceneColors::new(setup, archive.field());
         Self {
-            strict: synthesizer(config),
-            best_effort: synthesizer(config.best_effort()),
+            device: None,
+            strict,
+            best_effort,
             renderer: Renderer::new(setup, archive.field(), colors),
             truth: None,
         }
     }
 
-    /// Draws all that is wished for; false where nobody listens any more.
-    fn fulfil(&mut self, wish: &Wish, say: &impl Fn(Answer) -> bool) -> bool {
+    /// Opens another device, where it is another one.
+    fn choose_warper(&mut self, device: Option<&Device>, say: &impl Fn(Answer) -> bool) {
+        if self.device.as_ref() == device {
+            return;
+        }
+        self.device = device.cloned();
+        let warper = warper(device).unwrap_or_else(|problem| {
+            say(Answer::Problem(format!("{problem}: pictures are drawn by the processor meanwhile")));
+            Arc::new(CpuWarper)
+        });
+        [self.strict, self.best_effort] = synthesizers(self.strict.archive(), &warper);
+    }
+
+    /// Draws what is wished for, until something else is; one picture at least. False where nobody listens any more.
+    fn fulfil(
+        &mut self,
+        wish: &Wish,
+        turns: &mut Turns,
+        wishes: &mut Wishes,
+        say: &impl Fn(Answer) -> bool,
+    ) -> bool {
         let around = self.around(wish);
         let probe = around.probe;
         if !say(Answer::Around(around)) {
             return false;
         }
         let mut made: BTreeMap<PictureKind, Result<Made, String>> = BTreeMap::new();
-        for &view in &wish.views {
+        turns.begin(wish);
+        while let Some(view) = turns.next(wish) {
             let made = made.entry(view.kind).or_insert_with(|| self.make(view.kind, wish, probe));
             let result = match made {
                 Ok(made) => drawn(made, view),
@@ -217,18 +309,19 @@ impl Studio {
             if !say(Answer::Painted(view, Painted { pose: wish.pose, result })) {
                 return false;
             }
+            if wishes.have_changed() {
+                break;
+            }
         }
         true
     }
 
     fn around(&self, wish: &Wish) -> Around {
         let index = self.strict.archive().index();
-        let triangulations =
-            if wish.wants_triangulation { index.triangulations(wish.pose.yaw_rad) } else { Vec::new() };
         Around {
             nearest: index.nearest(wish.pose, 1).ok().and_then(|nearest| nearest.first().copied()),
             natural: index.natural(wish.pose).unwrap_or_default(),
-            triangulations,
+            edges: wish.edges_in.map_or_else(Vec::new, |region| edges(index, wish.pose.yaw_rad, region)),
             probe: wish.probes.as_ref().and_then(|probes| probes.nearest(index.metric(), wish.pose)),
         }
     }
@@ -316,6 +409,14 @@ fn drawn(made: &Made, view: View) -> Result<Drawn, String> {
         }
     };
     Ok(Drawn { picture, facts: made.facts.clone() })
+}
+
+/// The strict one, and the one of the best effort.
+fn synthesizers(archive: &Arc<Archive>, warper: &Arc<dyn Warper>) -> [Synthesizer; 2] {
+    let config = SynthesisConfig::new(archive);
+    let camera = &archive.setup().camera;
+    [config, config.best_effort()]
+        .map(|config| Synthesizer::with(archive.clone(), camera.clone(), warper.clone(), config))
 }
 
 fn warper(device: Option<&Device>) -> Result<Arc<dyn Warper>, String> {

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, sync::Arc};
 
 use eframe::egui::{
     self, Align, Button, Color32, ColorImage, ComboBox, Layout as Flow, Rect, RichText, TextureId, Ui,
-    UiBuilder, Vec2, vec2,
+    UiBuilder, Vec2, emath::GuiRounding as _, vec2,
 };
 use reality_sim_core::pose::CameraPose;
 use reality_sim_synthesis::Archive;
@@ -21,6 +21,8 @@ use crate::picture_view::{PictureCanvas, Uploaded};
 
 /// A line of text above a picture, points.
 const HEAD: f32 = 22.0;
+/// Narrower heads, points, have no room for both numbers and the mark of an old picture.
+const ROOM_FOR_FACTS: f32 = 200.0;
 /// What the numbers above a picture mean.
 const FACTS_MEAN: &str = "px away: by how many pixels the picture moves from there to here, root mean square\nPSNR: likeness to the true picture at this very pose, over the carpet; higher is better\nrecorded: the share of the pixels that recorded pictures show; the others are filled in\nms: the time that it took";
 /// Shares below this are not listed.
@@ -63,6 +65,8 @@ pub struct Gallery<'a> {
     pub archive: &'a Archive,
     pub painted: &'a BTreeMap<View, Painted>,
     pub probe: Option<NearProbe>,
+    /// The robot's pose: pictures may still be of one before.
+    pub pose: CameraPose,
 }
 
 /// Pictures on the screen.
@@ -149,7 +153,7 @@ impl Pictures {
         let pixels = size_of(gallery.archive);
         let width = (room / vec2(pixels[0] as f32, pixels[1] as f32)).min_elem() * pixels[0] as f32;
         ui.set_width(width.max(40.0));
-        head(ui, view, painted);
+        head(ui, view, painted, gallery.pose);
         let canvas = PictureCanvas::allocate(ui, pixels, room, &described(view, painted));
         match painted.map(|painted| &painted.result) {
             Some(Ok(drawn)) => {
@@ -179,7 +183,7 @@ impl Pictures {
         {
             ui.horizontal(|ui| {
                 ui.weak(*side);
-                head(ui, *view, painted);
+                head(ui, *view, painted, gallery.pose);
             });
         }
         let names = [0, 1].map(|side| described(views[side], painted[side]));
@@ -246,16 +250,26 @@ fn shown_box(ui: &mut Ui, settings: &mut DriveSettings) {
     chosen.response.labelled_by(label.id);
 }
 
-/// What a picture is, and what is known of it.
-fn head(ui: &mut Ui, view: View, painted: Option<&Painted>) {
-    let facts = painted.and_then(|painted| painted.result.as_ref().ok()).map(|drawn| &drawn.facts);
-    ui.allocate_ui_with_layout(vec2(ui.available_width(), HEAD), Flow::left_to_right(Align::Center), |ui| {
-        ui.label(RichText::new(view.kind.name()).strong()).on_hover_text(view.kind.meaning());
+/// What a picture is, what is known of it, and whether it is of another pose than the robot's.
+fn head(ui: &mut Ui, view: View, painted: Option<&Painted>, pose: CameraPose) {
+    let is_old = painted.is_some_and(|painted| painted.pose != pose);
+    let has_room = !is_old || ui.available_width() > ROOM_FOR_FACTS;
+    let drawn = painted.and_then(|painted| painted.result.as_ref().ok());
+    let facts = drawn.map(|drawn| &drawn.facts).filter(|_| has_room);
+    let names = |ui: &mut Ui| {
+        ui.add(egui::Label::new(RichText::new(view.kind.name()).strong()).truncate())
+            .on_hover_text(view.kind.meaning());
         if let Some(facts) = facts {
             let text = facts_in_words(view.kind, facts);
             ui.add(egui::Label::new(RichText::new(&text).weak()).truncate())
                 .on_hover_text(format!("{text}\n{FACTS_MEAN}"));
         }
+    };
+    ui.allocate_ui_with_layout(vec2(ui.available_width(), HEAD), Flow::right_to_left(Align::Center), |ui| {
+        if is_old {
+            ui.weak("updating …").on_hover_text("This is the picture at a pose before");
+        }
+        ui.with_layout(Flow::left_to_right(Align::Center), names);
     });
 }
 
@@ -306,16 +320,27 @@ fn waiting(ui: &mut Ui, rect: Rect) -> Option<CameraPose> {
 
 /// Why there is no picture, in its place, and a way to one.
 fn words(ui: &mut Ui, rect: Rect, view: View, reason: &str, probe: Option<NearProbe>) -> Option<CameraPose> {
-    let inside = rect.shrink(0.06 * rect.width());
+    let inside = rect.shrink(0.06 * rect.width()).round_ui();
     let mut child = ui.new_child(
         UiBuilder::new().max_rect(inside).layout(Flow::top_down(Align::Center)).id_salt(view.kind.name()),
     );
     child.set_clip_rect(rect.intersect(ui.clip_rect()));
-    child.add_space(0.28 * inside.height());
-    child.add(egui::Label::new(RichText::new(reason).color(Color32::from_gray(205))).wrap());
-    let probe = probe.filter(|_| view.kind == PictureKind::Truth)?;
-    child.add_space(6.0);
-    child.add(Button::new("Go there")).clicked().then_some(probe.pose)
+    // In a small picture every line counts, and what has no room is scrolled to.
+    let is_small = inside.height() < 140.0;
+    child.add_space(if is_small { 0.0 } else { 0.28 * inside.height() });
+    let probe = probe.filter(|_| view.kind == PictureKind::Truth);
+    egui::ScrollArea::vertical()
+        .show(&mut child, |ui| {
+            let text = RichText::new(reason).color(Color32::from_gray(205));
+            let text = if is_small { text.small() } else { text };
+            // The way out comes before its reason where both have no room.
+            let go = |ui: &mut Ui| probe.filter(|_| ui.add(Button::new("Go there")).clicked());
+            let before = if is_small { go(ui) } else { None };
+            ui.add(egui::Label::new(text).wrap());
+            let after = if is_small { None } else { go(ui) };
+            before.or(after).map(|probe| probe.pose)
+        })
+        .inner
 }
 
 /// What the colours mean.

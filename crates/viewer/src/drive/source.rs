@@ -11,13 +11,14 @@ use reality_sim_core::{
 };
 use reality_sim_db::{Database, PoseEstimate, PoseSource, metric::PixelMetric};
 use reality_sim_synthesis::{Archive, measure_hall};
-use tempfile::TempDir;
+use serde_json::json;
 
+use super::work_folder::WorkFolder;
 use crate::{background::Progress, device::Device, opening::CACHE_BYTES};
 
 /// Every so many-th picture is held back to compare with.
 const PROBE_STEP: usize = 5;
-/// Recordings with fewer pictures need all of them.
+/// Recordings with fewer poses than this need all of their pictures.
 const LEAST_FRAMES: usize = 10;
 
 /// An archive and, where it was made for now, the folder of its file: that is deleted when the last thread has gone.
@@ -27,7 +28,7 @@ pub struct Source {
     /// True pictures that are not in the archive.
     pub probes: Option<Probes>,
     /// After the archive, which has a file of it open.
-    _folder: Option<TempDir>,
+    _folder: Option<WorkFolder>,
 }
 
 impl Source {
@@ -99,6 +100,9 @@ impl Probes {
     }
 }
 
+/// What the filter weighs poses by.
+const MODEL: ObservationKind = ObservationKind::Contrast;
+
 /// One pose a frame, where it has one, and where they are from.
 pub struct Poses {
     estimates: Vec<Option<PoseEstimate>>,
@@ -116,13 +120,17 @@ impl Poses {
 
     /// Found by the particle filter, of the whole recording together; those that it is not sure of are left out.
     pub fn found(sequence: &Sequence, device: Option<&Device>, progress: &Progress) -> Result<Self, String> {
+        progress.begin("Finding the poses …");
         let (tagger, tagged) = tagged(sequence, device, progress)?;
         let smoothed = smooth_sequence(sequence, &tagger, &tagged).map_err(|error| error.to_string())?;
         let estimate = |index: usize| match &smoothed {
             Some(smoothed) => {
                 PoseEstimate { pose: smoothed[index].pose, covariance: Some(smoothed[index].covariance) }
             }
-            None => PoseEstimate::from(tagged[index].pose),
+            None => {
+                let covariance = tagged[index].fit.map(|fit| fit.covariance);
+                PoseEstimate { pose: tagged[index].pose, covariance }
+            }
         };
         let sure = |(index, frame): (usize, &TaggedFrame)| frame.sure.then(|| estimate(index));
         let estimates: Vec<_> = tagged.iter().enumerate().map(sure).collect();
@@ -132,8 +140,18 @@ impl Poses {
                 sequence.folder.display()
             ));
         }
-        let settings = r#"{"program":"reality-sim viewer","observation":"contrast"}"#.to_owned();
-        Ok(Self { estimates, source: PoseSource::Filter { settings } })
+        let config = TagConfig::new(MODEL);
+        let settings = json!({
+            "program": concat!("reality-sim viewer ", env!("CARGO_PKG_VERSION")),
+            "observation": config.observation.kind,
+            "particles": config.filter.particles,
+            "iterations": config.filter.iterations,
+            "resampling": config.filter.resampling,
+            "seed": config.filter.seed,
+            "backend": device.map_or("processor", |device| &device.name),
+            "smoothed": smoothed.is_some(),
+        });
+        Ok(Self { estimates, source: PoseSource::Filter { settings: settings.to_string() } })
     }
 }
 
@@ -142,7 +160,7 @@ fn tagged(
     device: Option<&Device>,
     progress: &Progress,
 ) -> Result<(Tagger, Vec<TaggedFrame>), String> {
-    let config = TagConfig::new(ObservationKind::Contrast);
+    let config = TagConfig::new(MODEL);
     let Sequence { setup, field, start, .. } = sequence;
     let mut tagger = match device {
         Some(device) => {
@@ -163,24 +181,25 @@ fn tagged(
     Ok((tagger, tagged))
 }
 
-/// Makes a database of a recording in a temporary file, measures the hall, and holds some pictures back as probes.
+/// Makes a database of a recording in a temporary file, measures the hall, and holds some pictures back as probes. The file
+/// is deleted with what is returned, or before an error is.
 pub fn build(sequence: &Arc<Sequence>, poses: Poses, progress: &Progress) -> Result<Source, String> {
     let words = |error: &dyn std::error::Error| error.to_string();
     let Poses { mut estimates, source } = poses;
     let probes = held_back(sequence, &mut estimates);
-    let folder = tempfile::tempdir()
+    let folder = WorkFolder::new_in(&std::env::temp_dir())
         .map_err(|error| format!("no temporary file can be made: {error}: make room, or set TMPDIR"))?;
     let path = folder.path().join("recording.db");
     let mut database = Database::create_or_open(&path).map_err(|error| words(&error))?;
     let count = estimates.len();
+    progress.begin("Storing the pictures …");
     let ingested = database.ingest_while(sequence, &estimates, &source, |done| {
         progress.set(done, count);
         !progress.is_cancelled()
     });
     ingested.map_err(|error| words(&error))?;
     stop_if_cancelled(progress)?;
-    // How long the rest takes is not known.
-    progress.set(0, 0);
+    progress.begin("Measuring the hall …");
     let archive = Archive::open(&path, 0).map_err(|error| words(&error))?;
     if let Some(hall) = measure_hall(&archive).map_err(|error| words(&error))? {
         database.set_hall(archive.images()[0].field_id, &hall).map_err(|error| words(&error))?;
@@ -192,10 +211,15 @@ pub fn build(sequence: &Arc<Sequence>, poses: Poses, progress: &Progress) -> Res
     Ok(Source { archive: Arc::new(archive), probes, _folder: Some(folder) })
 }
 
+/// Whether pictures are held back to compare with, where so many have poses.
+pub fn holds_back(poses: usize) -> bool {
+    poses >= LEAST_FRAMES
+}
+
 /// Takes some of the poses out: their pictures are the truth that others are compared with.
 fn held_back(sequence: &Arc<Sequence>, estimates: &mut [Option<PoseEstimate>]) -> Option<Probes> {
     let known: Vec<usize> = (0..estimates.len()).filter(|&frame| estimates[frame].is_some()).collect();
-    if known.len() < LEAST_FRAMES {
+    if !holds_back(known.len()) {
         return None;
     }
     let held = known.iter().skip(PROBE_STEP / 2).step_by(PROBE_STEP);

@@ -2,19 +2,28 @@
 
 use std::{
     collections::BTreeMap,
-    path::Path,
-    sync::{Arc, Mutex, PoisonError, Weak},
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    sync::{
+        Arc, Mutex, PoisonError, Weak,
+        atomic::{AtomicUsize, Ordering},
+    },
     time::{Duration, Instant},
 };
 
-use eframe::egui::Context;
+use eframe::egui::{Context, Ui};
+use egui_kittest::{Harness, kittest::Queryable};
+use glam::DVec2;
 use reality_sim_core::{
-    backend::BackendError,
+    backend::{Backend, BackendError, CpuBackend},
+    camera::ImageCircle,
     pose::{CameraPose, Pose2, wrap_angle},
     sequence::Sequence,
 };
 
 use super::{
+    DrivePanel, DriveSettings,
     driving::Driving,
     kind::{PictureKind, Shown, View},
     painter::{Answer, Around, Painted, Painter, Wish},
@@ -23,6 +32,7 @@ use super::{
 use crate::{
     background::{Outcome, Task},
     device::Device,
+    problems::Problems,
 };
 
 /// Far more than any of this takes.
@@ -68,8 +78,9 @@ fn wish(source: &Source, pose: CameraPose) -> Wish {
         pose,
         views: PictureKind::ALL.map(View::picture).to_vec(),
         is_best_effort: false,
-        wants_triangulation: false,
+        edges_in: None,
         probes: source.probes.clone(),
+        device: None,
     }
 }
 
@@ -94,7 +105,7 @@ fn fulfilled(painter: &mut Painter, wish: &Wish) -> (Around, BTreeMap<View, Pain
 }
 
 fn painter(source: &Arc<Source>) -> Painter {
-    Painter::spawn(&Context::default(), source.clone(), None)
+    Painter::spawn(&Context::default(), source.clone())
 }
 
 fn probe(source: &Source) -> (usize, CameraPose) {
@@ -196,14 +207,18 @@ fn origins_and_trust_are_of_the_same_picture_and_a_simulated_one_has_none() {
         view(PictureKind::Blend, Shown::Trust),
         view(PictureKind::Simulated, Shown::Origins),
     ];
-    let wish = Wish { views, wants_triangulation: true, ..wish(&source, probe(&source).1) };
+    let wish = Wish {
+        views,
+        edges_in: Some([DVec2::splat(-9.0), DVec2::splat(9.0)]),
+        ..wish(&source, probe(&source).1)
+    };
     let (around, painted) = fulfilled(&mut painter(&source), &wish);
     let drawn = |index: usize| painted[&wish.views[index]].result.as_ref();
     let used = |index: usize| &drawn(index).unwrap().facts.used;
     assert!(used(0) == used(1) && used(0) == used(2) && used(0).len() > 1);
     assert!(drawn(0).unwrap().picture != drawn(1).unwrap().picture);
     assert!(drawn(3).unwrap_err().contains("choose another method"));
-    assert!(around.triangulations.iter().any(|sector| !sector.edges_in_world.is_empty()));
+    assert!(around.edges.iter().any(|sector| !sector.shown_in_world.is_empty()));
 }
 
 #[test]
@@ -233,16 +248,151 @@ fn of_many_wishes_the_newest_is_fulfilled() {
 }
 
 #[test]
-fn the_thread_ends_with_the_panel() {
+fn while_wishes_change_without_an_end_every_view_gets_its_turn_and_the_first_is_drawn_first() {
+    let source = source();
+    let mut painter = painter(&source);
+    let views = wish(&source, probe(&source).1).views;
+    let (start, mut step, mut drawn) = (Instant::now(), 0, Vec::new());
+    while !views.iter().all(|view| drawn.contains(view)) {
+        // As a hand that does not rest: another pose whenever a picture comes.
+        step += 1;
+        let pose = CameraPose { yaw_rad: 0.0001 * f64::from(step), ..probe(&source).1 };
+        painter.wish(wish(&source, pose));
+        match painter.answer() {
+            Some(Answer::Painted(view, _)) => drawn.push(view),
+            Some(Answer::Problem(problem)) => panic!("{problem}"),
+            Some(Answer::Around(_)) | None => std::thread::sleep(Duration::from_millis(1)),
+        }
+        assert!(start.elapsed() < LIMIT, "{drawn:?}");
+    }
+    assert_eq!(drawn[..views.len()], views, "one after the other");
+}
+
+#[test]
+fn what_was_drawn_already_is_not_drawn_again_for_another_part_of_the_map() {
+    let source = source();
+    let mut painter = painter(&source);
+    let first = wish(&source, probe(&source).1);
+    fulfilled(&mut painter, &first);
+    let views =
+        vec![View::picture(PictureKind::Blend), View { kind: PictureKind::Blend, shown: Shown::Trust }];
+    let part = [DVec2::new(-9.0, -9.0), DVec2::new(0.0, 9.0)];
+    painter.wish(Wish { views, edges_in: Some(part), ..first });
+    let start = Instant::now();
+    let mut painted = Vec::new();
+    while painted.is_empty() {
+        match painter.answer() {
+            Some(Answer::Painted(view, _)) => painted.push(view),
+            Some(Answer::Around(around)) => assert!(!around.edges.is_empty()),
+            Some(Answer::Problem(problem)) => panic!("{problem}"),
+            None => std::thread::sleep(Duration::from_millis(2)),
+        }
+        assert!(start.elapsed() < LIMIT);
+    }
+    assert_eq!(painted[0].shown, Shown::Trust, "the picture itself was there");
+}
+
+#[test]
+fn who_drops_the_painter_waits_for_its_thread() {
     let source = Arc::new(built(walk()));
-    let mut painter = Painter::spawn(&Context::default(), source.clone(), None);
+    let mut painter = Painter::spawn(&Context::default(), source.clone());
     painter.wish(wish(&source, probe(&source).1));
     drop(painter);
-    let start = Instant::now();
-    while Arc::strong_count(&source) > 1 {
+    assert_eq!(Arc::strong_count(&source), 1);
+}
+
+#[test]
+fn another_device_is_opened_at_once_and_once() {
+    let source = source();
+    let opened = Arc::new(AtomicUsize::new(0));
+    let count = opened.clone();
+    let open = move || -> Result<Arc<dyn Backend>, BackendError> {
+        count.fetch_add(1, Ordering::SeqCst);
+        Ok(Arc::new(CpuBackend))
+    };
+    let device = Device { name: "another".to_owned(), open: Arc::new(open) };
+    let mut painter = painter(&source);
+    let first = Wish { views: vec![View::picture(PictureKind::Blend)], ..wish(&source, probe(&source).1) };
+    fulfilled(&mut painter, &first);
+    assert_eq!(opened.load(Ordering::SeqCst), 0);
+    let second = Wish { device: Some(device), ..first };
+    fulfilled(&mut painter, &second);
+    fulfilled(
+        &mut painter,
+        &Wish { pose: CameraPose { x_m: second.pose.x_m + 0.01, ..second.pose }, ..second },
+    );
+    assert_eq!(opened.load(Ordering::SeqCst), 1);
+}
+
+/// Only the test below starts with this variable set.
+const ALONE: &str = "REALITY_SIM_VIEWER_TEST_TEMPORARY";
+
+/// The work of a panel that is left while its database is being made, in a process of its own: its temporary folder is its
+/// own, too.
+#[test]
+fn the_panel_that_is_left() {
+    let Some(parent) = std::env::var_os(ALONE).map(PathBuf::from) else { return };
+    let (sequence, start) = (Arc::new(walk()), Instant::now());
+    let panel = DrivePanel::of_recording(sequence);
+    let show = |ui: &mut Ui, panel: &mut DrivePanel| {
+        panel.ui(ui, &mut DriveSettings::default(), &[], &mut Problems::default());
+    };
+    let mut window = Harness::builder().with_size([900.0, 600.0]).build_ui_state(show, panel);
+    while fs::read_dir(&parent).unwrap().next().is_none() {
+        window.step();
         assert!(start.elapsed() < LIMIT);
-        std::thread::sleep(Duration::from_millis(5));
     }
+    drop(window);
+    assert!(fs::read_dir(&parent).unwrap().next().is_none(), "the folder is still there");
+}
+
+#[cfg(unix)]
+#[test]
+fn leaving_while_the_database_is_made_leaves_no_file_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let status = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "drive::tests::the_panel_that_is_left"])
+        .env(ALONE, folder.path())
+        .env("TMPDIR", folder.path())
+        .stdout(Stdio::null())
+        .status()
+        .unwrap();
+    assert!(status.success());
+}
+
+#[test]
+fn the_provenance_of_poses_found_says_how_they_were_found() {
+    let mut recording = walk();
+    recording.frames.truncate(4);
+    recording.groundtruth = vec![None; 4];
+    let recording = Arc::new(recording);
+    let task = Task::spawn(&Context::default(), "", move |progress| {
+        build(&recording, Poses::found(&recording, None, progress)?, progress)
+    });
+    let source = finished(&task).unwrap();
+    let described = source.archive.database().pose_sources().unwrap();
+    let text = format!("{described:?}");
+    for key in ["observation", "particles", "iterations", "resampling", "seed", "backend", "smoothed"] {
+        assert!(text.contains(key), "{key} is not in {text}");
+    }
+}
+
+#[test]
+fn a_long_recording_is_made_a_database_of_only_when_that_is_asked_for() {
+    let mut long = walk();
+    let (frame, pose) = (long.frames[0].clone(), long.groundtruth[0]);
+    long.frames = vec![frame; 2001];
+    long.groundtruth = vec![pose; 2001];
+    let show = |ui: &mut Ui, panel: &mut DrivePanel| {
+        panel.ui(ui, &mut DriveSettings::default(), &[], &mut Problems::default());
+    };
+    let panel = DrivePanel::of_recording(Arc::new(long));
+    let mut window = Harness::builder().with_size([900.0, 600.0]).build_ui_state(show, panel);
+    window.run_steps(3);
+    window.get_by_label_contains("its 2001 pictures");
+    window.get_by_label("Build the database").click();
+    window.run_steps(2);
+    window.get_by_label("Cancel");
 }
 
 #[test]
@@ -252,8 +402,8 @@ fn a_device_that_cannot_be_opened_is_told_and_the_processor_draws() {
         name: "broken".to_owned(),
         open: Arc::new(|| Err(BackendError("no driver: install one".to_owned()))),
     };
-    let mut painter = Painter::spawn(&Context::default(), source.clone(), Some(device));
-    painter.wish(wish(&source, probe(&source).1));
+    let mut painter = Painter::spawn(&Context::default(), source.clone());
+    painter.wish(Wish { device: Some(device), ..wish(&source, probe(&source).1) });
     let start = Instant::now();
     let mut problem = None;
     loop {
@@ -277,11 +427,27 @@ fn recordings_that_cannot_be_compared_are_refused_by_name() {
     let source = source();
     let mut driving = Driving::new(Source::of_archive(source.archive.clone()));
     assert_eq!(driving.compare_with(&Arc::new(walk())), Ok(()));
-    let mut blind = walk();
-    blind.groundtruth.fill(None);
-    let mut large = walk();
-    large.setup.camera.width = 1280;
-    for (recording, what) in [(blind, "ground truth"), (large, "1280 x 480 pixels")] {
+    let changed = |change: fn(&mut Sequence)| {
+        let mut recording = walk();
+        change(&mut recording);
+        recording
+    };
+    let renamed = changed(|recording| recording.field.name = "another name".to_owned());
+    assert_eq!(driving.compare_with(&Arc::new(renamed)), Ok(()), "names do not matter");
+    let refused = [
+        (changed(|recording| recording.groundtruth.fill(None)), "ground truth"),
+        (changed(|recording| recording.setup.camera.width = 1280), "1280 x 480 pixels"),
+        (changed(|recording| recording.setup.camera.fx += 1.0), "another lens"),
+        (
+            changed(|recording| {
+                recording.setup.camera.image_circle =
+                    Some(ImageCircle { cx: 319.5, cy: 239.5, radius: 99.0 });
+            }),
+            "part of the lens's image",
+        ),
+        (changed(|recording| recording.field.length_m += 0.1), "field has other dimensions"),
+    ];
+    for (recording, what) in refused {
         let reason = driving.compare_with(&Arc::new(recording)).unwrap_err();
         assert!(reason.contains("assets/walk") && reason.contains(what), "{reason}");
     }
