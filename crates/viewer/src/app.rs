@@ -113,6 +113,10 @@ impl ViewerApp {
             self.settings.remember(path);
         }
         self.shown_path = Some(path.to_path_buf());
+        if let Some(left) = self.drive.take() {
+            // It waits for its threads: the window does not.
+            std::thread::spawn(move || drop(left));
+        }
         match opened {
             Opened::Recording(sequence) => {
                 self.drive = Some(DrivePanel::of_recording(sequence.clone()));

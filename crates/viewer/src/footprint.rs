@@ -33,7 +33,7 @@ impl Footprint {
 
 /// The outline of the ground in a picture, world axes, metres, cut off at some distance: the far side counter-clockwise,
 /// then the near side back. Empty where no ground is seen.
-pub fn footprint(camera: &Camera, pose: CameraPose) -> Vec<DVec2> {
+fn footprint(camera: &Camera, pose: CameraPose) -> Vec<DVec2> {
     let place = pose.planar().position_in_world();
     let seen = |direction: DVec2, distance_m: f64| {
         let point_in_world = (place + distance_m * direction).extend(0.0);

@@ -15,7 +15,7 @@ use super::{
 use crate::{
     colors,
     field_view::{FieldCanvas, FieldView},
-    footprint::footprint,
+    footprint::Footprint,
 };
 
 /// The view, and the place that the particles are being dragged to.
@@ -23,6 +23,7 @@ use crate::{
 pub struct Map {
     view: FieldView,
     dragged: Option<Pose2>,
+    footprint: Footprint,
 }
 
 impl Map {
@@ -51,7 +52,7 @@ impl Map {
             layers.follow = false;
         }
         if layers.footprint {
-            canvas.footprint(&footprint(&sequence.setup.camera, frame.record.pose));
+            canvas.footprint(self.footprint.outline(&sequence.setup.camera, frame.record.pose));
         }
         if layers.odometry {
             draw_odometry(&canvas, sequence, history, at);
