@@ -31,6 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     window.key_press(Key::Space);
     until(&mut window, "picture 30", |window| window.query_by_label_contains("picture 30 of").is_some());
     window.key_press(Key::Space);
+    until(&mut window, "rest", |window| window.query_by_label("sure").is_some());
     save(&mut window, &images.join("viewer_walk.jpg"))?;
 
     window.key_press_modifiers(Modifiers::COMMAND, Key::Num2);

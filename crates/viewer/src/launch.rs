@@ -10,7 +10,7 @@ use std::{
     },
 };
 
-use eframe::egui;
+use eframe::{egui, egui_wgpu::WgpuSetup};
 
 use crate::{Device, ViewerApp};
 
@@ -55,7 +55,11 @@ pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
         .with_app_id("reality-sim")
         .with_inner_size([1280.0, 820.0])
         .with_min_inner_size([640.0, 420.0]);
-    let native = eframe::NativeOptions { viewport, ..Default::default() };
+    let mut native = eframe::NativeOptions { viewport, ..Default::default() };
+    if let WgpuSetup::CreateNew(setup) = &mut native.wgpu_options.wgpu_setup {
+        // OpenGL is built in only where another package of the same build asks for it: the window is the same everywhere.
+        setup.instance_descriptor.backends.remove(wgpu::Backends::GL);
+    }
     let opened = while_opening(|is_open| {
         let app = |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
             is_open();
