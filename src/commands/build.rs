@@ -8,10 +8,9 @@ use std::{
 use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
-use serde_json::json;
 
 use reality_sim::{
-    Archive, Sequence, TagConfig, TaggedFrame, Tagger,
+    Archive, Sequence, TagConfig, Tagger,
     db::{Database, IngestReport, PoseEstimate, PoseSource},
     observation::ObservationKind,
     sequence::{match_poses, read_tum},
@@ -179,33 +178,16 @@ fn tagged_poses(args: &BuildArgs, sequence: &Sequence) -> anyhow::Result<Poses> 
     progress.finish_and_clear();
     let tagged = tagged?;
     let smoothed = smooth_sequence(sequence, &tagger, &tagged)?;
-    let estimate = |index: usize| match &smoothed {
-        Some(smoothed) => {
-            PoseEstimate { pose: smoothed[index].pose, covariance: Some(smoothed[index].covariance) }
-        }
-        None => {
-            PoseEstimate { pose: tagged[index].pose, covariance: tagged[index].fit.map(|fit| fit.covariance) }
-        }
-    };
-    let taken = |(index, frame): (usize, &TaggedFrame)| (frame.sure || args.unsure).then(|| estimate(index));
-    let estimates: Vec<_> = tagged.iter().enumerate().map(taken).collect();
+    let estimates = PoseEstimate::of_tagged(&tagged, smoothed.as_deref(), args.unsure);
     if estimates.iter().all(Option::is_none) {
         bail!(
             "{}: the filter is sure of no picture's pose: give the poses with --poses, or take them all with --unsure",
             sequence.folder.display()
         );
     }
-    let settings = json!({
-        "program": concat!("reality-sim ", env!("CARGO_PKG_VERSION")),
-        "observation": config.observation.kind,
-        "particles": config.filter.particles,
-        "iterations": config.filter.iterations,
-        "resampling": config.filter.resampling,
-        "seed": config.filter.seed,
-        "backend": device.name,
-        "smoothed": smoothed.is_some(),
-    });
-    Ok(Poses { estimates, source: PoseSource::Filter { settings: settings.to_string() } })
+    let program = concat!("reality-sim ", env!("CARGO_PKG_VERSION"));
+    let source = PoseSource::of_filter(program, &config, device.name, smoothed.is_some());
+    Ok(Poses { estimates, source })
 }
 
 /// Measures the hall around the field that most images show, and keeps it.

@@ -1,8 +1,13 @@
 //! What is known of an image, and its way in and out of a row.
 
 use nalgebra::Matrix6;
-use reality_sim_core::pose::CameraPose;
+use reality_sim_core::{
+    pose::CameraPose,
+    refine::SmoothedPose,
+    tag::{TagConfig, TaggedFrame},
+};
 use rusqlite::{Row, types::Type};
+use serde_json::json;
 
 /// Bytes of a stored covariance.
 const COVARIANCE_BYTES: usize = 36 * 8;
@@ -24,6 +29,26 @@ impl From<CameraPose> for PoseEstimate {
 }
 
 impl PoseEstimate {
+    /// The poses of a tagged recording, one a frame: as smoothed, or where they were not, as tagged. Frames that the filter
+    /// is not sure of have none, unless `with_unsure`.
+    ///
+    /// # Panics
+    ///
+    /// Where there are fewer smoothed poses than tagged ones: both are of the same frames.
+    pub fn of_tagged(
+        tagged: &[TaggedFrame],
+        smoothed: Option<&[SmoothedPose]>,
+        with_unsure: bool,
+    ) -> Vec<Option<Self>> {
+        let estimate = |(index, frame): (usize, &TaggedFrame)| match smoothed.map(|smoothed| smoothed[index])
+        {
+            Some(smoothed) => Self { pose: smoothed.pose, covariance: Some(smoothed.covariance) },
+            None => Self { pose: frame.pose, covariance: frame.fit.map(|fit| fit.covariance) },
+        };
+        let frames = tagged.iter().enumerate();
+        frames.map(|frame| (frame.1.sure || with_unsure).then(|| estimate(frame))).collect()
+    }
+
     /// Whether a camera can be there, and no number of the covariance is NaN or infinite.
     pub(crate) fn is_possible(&self) -> bool {
         let covariance = self.covariance.iter().flat_map(Matrix6::iter);
@@ -49,6 +74,21 @@ pub enum PoseSource {
 }
 
 impl PoseSource {
+    /// The particle filter with these settings, as a program ran it on a device, with or without smoothing.
+    pub fn of_filter(program: &str, config: &TagConfig, device: &str, is_smoothed: bool) -> Self {
+        let settings = json!({
+            "program": program,
+            "observation": config.observation.kind,
+            "particles": config.filter.particles,
+            "iterations": config.filter.iterations,
+            "resampling": config.filter.resampling,
+            "seed": config.filter.seed,
+            "backend": device,
+            "smoothed": is_smoothed,
+        });
+        Self::Filter { settings: settings.to_string() }
+    }
+
     /// `groundtruth`, `filter` or `file`.
     pub fn kind(&self) -> &'static str {
         match self {

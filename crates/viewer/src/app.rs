@@ -194,8 +194,9 @@ impl ViewerApp {
                 ui.label(&self.notice);
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     if let Some(milliseconds) = self.frame_times.last() {
-                        let hover = |ui: &mut Ui| ui.label(self.frame_times.summary());
-                        ui.weak(format!("frame {milliseconds:.1} ms")).on_hover_ui(|ui| drop(hover(ui)));
+                        ui.weak(format!("frame {milliseconds:.1} ms")).on_hover_ui(|ui| {
+                            ui.label(self.frame_times.summary());
+                        });
                         ui.separator();
                     }
                     ui.add(egui::Label::new(egui::RichText::new(&self.adapter).weak()).truncate());

@@ -2,6 +2,7 @@
 
 use std::{fmt, sync::Arc};
 
+use eframe::egui::{ComboBox, Response, Ui};
 use reality_sim_core::backend::{Backend, BackendError};
 
 /// A device to choose.
@@ -29,4 +30,16 @@ impl fmt::Debug for Device {
 /// The device of this name, else the first.
 pub(crate) fn by_name<'a>(devices: &'a [Device], name: &str) -> Option<&'a Device> {
     devices.iter().find(|device| device.name == name).or(devices.first())
+}
+
+/// A list to choose a device from, by its name.
+pub(crate) fn list_ui(ui: &mut Ui, devices: &[Device], chosen: &mut String, width: f32) -> Response {
+    let shown = by_name(devices, chosen).map_or("", |device| &device.name).to_owned();
+    let list = ComboBox::from_id_salt("device").selected_text(shown).width(width).truncate();
+    let list = list.show_ui(ui, |ui| {
+        for device in devices {
+            ui.selectable_value(chosen, device.name.clone(), &device.name);
+        }
+    });
+    list.response
 }

@@ -19,7 +19,7 @@ mod tests;
 
 use std::sync::Arc;
 
-use eframe::egui::{self, Ui};
+use eframe::egui::Ui;
 use reality_sim_core::sequence::Sequence;
 use reality_sim_synthesis::Archive;
 use serde::{Deserialize, Serialize};
@@ -33,7 +33,7 @@ use self::{
     source::Source,
 };
 use crate::{
-    device::{Device, by_name},
+    device::{Device, list_ui},
     problems::Problems,
 };
 
@@ -126,16 +126,10 @@ impl DrivePanel {
 
 /// The device of a person's choice, and a list to choose another from.
 fn device_ui(ui: &mut Ui, chosen: &mut String, devices: &[Device]) {
-    let shown = by_name(devices, chosen).map_or("", |device| &device.name).to_owned();
     ui.horizontal(|ui| {
         let label = ui.label("Computed by");
-        let list = egui::ComboBox::from_id_salt("drive device").selected_text(shown).width(150.0).truncate();
-        let list = list.show_ui(ui, |ui| {
-            for device in devices {
-                ui.selectable_value(chosen, device.name.clone(), &device.name);
-            }
-        });
-        list.response.labelled_by(label.id).on_hover_text("Where poses are found and pictures are drawn");
+        let list = list_ui(ui, devices, chosen, 150.0);
+        list.labelled_by(label.id).on_hover_text("Where poses are found and pictures are drawn");
     });
 }
 

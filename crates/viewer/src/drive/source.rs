@@ -11,7 +11,6 @@ use reality_sim_core::{
 };
 use reality_sim_db::{Database, PoseEstimate, PoseSource, metric::PixelMetric};
 use reality_sim_synthesis::{Archive, measure_hall};
-use serde_json::json;
 
 use super::work_folder::WorkFolder;
 use crate::{background::Progress, device::Device, opening::CACHE_BYTES};
@@ -123,35 +122,17 @@ impl Poses {
         progress.begin("Finding the poses …");
         let (tagger, tagged) = tagged(sequence, device, progress)?;
         let smoothed = smooth_sequence(sequence, &tagger, &tagged).map_err(|error| error.to_string())?;
-        let estimate = |index: usize| match &smoothed {
-            Some(smoothed) => {
-                PoseEstimate { pose: smoothed[index].pose, covariance: Some(smoothed[index].covariance) }
-            }
-            None => {
-                let covariance = tagged[index].fit.map(|fit| fit.covariance);
-                PoseEstimate { pose: tagged[index].pose, covariance }
-            }
-        };
-        let sure = |(index, frame): (usize, &TaggedFrame)| frame.sure.then(|| estimate(index));
-        let estimates: Vec<_> = tagged.iter().enumerate().map(sure).collect();
+        let estimates = PoseEstimate::of_tagged(&tagged, smoothed.as_deref(), false);
         if estimates.iter().all(Option::is_none) {
             return Err(format!(
                 "{}: the filter is sure of no picture's pose: watch it in Walk, or make a database with `reality-sim build` and `--poses`",
                 sequence.folder.display()
             ));
         }
-        let config = TagConfig::new(MODEL);
-        let settings = json!({
-            "program": concat!("reality-sim viewer ", env!("CARGO_PKG_VERSION")),
-            "observation": config.observation.kind,
-            "particles": config.filter.particles,
-            "iterations": config.filter.iterations,
-            "resampling": config.filter.resampling,
-            "seed": config.filter.seed,
-            "backend": device.map_or("processor", |device| &device.name),
-            "smoothed": smoothed.is_some(),
-        });
-        Ok(Self { estimates, source: PoseSource::Filter { settings: settings.to_string() } })
+        let program = concat!("reality-sim viewer ", env!("CARGO_PKG_VERSION"));
+        let device = device.map_or("processor", |device| &device.name);
+        let source = PoseSource::of_filter(program, &TagConfig::new(MODEL), device, smoothed.is_some());
+        Ok(Self { estimates, source })
     }
 }
 

@@ -4,7 +4,10 @@ use eframe::egui::{self, Color32, ComboBox, DragValue, RichText, Ui};
 use reality_sim_core::{filter::Resampling, observation::ObservationKind};
 
 use super::settings::{FilterSettings, Layers, Veil};
-use crate::{colors, device::Device};
+use crate::{
+    colors,
+    device::{Device, list_ui},
+};
 
 const MODELS: [(ObservationKind, &str, &str); 3] = [
     (
@@ -40,7 +43,9 @@ pub fn filter(ui: &mut Ui, settings: &mut FilterSettings, devices: &[Device]) {
         });
         observation(ui, settings);
         resampling(ui, settings);
-        device(ui, settings, devices);
+        row(ui, "Computed by", "Where particles are weighed", |ui| {
+            list_ui(ui, devices, &mut settings.device, 110.0)
+        });
     });
     ui.checkbox(&mut settings.odometry, "Use the odometry")
         .on_hover_text("Without it, the picture before alone predicts the next one, as in the paper");
@@ -105,20 +110,6 @@ fn resampling(ui: &mut Ui, settings: &mut FilterSettings) {
         let combo = ComboBox::from_id_salt("resampling").selected_text(name).show_ui(ui, |ui| {
             for (scheme, name) in SCHEMES {
                 ui.selectable_value(&mut settings.resampling, scheme, name);
-            }
-        });
-        combo.response
-    });
-}
-
-fn device(ui: &mut Ui, settings: &mut FilterSettings, devices: &[Device]) {
-    let shown =
-        crate::device::by_name(devices, &settings.device).map_or("", |device| &device.name).to_owned();
-    row(ui, "Computed by", "Where particles are weighed", |ui| {
-        let combo = ComboBox::from_id_salt("device").selected_text(&shown).width(110.0).truncate();
-        let combo = combo.show_ui(ui, |ui| {
-            for device in devices {
-                ui.selectable_value(&mut settings.device, device.name.clone(), &device.name);
             }
         });
         combo.response
