@@ -259,7 +259,8 @@ fn the_fields_panel_is_as_wide_as_it_was_dragged_to_be_in_proportion_to_the_wind
     assert!((width(&window) - dragged).abs() < 2.0, "{dragged} {}", width(&window));
 }
 
-/// The demonstration walk again and again: a database of it takes long enough to be cancelled in time.
+/// The demonstration walk again and again: storing it takes far longer than a few frames of the window, so that it is still
+/// under way when it is cancelled, on a slow machine, too.
 fn long_walk(folder: &Path, times: usize) {
     for name in ["sequence.toml", "camera.toml", "field.toml"] {
         fs::copy(walk().join(name), folder.join(name)).unwrap();
@@ -289,10 +290,12 @@ fn long_walk(folder: &Path, times: usize) {
 #[test]
 fn making_a_database_of_a_recording_is_cancelled_and_begun_again() {
     let folder = tempfile::tempdir().unwrap();
-    long_walk(folder.path(), 30);
+    long_walk(folder.path(), 400);
     let mut window = viewer(folder.path());
     until_label(&mut window, "Drive");
     window.get_by_label("Drive").click();
+    until_label(&mut window, "Build the database");
+    click(&mut window, "Build the database");
     until_label(&mut window, "Storing the pictures …");
     click(&mut window, "Cancel");
     until_label(&mut window, "Build the database");
