@@ -77,6 +77,7 @@ pub use reality_sim_core::{
     tag::{TagConfig, TagError, TaggedFrame, Tagger, tag_sequence},
 };
 pub use reality_sim_db as db;
+pub use reality_sim_gap as gap;
 pub use reality_sim_sensor as sensor;
 pub use reality_sim_synthesis as synthesis;
 pub use reality_sim_synthesis::{Archive, Reconstruction, SynthesisError, Synthesizer};

@@ -17,12 +17,13 @@ const PLAIN: [&str; 5] =
 const GRAPHICS: [&str; 7] = ["wgpu", "wgpu-core", "winit", "egui", "eframe", "egui-wgpu", "egui-winit"];
 
 /// The packages of this workspace that each package may use.
-const MAY_USE: [(&str, &[&str]); 7] = [
+const MAY_USE: [(&str, &[&str]); 8] = [
     ("reality-sim-core", &[]),
     ("reality-sim-gpu", &["reality-sim-core"]),
     ("reality-sim-db", &["reality-sim-core"]),
     ("reality-sim-synthesis", &["reality-sim-core", "reality-sim-db"]),
     ("reality-sim-sensor", &["reality-sim-core"]),
+    ("reality-sim-hidden", &["reality-sim-core"]),
     ("reality-sim-gap", &["reality-sim-core", "reality-sim-sensor"]),
     (
         "reality-sim-viewer",

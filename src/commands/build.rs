@@ -10,17 +10,17 @@ use clap::Args;
 use serde::Serialize;
 
 use reality_sim::{
-    Archive, Sequence, TagConfig, Tagger,
+    Archive, Sequence,
     db::{Database, IngestReport, PoseEstimate, PoseSource},
-    observation::ObservationKind,
     sequence::{match_poses, read_tum},
     synthesis::measure_hall,
-    tag::{smooth_sequence, tag_sequence},
+    tag::smooth_sequence,
     warp::Hall,
 };
 
 use super::{
     device::BackendArgs,
+    filter::{Tagged, tagged},
     output::{aligned, check_output_file, frame_progress, print, print_json},
 };
 
@@ -165,18 +165,7 @@ fn poses(args: &BuildArgs, sequence: &Sequence) -> anyhow::Result<Poses> {
 
 /// Poses by the filter, of the whole recording together.
 fn tagged_poses(args: &BuildArgs, sequence: &Sequence) -> anyhow::Result<Poses> {
-    let mut config = TagConfig::new(ObservationKind::Contrast);
-    config.filter.seed = args.seed;
-    let device = args.backend.device()?;
-    let Sequence { setup, field, start, .. } = sequence;
-    let mut tagger = Tagger::with_backend(&setup.camera, field, *start, config, device.backend)?;
-    let progress = frame_progress(sequence.frames.len())?;
-    let tagged = tag_sequence(sequence, &mut tagger, |_, _, _, _| {
-        progress.inc(1);
-        Ok(())
-    });
-    progress.finish_and_clear();
-    let tagged = tagged?;
+    let Tagged { frames: tagged, tagger, config, device } = tagged(sequence, &args.backend, args.seed)?;
     let smoothed = smooth_sequence(sequence, &tagger, &tagged)?;
     let estimates = PoseEstimate::of_tagged(&tagged, smoothed.as_deref(), args.unsure);
     if estimates.iter().all(Option::is_none) {
@@ -186,7 +175,7 @@ fn tagged_poses(args: &BuildArgs, sequence: &Sequence) -> anyhow::Result<Poses> 
         );
     }
     let program = concat!("reality-sim ", env!("CARGO_PKG_VERSION"));
-    let source = PoseSource::of_filter(program, &config, device.name, smoothed.is_some());
+    let source = PoseSource::of_filter(program, &config, &device, smoothed.is_some());
     Ok(Poses { estimates, source })
 }
 

@@ -5,6 +5,8 @@ mod device;
 #[cfg(feature = "gpu")]
 mod doctor;
 mod evaluate;
+mod filter;
+mod gap;
 mod info;
 mod output;
 mod picture_at;
@@ -26,6 +28,8 @@ pub enum Command {
     Evaluate(evaluate::EvaluateArgs),
     /// Say what a database holds, and which parts of the field it covers
     Info(info::InfoArgs),
+    /// Find which effect a model of the camera misses, add it, and show what that brings
+    Gap(Box<gap::GapArgs>),
     /// List graphics adapters, and check that they compute what the CPU computes
     #[cfg(feature = "gpu")]
     Doctor(doctor::DoctorArgs),
@@ -43,6 +47,7 @@ impl Command {
             Self::Render(args) => args.check_usage(),
             Self::Evaluate(args) => args.check_usage(),
             Self::Info(_) => Ok(()),
+            Self::Gap(args) => args.check_usage(),
             #[cfg(feature = "gpu")]
             Self::Doctor(_) => Ok(()),
             #[cfg(feature = "viewer")]
@@ -58,6 +63,7 @@ impl Command {
             Self::Render(args) => render::run(args),
             Self::Evaluate(args) => evaluate::run(args),
             Self::Info(args) => info::run(args),
+            Self::Gap(args) => gap::run(args),
             #[cfg(feature = "gpu")]
             Self::Doctor(args) => doctor::run(args),
             #[cfg(feature = "viewer")]

@@ -15,8 +15,8 @@ const DEMONSTRATION: &str = "assets/walk";
 /// Options of `viewer`.
 #[derive(Debug, Args)]
 pub struct ViewerArgs {
-    /// A recording's folder or a database; without it, the demonstration
-    #[arg(value_name = "SEQUENCE|DATABASE")]
+    /// A recording's folder, a database or a report's folder; without it, the demonstration
+    #[arg(value_name = "SEQUENCE|DATABASE|REPORT")]
     open: Option<PathBuf>,
 }
 
@@ -25,12 +25,15 @@ pub fn run(args: &ViewerArgs) -> anyhow::Result<()> {
     let demonstration = demonstration();
     let open = match (&args.open, &demonstration) {
         (Some(path), _) if !path.exists() => {
-            bail!("{}: does not exist: give a recording's folder or a database", path.display())
+            bail!(
+                "{}: does not exist: give a recording's folder, a database or a report's folder",
+                path.display()
+            )
         }
         (Some(path), _) => path.clone(),
         (None, Some(path)) => path.clone(),
         (None, None) => bail!(
-            "viewer: the demonstration ({DEMONSTRATION}) is neither here nor beside the program: give a recording's folder or a database"
+            "viewer: the demonstration ({DEMONSTRATION}) is neither here nor beside the program: give a recording's folder, a database or a report's folder"
         ),
     };
     Ok(reality_sim_viewer::run(ViewerOptions { open, demonstration, devices: device::all() })?)

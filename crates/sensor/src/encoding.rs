@@ -1,25 +1,27 @@
-//! From linear light to the numbers in the file.
+//! From linear values to the numbers in the file.
 
 use glam::Vec3;
-use reality_sim_core::sequence::Photometry;
 
-/// Gamma of a camera whose photometry is not known.
-const DEFAULT_GAMMA: f64 = 2.2;
+use crate::effect::Tone;
 
-/// A pixel value is full scale times the linear value to the power of 1 / gamma, rounded.
+/// A pixel value is full scale times what the tone curve makes of the linear value, rounded.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Encoding {
     exponent: f32,
+    contrast: f32,
 }
 
 impl Encoding {
-    pub(crate) fn new(photometry: Option<&Photometry>) -> Self {
-        let gamma = photometry.map_or(DEFAULT_GAMMA, |photometry| photometry.gamma);
-        Self { exponent: (1.0 / gamma) as f32 }
+    pub(crate) fn new(tone: Tone) -> Self {
+        Self { exponent: (1.0 / tone.gamma) as f32, contrast: tone.contrast as f32 }
     }
 
     /// What is brighter than full scale is cut off.
     pub(crate) fn encode(self, linear_rgb: Vec3) -> [u8; 3] {
-        linear_rgb.to_array().map(|value| (255.0 * value.clamp(0.0, 1.0).powf(self.exponent)).round() as u8)
+        linear_rgb.to_array().map(|linear| {
+            let encoded = linear.clamp(0.0, 1.0).powf(self.exponent);
+            let bend = self.contrast * encoded * (1.0 - encoded) * (2.0 * encoded - 1.0);
+            (255.0 * (encoded + bend).clamp(0.0, 1.0)).round() as u8
+        })
     }
 }

@@ -41,12 +41,13 @@ pub(crate) struct Lens {
 }
 
 impl Lens {
-    pub(crate) fn new(camera: &Camera) -> Self {
+    /// The rays of a camera whose picture is magnified once more, about the principal point: by 1 for not at all.
+    pub(crate) fn new(camera: &Camera, magnification: f64) -> Self {
         let width = camera.width as usize;
         let mut patches = vec![None; width * camera.height as usize];
         patches.par_chunks_exact_mut(width).enumerate().for_each(|(v, row)| {
             for (u, patch) in row.iter_mut().enumerate() {
-                *patch = ray_patch(camera, DVec2::new(u as f64, v as f64));
+                *patch = ray_patch(camera, magnification, DVec2::new(u as f64, v as f64));
             }
         });
         Self { width, patches }
@@ -59,12 +60,14 @@ impl Lens {
 }
 
 /// A pixel is small enough for its rays to change evenly within it: they are a thousandth of a pixel off.
-fn ray_patch(camera: &Camera, pixel: DVec2) -> Option<RayPatch> {
+fn ray_patch(camera: &Camera, magnification: f64, pixel: DVec2) -> Option<RayPatch> {
     camera.check_inside(pixel).ok()?;
-    let center = camera.unproject(pixel).ok()?;
+    let principal_point = DVec2::new(camera.cx, camera.cy);
+    let ray =
+        |pixel: DVec2| camera.unproject(pixel + (1.0 / magnification - 1.0) * (pixel - principal_point)).ok();
+    let center = ray(pixel)?;
     let change = |step: DVec2| {
-        let [before, after] =
-            [pixel - 0.5 * step, pixel + 0.5 * step].map(|side| camera.unproject(side).ok());
+        let [before, after] = [pixel - 0.5 * step, pixel + 0.5 * step].map(ray);
         difference(before, center, after).as_vec3()
     };
     Some(RayPatch { center: center.as_vec3(), across: change(DVec2::X), down: change(DVec2::Y) })
@@ -91,7 +94,7 @@ mod tests {
         let lens = OpencvFisheye { k: [-0.058, 0.0082, -0.0009, 0.00005] };
         let intrinsics = [215.0, 214.0, 319.5, 240.3];
         let camera = Camera::new([640, 480], intrinsics, Distortion::OpencvFisheye(lens)).unwrap();
-        let lens = Lens::new(&camera);
+        let lens = Lens::new(&camera, 1.0);
         for v in (0..480).step_by(53) {
             for (u, patch) in lens.row(v).iter().enumerate().step_by(13) {
                 for (i, part) in patch.unwrap().parts(3).enumerate() {

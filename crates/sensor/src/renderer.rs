@@ -1,10 +1,21 @@
 //! The picture at a pose: every stage, pixel by pixel.
 
+use glam::{DVec2, Vec3};
 use image::RgbImage;
 use rayon::prelude::*;
 use reality_sim_core::{field::FieldDimensions, pose::CameraPose, sequence::CameraSetup};
 
-use crate::{SceneColors, encoding::Encoding, lens::Lens, view::View, world::World};
+use crate::{
+    Chain, Model, ModelError, SceneColors, Trajectory,
+    blur::blurred,
+    encoding::Encoding,
+    lens::{Lens, RayPatch},
+    light::Light,
+    motion::Motion,
+    sensor::Sensor,
+    view::View,
+    world::World,
+};
 
 /// Parts along each side of a pixel that an edge crosses.
 const DEFAULT_PARTS_PER_SIDE: u16 = 3;
@@ -26,8 +37,10 @@ pub enum PoseError {
 /// Draws what one camera sees of one field, at any pose. Make it once: it keeps every pixel's rays.
 #[derive(Debug, Clone)]
 pub struct Renderer {
+    chain: Chain,
     world: World,
-    lens: Lens,
+    /// One for all colours, or one each where the lens magnifies them differently.
+    lenses: Vec<Lens>,
     encoding: Encoding,
     size: [u32; 2],
     parts_per_side: u16,
@@ -37,12 +50,30 @@ impl Renderer {
     /// A renderer for a camera, a field and colours. The hall's walls are 3 m outside the carpet, its ceiling is 4 m
     /// above it. Pixel values follow the gamma of the camera's photometry, 2.2 where it has none.
     pub fn new(setup: &CameraSetup, field: &FieldDimensions, colors: SceneColors) -> Self {
+        Self::through(Chain::nominal(setup, field), colors)
+    }
+
+    /// A renderer for a camera and a field with effects. Fails where they leave no camera.
+    pub fn with_model(
+        setup: &CameraSetup,
+        field: &FieldDimensions,
+        colors: SceneColors,
+        model: &Model,
+    ) -> Result<Self, ModelError> {
+        Ok(Self::through(Chain::new(setup, field, model)?, colors))
+    }
+
+    fn through(chain: Chain, colors: SceneColors) -> Self {
+        let camera = chain.camera();
+        let [red, green, blue] = chain.magnification();
+        let magnifications = if red == green && green == blue { vec![green] } else { vec![red, green, blue] };
         Self {
-            world: World::new(field, colors),
-            lens: Lens::new(&setup.camera),
-            encoding: Encoding::new(setup.photometry.as_ref()),
-            size: [setup.camera.width, setup.camera.height],
+            world: World::new(chain.field(), colors),
+            lenses: magnifications.iter().map(|factor| Lens::new(camera, *factor)).collect(),
+            encoding: Encoding::new(chain.tone()),
+            size: [camera.width, camera.height],
             parts_per_side: DEFAULT_PARTS_PER_SIDE,
+            chain,
         }
     }
 
@@ -53,15 +84,20 @@ impl Renderer {
         Self { parts_per_side: per_side.max(1), ..self }
     }
 
+    /// The camera with its effects.
+    pub fn chain(&self) -> &Chain {
+        &self.chain
+    }
+
     /// The picture at a pose. Pixels beyond the camera's valid angle or outside its image circle are black.
+    ///
+    /// Without effects this is the plain picture of an ideal sensor: no blur, no black level, no noise. With a model it
+    /// is [`Renderer::draw_at`] time 0 by a camera that stands still, without noise.
     pub fn draw(&self, pose: CameraPose) -> Result<RgbImage, PoseError> {
-        if !pose.is_finite() {
-            return Err(PoseError::NotFinite(pose));
+        if !self.chain.model().effects.is_empty() {
+            return self.draw_at(&Trajectory::still(pose), 0.0, None);
         }
-        if pose.height_m <= 0.0 {
-            return Err(PoseError::NotAboveGround { height_m: pose.height_m });
-        }
-        let view = View::new(&self.world, pose);
+        let view = self.view(pose)?;
         let [width, height] = self.size;
         let mut picture = RgbImage::new(width, height);
         let row_length = 3 * width as usize;
@@ -72,10 +108,91 @@ impl Renderer {
         Ok(picture)
     }
 
+    /// The picture with a time stamp, seconds, by a camera whose reference poses are on a trajectory: through all stages
+    /// of the camera. There is noise where a seed is given; the same seed and time give the same noise. No light falls
+    /// on pixels beyond the camera's valid angle or outside its image circle.
+    pub fn draw_at(
+        &self,
+        trajectory: &Trajectory,
+        time_s: f64,
+        noise_seed: Option<u64>,
+    ) -> Result<RgbImage, PoseError> {
+        let light = self.light(&Motion::new(&self.chain, trajectory, time_s))?;
+        let light = blurred(light, |pixel| self.chain.psf_variance_px2(pixel));
+        Ok(self.recorded(&light, &Sensor::new(&self.chain, time_s, noise_seed)))
+    }
+
+    /// What falls through the lens while each row is exposed.
+    fn light(&self, motion: &Motion<'_>) -> Result<Light, PoseError> {
+        let mut light = Light::dark(self.size);
+        let shared = if motion.is_same_for_rows() { Some(self.views(motion, 0.5)?) } else { None };
+        let last_row = f64::from(self.size[1].max(2) - 1);
+        light.rows_mut().enumerate().try_for_each(|(v, row)| {
+            match &shared {
+                Some(views) => self.expose_row(views, v, row),
+                None => self.expose_row(&self.views(motion, v as f64 / last_row)?, v, row),
+            }
+            Ok(())
+        })?;
+        Ok(light)
+    }
+
+    /// What is seen at each instant of a row's exposure; rows run from 0, the top one, to 1.
+    fn views(&self, motion: &Motion<'_>, row: f64) -> Result<Vec<View>, PoseError> {
+        motion.poses(row).map(|pose| self.view(pose)).collect()
+    }
+
+    fn view(&self, pose: CameraPose) -> Result<View, PoseError> {
+        if !pose.is_finite() {
+            return Err(PoseError::NotFinite(pose));
+        }
+        if pose.height_m <= 0.0 {
+            return Err(PoseError::NotAboveGround { height_m: pose.height_m });
+        }
+        Ok(View::new(&self.world, pose))
+    }
+
+    fn expose_row(&self, views: &[View], v: usize, row: &mut [Vec3]) {
+        for (u, light) in row.iter_mut().enumerate() {
+            let falloff = self.chain.falloff(DVec2::new(u as f64, v as f64)) as f32;
+            let sum: Vec3 = views.iter().map(|view| self.color(view, u, v)).sum();
+            *light = falloff * sum / views.len() as f32;
+        }
+    }
+
+    /// What is seen at a pixel, each colour through its own lens.
+    fn color(&self, view: &View, u: usize, v: usize) -> Vec3 {
+        let through = |lens: &Lens| match lens.row(v)[u] {
+            Some(patch) => view.color(patch, self.parts_per_side, self.light_on_ground(view, patch)),
+            None => Vec3::ZERO,
+        };
+        match self.lenses.as_slice() {
+            [red, green, blue] => Vec3::new(through(red).x, through(green).y, through(blue).z),
+            lenses => lenses.first().map_or(Vec3::ZERO, through),
+        }
+    }
+
+    fn light_on_ground(&self, view: &View, patch: RayPatch) -> f32 {
+        view.ground(patch.center).map_or(1.0, |point| self.chain.light_on_ground(point) as f32)
+    }
+
+    fn recorded(&self, light: &Light, sensor: &Sensor<'_>) -> RgbImage {
+        let [width, height] = self.size;
+        let mut picture = RgbImage::new(width, height);
+        picture.par_chunks_exact_mut(3 * width as usize).zip(light.rows()).enumerate().for_each(
+            |(v, (row, light))| {
+                for (u, (pixel, light)) in row.as_chunks_mut::<3>().0.iter_mut().zip(light).enumerate() {
+                    *pixel = self.encoding.encode(sensor.record(*light, v as u32 * width + u as u32));
+                }
+            },
+        );
+        picture
+    }
+
     fn draw_row(&self, view: &View, v: usize, row: &mut [u8]) {
-        for (patch, pixel) in self.lens.row(v).iter().zip(row.as_chunks_mut::<3>().0) {
+        for (patch, pixel) in self.lenses[0].row(v).iter().zip(row.as_chunks_mut::<3>().0) {
             if let Some(patch) = patch {
-                *pixel = self.encoding.encode(view.color(*patch, self.parts_per_side));
+                *pixel = self.encoding.encode(view.color(*patch, self.parts_per_side, 1.0));
             }
         }
     }

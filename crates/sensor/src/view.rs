@@ -7,7 +7,7 @@
 mod polygon;
 mod ring;
 
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DMat3, DVec2, DVec3, Vec3};
 use reality_sim_core::pose::CameraPose;
 
 use self::{polygon::Polygon, ring::Ring};
@@ -19,6 +19,8 @@ use crate::{
 /// What a camera sees at a pose.
 #[derive(Debug)]
 pub(crate) struct View {
+    position_in_world: DVec3,
+    camera_from_world: DMat3,
     background: Vec3,
     /// Each hides those before it.
     layers: Vec<Layer>,
@@ -30,6 +32,7 @@ struct Layer {
     color: Vec3,
     cones: Vec<Cone>,
     overlap: Overlap,
+    on_ground: bool,
 }
 
 /// The rays in which a shape is seen.
@@ -60,24 +63,34 @@ impl View {
             color: layer.color,
             cones: layer.shapes.into_iter().filter_map(cone).collect(),
             overlap: layer.overlap,
+            on_ground: layer.on_ground,
         });
-        Self { background: world.background(), layers: seen.collect() }
+        let layers = seen.collect();
+        Self { position_in_world: position, camera_from_world, background: world.background(), layers }
     }
 
-    /// Mean linear colour over a patch. Where edges cross it, it is cut into `parts_per_side` × `parts_per_side`.
-    pub(crate) fn color(&self, patch: RayPatch, parts_per_side: u16) -> Vec3 {
-        self.even_color(&patch).unwrap_or_else(|| {
-            let sum: Vec3 = patch.parts(parts_per_side).map(|part| self.blended_color(&part)).sum();
+    /// The point of the ground plane, metres, that a ray meets; `None` for one that does not.
+    pub(crate) fn ground(&self, ray: Vec3) -> Option<DVec2> {
+        let ray_in_world = self.camera_from_world.transpose() * ray.as_dvec3();
+        let length = -self.position_in_world.z / ray_in_world.z;
+        (ray_in_world.z < 0.0).then(|| (self.position_in_world + length * ray_in_world).truncate())
+    }
+
+    /// Mean linear colour over a patch; what lies on the ground is `light` times as bright. Where edges cross the patch,
+    /// it is cut into `parts_per_side` × `parts_per_side`.
+    pub(crate) fn color(&self, patch: RayPatch, parts_per_side: u16, light: f32) -> Vec3 {
+        self.even_color(&patch, light).unwrap_or_else(|| {
+            let sum: Vec3 = patch.parts(parts_per_side).map(|part| self.blended_color(&part, light)).sum();
             sum / f32::from(parts_per_side).powi(2)
         })
     }
 
     /// The colour of a patch that no visible edge crosses: that of the foremost layer.
-    fn even_color(&self, patch: &RayPatch) -> Option<Vec3> {
+    fn even_color(&self, patch: &RayPatch, light: f32) -> Option<Vec3> {
         for layer in self.layers.iter().rev() {
             match layer.side(patch) {
                 Side::Outside => {}
-                Side::Inside => return Some(layer.color),
+                Side::Inside => return Some(layer.lit(light)),
                 Side::Edge => return None,
             }
         }
@@ -85,14 +98,19 @@ impl View {
     }
 
     /// Each layer hides the part of the patch that it covers.
-    fn blended_color(&self, patch: &RayPatch) -> Vec3 {
+    fn blended_color(&self, patch: &RayPatch, light: f32) -> Vec3 {
         self.layers
             .iter()
-            .fold(self.background, |color, layer| color.lerp(layer.color, layer.coverage(patch)))
+            .fold(self.background, |color, layer| color.lerp(layer.lit(light), layer.coverage(patch)))
     }
 }
 
 impl Layer {
+    /// The colour where the light on the ground is this much.
+    fn lit(&self, light: f32) -> Vec3 {
+        if self.on_ground { light * self.color } else { self.color }
+    }
+
     fn side(&self, patch: &RayPatch) -> Side {
         let mut side = Side::Outside;
         for cone in &self.cones {

@@ -49,6 +49,8 @@ pub(crate) struct Layer {
     pub(crate) color: Vec3,
     pub(crate) shapes: Vec<Shape>,
     pub(crate) overlap: Overlap,
+    /// Whether they lie on the ground, where the light may be uneven.
+    pub(crate) on_ground: bool,
 }
 
 /// The scene.
@@ -66,7 +68,7 @@ impl World {
     pub(crate) fn new(field: &FieldDimensions, colors: SceneColors) -> Self {
         let carpet = Rectangle::around(DVec2::ZERO, field.carpet_half_extent_m());
         let floor = carpet.grown(FLOOR_AROUND_CARPET_M);
-        let layer = |color, shapes| Layer { color, shapes, overlap: Overlap::None };
+        let layer = |color, shapes| Layer { color, shapes, overlap: Overlap::None, on_ground: true };
         let [negative_x, positive_x] = field.goals().map(|goal| GoalBars::new(&goal));
         Self {
             wall: colors.wall_linear_rgb,
@@ -76,7 +78,10 @@ impl World {
                 layer(colors.line_linear_rgb, straight_lines(field)),
                 layer(colors.line_linear_rgb, circles(field)),
             ],
-            ceiling: layer(colors.ceiling_linear_rgb, vec![floor.at_height(HALL_HEIGHT_M)]),
+            ceiling: Layer {
+                on_ground: false,
+                ..layer(colors.ceiling_linear_rgb, vec![floor.at_height(HALL_HEIGHT_M)])
+            },
             goals: [
                 (colors.goal_negative_x_linear_rgb, negative_x),
                 (colors.goal_positive_x_linear_rgb, positive_x),
@@ -100,6 +105,7 @@ impl World {
             color: *color,
             shapes: bars.outlines_from(position),
             overlap: Overlap::Joined,
+            on_ground: false,
         });
         self.ground.iter().chain(ceiling).cloned().chain(goals).collect()
     }

@@ -1,9 +1,11 @@
 //! Pictures of the viewer for the README, drawn without a window: `cargo run --release -p reality-sim-viewer --example
-//! viewer_pictures` writes docs/images/viewer_*.jpg.
+//! viewer_pictures` writes docs/images/viewer_*.jpg; with names behind it (`walk`, `drive`, `gap`) only those.
 
 #![allow(clippy::print_stdout, reason = "says what it wrote")]
 
 use std::{
+    error::Error,
+    fs,
     path::{Path, PathBuf},
     sync::Arc,
     thread,
@@ -12,8 +14,13 @@ use std::{
 
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::{Harness, kittest::Queryable};
-use image::{DynamicImage, codecs::jpeg::JpegEncoder};
-use reality_sim_core::backend::CpuBackend;
+use image::{DynamicImage, RgbImage, codecs::jpeg::JpegEncoder};
+use reality_sim_core::{
+    backend::CpuBackend,
+    sequence::{Sequence, save_image},
+};
+use reality_sim_gap::{Options, PoseSource, Recording, analyse};
+use reality_sim_sensor::{Model, Renderer, SceneColors};
 use reality_sim_viewer::{Device, ViewerApp, ViewerOptions};
 
 type Window = Harness<'static, ViewerApp>;
@@ -21,11 +28,27 @@ type Window = Harness<'static, ViewerApp>;
 /// Pauses between steps, and how many are waited for at most.
 const PAUSE: Duration = Duration::from_millis(20);
 const STEPS: usize = 3000;
+/// Of the JPEG files.
+const QUALITY: u8 = 66;
+/// The lens's first coefficient as it is, and as the hidden fault has it.
+const LENS: [&str; 2] = ["[-0.058061286,", "[-0.043061286,"];
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let images = root.join("docs/images");
-    let mut window = open(&root.join("assets/walk"));
+    let (images, walk) = (root.join("docs/images"), root.join("assets/walk"));
+    let wanted: Vec<String> = std::env::args().skip(1).collect();
+    let is_wanted = |name: &str| wanted.is_empty() || wanted.iter().any(|wanted| wanted == name);
+    if is_wanted("walk") || is_wanted("drive") {
+        walk_and_drive(&walk, &images)?;
+    }
+    if is_wanted("gap") {
+        gap(&walk, &images)?;
+    }
+    Ok(())
+}
+
+fn walk_and_drive(walk: &Path, images: &Path) -> Result<(), Box<dyn Error>> {
+    let mut window = open(walk);
 
     until(&mut window, "the walk", |window| window.query_by_label("Next").is_some());
     window.key_press(Key::Space);
@@ -48,17 +71,62 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         window.step();
         thread::sleep(PAUSE);
     }
-    save(&mut window, &images.join("viewer_drive.jpg"))?;
+    save(&mut window, &images.join("viewer_drive.jpg"))
+}
+
+/// The walk with a lens that was calibrated badly, as the report on it shows that.
+fn gap(walk: &Path, images: &Path) -> Result<(), Box<dyn Error>> {
+    let folder = tempfile::tempdir()?;
+    let (recording, report) = (folder.path().join("badly-calibrated"), folder.path().join("found"));
+    miscalibrate(walk, &recording)?;
+    write_report(&recording, &report)?;
+    let mut window = open(&report);
+    until(&mut window, "the report", |window| window.query_by_label("Gap").is_some());
+    window.run();
+    save(&mut window, &images.join("viewer_gap.jpg"))
+}
+
+/// Copies a recording; its camera's file is not true any more.
+fn miscalibrate(walk: &Path, to: &Path) -> Result<(), Box<dyn Error>> {
+    fs::create_dir_all(to.join("images"))?;
+    for part in ["", "images"] {
+        for entry in fs::read_dir(walk.join(part))? {
+            let entry = entry?;
+            if entry.file_type()?.is_file() {
+                fs::copy(entry.path(), to.join(part).join(entry.file_name()))?;
+            }
+        }
+    }
+    let camera = fs::read_to_string(walk.join("camera.toml"))?;
+    let [is, should] = LENS;
+    assert!(camera.contains(is), "the walk has another lens");
+    fs::write(to.join("camera.toml"), camera.replace(is, should))?;
     Ok(())
 }
 
-fn open(walk: &Path) -> Window {
-    let device = Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) };
-    let options = ViewerOptions {
-        open: walk.to_path_buf(),
-        demonstration: Some(walk.to_path_buf()),
-        devices: vec![device],
+/// Finds what the plain model misses in a recording, and writes what the viewer reads.
+fn write_report(recording: &Path, to: &Path) -> Result<(), Box<dyn Error>> {
+    let sequence = Sequence::open(recording)?;
+    let compared = Recording::new(&sequence, &sequence.groundtruth, PoseSource::Measured, None)?;
+    let plain = Model::default();
+    let analysis = analyse(&compared, &plain, &Options::default(), &|_| ())?;
+    let frame = analysis.report.shown_frame;
+    let pose = sequence.groundtruth[frame].ok_or("the walk has ground truth")?;
+    let draw = |model: &Model| -> Result<RgbImage, Box<dyn Error>> {
+        let colors = SceneColors::new(&sequence.setup, &sequence.field);
+        Ok(Renderer::with_model(&sequence.setup, &sequence.field, colors, model)?.draw(pose)?)
     };
+    let pictures = to.join("pictures");
+    save_image(&pictures.join("measured.png"), &sequence.load_image(frame)?)?;
+    save_image(&pictures.join("before.png"), &draw(&plain)?)?;
+    save_image(&pictures.join("after.png"), &draw(&analysis.model)?)?;
+    fs::write(to.join("report.json"), serde_json::to_string(&analysis.report)?)?;
+    Ok(())
+}
+
+fn open(path: &Path) -> Window {
+    let device = Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) };
+    let options = ViewerOptions { open: path.to_path_buf(), demonstration: None, devices: vec![device] };
     let builder = Harness::builder().with_size([1280.0, 820.0]).with_max_steps(16);
     builder.wgpu().build_eframe(|cc| ViewerApp::new(cc, options))
 }
@@ -75,11 +143,11 @@ fn until(window: &mut Window, what: &str, is_there: impl Fn(&Window) -> bool) {
     panic!("{what} did not come");
 }
 
-fn save(window: &mut Window, path: &PathBuf) -> Result<(), Box<dyn std::error::Error>> {
+fn save(window: &mut Window, path: &PathBuf) -> Result<(), Box<dyn Error>> {
     window.remove_cursor();
     window.step();
     let picture = DynamicImage::from(window.render()?).into_rgb8();
-    JpegEncoder::new_with_quality(std::fs::File::create(path)?, 88).encode_image(&picture)?;
+    JpegEncoder::new_with_quality(fs::File::create(path)?, QUALITY).encode_image(&picture)?;
     println!("{}", path.display());
     Ok(())
 }

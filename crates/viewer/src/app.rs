@@ -13,6 +13,7 @@ use crate::{
     device::Device,
     drive::DrivePanel,
     frame_times::FrameTimes,
+    gap::GapPanel,
     open_window::{Chosen, OpenWindow, Purpose},
     opening::{Opened, open, whole},
     problems::Problems,
@@ -36,12 +37,15 @@ pub struct ViewerApp {
     screenshot: Screenshot,
     problems: Problems,
     notice: String,
-    /// What the panels show.
+    /// What Walk and Drive show.
     shown_path: Option<PathBuf>,
+    /// What Gap shows.
+    report_path: Option<PathBuf>,
     help_is_open: bool,
     shown: PanelKind,
     walk: Option<WalkPanel>,
     drive: Option<DrivePanel>,
+    gap: Option<GapPanel>,
 }
 
 /// Something on its way in.
@@ -68,10 +72,12 @@ impl ViewerApp {
             problems: Problems::default(),
             notice: String::new(),
             shown_path: None,
+            report_path: None,
             help_is_open: false,
             shown: PanelKind::default(),
             walk: None,
             drive: None,
+            gap: None,
         };
         app.open(&cc.egui_ctx, Purpose::Open, &options.open);
         app
@@ -99,10 +105,10 @@ impl ViewerApp {
                     self.problems.add(reason);
                 }
             }
-            (Outcome::Done(Opened::Database(_)), Purpose::Compare) => {
-                let path = path.display();
+            (Outcome::Done(opened), Purpose::Compare) => {
+                let (path, what) = (path.display(), opened.name());
                 self.problems
-                    .add(format!("{path}: is a database: to compare with, open the folder of a recording"));
+                    .add(format!("{path}: is {what}: to compare with, open the folder of a recording"));
             }
         }
     }
@@ -112,23 +118,33 @@ impl ViewerApp {
         if self.demonstration.as_deref() != Some(path) {
             self.settings.remember(path);
         }
-        self.shown_path = Some(path.to_path_buf());
-        if let Some(left) = self.drive.take() {
-            // It waits for its threads: the window does not.
-            std::thread::spawn(move || drop(left));
-        }
+        let shown_path = Some(path.to_path_buf());
         match opened {
             Opened::Recording(sequence) => {
+                self.leave_drive();
                 self.drive = Some(DrivePanel::of_recording(sequence.clone()));
                 self.walk = Some(WalkPanel::new(ctx, sequence, &self.devices, &self.settings.walk));
-                self.shown = PanelKind::Walk;
+                (self.shown_path, self.shown) = (shown_path, PanelKind::Walk);
             }
             Opened::Database(archive) => {
+                self.leave_drive();
                 // What Walk shows is another recording than this one: it goes.
                 self.walk = None;
                 self.drive = Some(DrivePanel::of_database(archive));
-                self.shown = PanelKind::Drive;
+                (self.shown_path, self.shown) = (shown_path, PanelKind::Drive);
             }
+            Opened::Report(mut loaded) => {
+                loaded.problems.drain(..).for_each(|problem| self.problems.add(problem));
+                self.gap = Some(GapPanel::new(*loaded));
+                (self.report_path, self.shown) = (shown_path, PanelKind::Gap);
+            }
+        }
+    }
+
+    fn leave_drive(&mut self) {
+        if let Some(left) = self.drive.take() {
+            // It waits for its threads: the window does not.
+            std::thread::spawn(move || drop(left));
         }
     }
 
@@ -137,6 +153,7 @@ impl ViewerApp {
             Action::OpenPath => self.open_window.ask(Purpose::Open),
             Action::Walk if self.walk.is_some() => self.shown = PanelKind::Walk,
             Action::Drive if self.drive.is_some() => self.shown = PanelKind::Drive,
+            Action::Gap if self.gap.is_some() => self.shown = PanelKind::Gap,
             Action::Theme => {
                 self.settings.theme = match self.settings.theme {
                     ThemePreference::System => ThemePreference::Light,
@@ -159,7 +176,7 @@ impl ViewerApp {
         }
         if dropped.len() > 1 {
             self.problems.add(
-                "only the first of the things dropped is opened: drop one recording or database at a time",
+                "only the first of the things dropped is opened: drop one recording, database or report at a time",
             );
         }
     }
@@ -173,10 +190,15 @@ impl ViewerApp {
     }
 
     fn bars(&mut self, ui: &mut Ui) {
-        let has = [(PanelKind::Walk, self.walk.is_some()), (PanelKind::Drive, self.drive.is_some())];
+        let has = [
+            (PanelKind::Walk, self.walk.is_some()),
+            (PanelKind::Drive, self.drive.is_some()),
+            (PanelKind::Gap, self.gap.is_some()),
+        ];
         let panels: Vec<PanelKind> =
             has.into_iter().filter(|(_, has)| *has).map(|(panel, _)| panel).collect();
-        let open = self.shown_path.as_deref();
+        let open = if self.shown == PanelKind::Gap { &self.report_path } else { &self.shown_path };
+        let open = open.as_deref();
         let toolbar = Toolbar { panels: &panels, shown: self.shown, open, theme: self.settings.theme };
         if let Some(action) = toolbar.ui(ui) {
             self.act(ui.ctx(), action);
@@ -207,20 +229,21 @@ impl ViewerApp {
 
     fn panel(&mut self, ui: &mut Ui) {
         let Self { settings, devices, problems, .. } = self;
-        match (self.shown, &mut self.walk, &mut self.drive) {
-            (PanelKind::Walk, Some(walk), _) => walk.ui(ui, &mut settings.walk, devices, problems),
-            (PanelKind::Drive, _, Some(drive)) => {
+        match (self.shown, &mut self.walk, &mut self.drive, &mut self.gap) {
+            (PanelKind::Walk, Some(walk), ..) => walk.ui(ui, &mut settings.walk, devices, problems),
+            (PanelKind::Drive, _, Some(drive), _) => {
                 if drive.ui(ui, &mut settings.drive, devices, problems) {
                     self.open_window.ask(Purpose::Compare);
                 }
             }
+            (PanelKind::Gap, .., Some(gap)) => gap.ui(ui, &mut settings.gap),
             _ => {
                 egui::CentralPanel::default().show(ui, |ui| {
                     ui.centered_and_justified(|ui| {
                         if self.opening.is_some() {
                             ui.spinner();
                         } else {
-                            ui.label("Nothing is open. Press Open…, or drop a recording's folder or a database here.");
+                            ui.label("Nothing is open. Press Open…, or drop a recording's folder, a database or a report's folder here.");
                         }
                     });
                 });
@@ -263,7 +286,7 @@ fn drop_hint(ctx: &Context) {
     let (painter, rect) = (ctx.layer_painter(layer), ctx.content_rect());
     painter.rect_filled(rect, 0.0, egui::Color32::from_black_alpha(170));
     let font = egui::FontId::proportional(22.0);
-    let text = "Drop a recording's folder or a database to open it";
+    let text = "Drop a recording's folder, a database or a report's folder to open it";
     painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, font, egui::Color32::WHITE);
 }
 

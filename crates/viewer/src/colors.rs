@@ -18,3 +18,7 @@ pub const CARPET: Color32 = Color32::from_rgb(18, 56, 36);
 pub const BESIDE: Color32 = Color32::from_rgb(24, 38, 32);
 /// The carpet's lines from above.
 pub const LINE: Color32 = Color32::from_rgb(225, 235, 228);
+/// The model as it was given.
+pub const GIVEN: Color32 = Color32::from_rgb(240, 140, 30);
+/// The model with the effects that were found.
+pub const EXTENDED: Color32 = Color32::from_rgb(0, 165, 150);

@@ -43,10 +43,18 @@ impl FieldView {
 
     /// Draws carpet and lines into a rectangle of this size.
     pub fn show(&mut self, ui: &mut Ui, field: &FieldDimensions, size: Vec2, name: &str) -> FieldCanvas {
+        let canvas = self.show_carpet(ui, field.carpet_half_extent_m(), size, name);
+        canvas.draw_lines(field, colors::LINE);
+        canvas.draw_goals(field);
+        canvas.draw_scale();
+        canvas
+    }
+
+    /// Draws a carpet of this half extent, metres, into a rectangle of this size.
+    pub fn show_carpet(&mut self, ui: &mut Ui, half_extent_m: DVec2, size: Vec2, name: &str) -> FieldCanvas {
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, name));
-        let half = field.carpet_half_extent_m();
-        let room = 2.0 * (half + self.margin_m);
+        let room = 2.0 * (half_extent_m + self.margin_m);
         let whole = (size.x / room.x as f32).min(size.y / room.y as f32);
         self.look_around(ui, &response, rect, whole);
         let canvas = FieldCanvas {
@@ -56,7 +64,7 @@ impl FieldView {
             middle_in_world: self.middle_in_world,
             response,
         };
-        canvas.draw_field(field, half);
+        canvas.draw_carpet(half_extent_m);
         canvas
     }
 
@@ -170,11 +178,15 @@ impl FieldCanvas {
         (0.1 * self.rect.width().min(self.rect.height())).clamp(18.0, 60.0)
     }
 
-    fn draw_field(&self, field: &FieldDimensions, half: DVec2) {
-        let carpet = Rect::from_two_pos(self.at(-half), self.at(half));
+    fn draw_carpet(&self, half_extent_m: DVec2) {
+        let carpet = Rect::from_two_pos(self.at(-half_extent_m), self.at(half_extent_m));
         self.painter.rect_filled(self.rect, 0.0, colors::BESIDE);
         self.painter.rect_filled(carpet, 0.0, colors::CARPET);
-        let stroke = Stroke::new(self.points(field.line_width_m).max(1.0), colors::LINE);
+    }
+
+    /// The field's lines, as wide as they are, in a colour.
+    pub fn draw_lines(&self, field: &FieldDimensions, color: Color32) {
+        let stroke = Stroke::new(self.points(field.line_width_m).max(1.0), color);
         for curve in field.curves() {
             match curve {
                 Curve::Segment { from, to } => {
@@ -185,8 +197,6 @@ impl FieldCanvas {
                 }
             }
         }
-        self.draw_goals(field);
-        self.draw_scale();
     }
 
     fn draw_goals(&self, field: &FieldDimensions) {
@@ -203,7 +213,7 @@ impl FieldCanvas {
     }
 
     /// A round length, a quarter of the view at most.
-    fn draw_scale(&self) {
+    pub fn draw_scale(&self) {
         const LENGTHS: [(f64, &str); 6] =
             [(5.0, "5 m"), (1.0, "1 m"), (0.5, "50 cm"), (0.2, "20 cm"), (0.1, "10 cm"), (0.02, "2 cm")];
         let fits = |(length_m, _): &(f64, &str)| self.points(*length_m) < 0.25 * self.rect.width();

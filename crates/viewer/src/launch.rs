@@ -17,7 +17,7 @@ use crate::{Device, ViewerApp};
 /// What the window shows first, and what it may use.
 #[derive(Debug, Clone)]
 pub struct ViewerOptions {
-    /// A recording or a database.
+    /// A recording, a database, or a report of the gap.
     pub open: PathBuf,
     /// The recording that ships with the program, where it is found.
     pub demonstration: Option<PathBuf>,

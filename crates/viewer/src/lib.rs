@@ -1,4 +1,5 @@
-//! Reality Sim in a window: the particle filter at work on a recording, and a robot driven through recorded pictures.
+//! Reality Sim in a window: the particle filter at work on a recording, a robot driven through recorded pictures, and where a
+//! camera's simulation and its pictures disagree.
 //!
 //! [`run`] opens the window; [`ViewerApp`] is what is in it, for tests and pictures without one. Nothing that takes longer than a
 //! frame runs in the window's thread: recordings are opened, poses found and pictures drawn by threads of their own, which send
@@ -12,6 +13,7 @@ mod drive;
 mod field_view;
 mod footprint;
 mod frame_times;
+mod gap;
 mod launch;
 mod open_window;
 mod opening;

@@ -54,7 +54,7 @@ impl OpenWindow {
         }
         let mut is_open = true;
         let title = match self.purpose {
-            Purpose::Open => "Open a recording or a database",
+            Purpose::Open => "Open a recording, a database or a report",
             Purpose::Compare => "Compare with the pictures of a recording",
         };
         let window = egui::Window::new(title).open(&mut is_open).collapsible(false).default_width(520.0);
@@ -67,7 +67,7 @@ impl OpenWindow {
 
     fn content(&mut self, ui: &mut Ui, recent: &[PathBuf], demonstration: Option<&Path>) -> Option<PathBuf> {
         ui.label(match self.purpose {
-            Purpose::Open => "A recording is a folder with sequence.toml; a database is a file that `reality-sim build` made. Either can be dropped onto the window, too.",
+            Purpose::Open => "A recording is a folder with sequence.toml; a database is a file that `reality-sim build` made; a report is a folder that `reality-sim gap` wrote. Each can be dropped onto the window, too.",
             Purpose::Compare => "A recording is a folder with sequence.toml, here one with ground truth.",
         });
         let mut chosen = None;

@@ -1,4 +1,4 @@
-//! What a path leads to: a recording, or a database.
+//! What a path leads to: a recording, a database, or a report of the gap.
 
 use std::{
     path::{Path, PathBuf},
@@ -8,6 +8,8 @@ use std::{
 use reality_sim_core::sequence::Sequence;
 use reality_sim_synthesis::Archive;
 
+use crate::gap::Loaded;
+
 /// Bytes spent on decoded pictures of a database.
 pub const CACHE_BYTES: usize = 512 << 20;
 
@@ -15,11 +17,25 @@ pub const CACHE_BYTES: usize = 512 << 20;
 pub enum Opened {
     Recording(Arc<Sequence>),
     Database(Arc<Archive>),
+    Report(Box<Loaded>),
 }
 
-/// Opens a folder as a recording, a file as a database. The error says what is wrong, and what to do.
+impl Opened {
+    /// What it is, in words.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Recording(_) => "a recording",
+            Self::Database(_) => "a database",
+            Self::Report(_) => "a report",
+        }
+    }
+}
+
+/// Opens a folder as a recording or a report, a file as a database. The error says what is wrong, and what to do.
 pub fn open(path: &Path) -> Result<Opened, String> {
-    if path.is_file() {
+    if is_report(path) {
+        Ok(Opened::Report(Box::new(Loaded::read(path)?)))
+    } else if path.is_file() {
         let archive = Archive::open(path, CACHE_BYTES).map_err(|error| error.to_string())?;
         Ok(Opened::Database(Arc::new(archive)))
     } else {
@@ -28,11 +44,21 @@ pub fn open(path: &Path) -> Result<Opened, String> {
     }
 }
 
-/// One name for one thing: from the root on, a recording by its folder.
+/// Whether a folder is what `reality-sim gap` wrote, whole or not. A recording stays one with reports in its folder.
+fn is_report(folder: &Path) -> bool {
+    let has = |name: &str| folder.join(name).exists();
+    !has("sequence.toml") && ["report.json", "report.html", "pictures/measured.png"].into_iter().any(has)
+}
+
+/// One name for one thing: from the root on, recordings and reports by their folder.
 pub fn whole(path: &Path) -> PathBuf {
     let path = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
     match path.parent() {
-        Some(folder) if path.file_name().is_some_and(|name| name == "sequence.toml") => folder.to_path_buf(),
+        Some(folder)
+            if path.file_name().is_some_and(|name| name == "sequence.toml" || name == "report.json") =>
+        {
+            folder.to_path_buf()
+        }
         _ => path,
     }
 }
@@ -48,5 +74,16 @@ mod tests {
             assert_eq!(whole(Path::new(path)), here.join("walk"), "{path}");
         }
         assert_eq!(whole(Path::new("sequence.toml")), here);
+        assert_eq!(whole(Path::new("found/report.json")), here.join("found"));
+    }
+
+    #[test]
+    fn a_folder_is_a_report_by_what_is_in_it_but_a_recording_stays_one() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(!is_report(folder.path()));
+        std::fs::write(folder.path().join("report.html"), "").unwrap();
+        assert!(is_report(folder.path()), "that report.json is missing is said when it is read");
+        std::fs::write(folder.path().join("sequence.toml"), "").unwrap();
+        assert!(!is_report(folder.path()));
     }
 }

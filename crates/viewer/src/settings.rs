@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use eframe::{Storage, egui::ThemePreference};
 use serde::de::DeserializeOwned;
 
-use crate::{drive::DriveSettings, walk::WalkSettings};
+use crate::{drive::DriveSettings, gap::GapSettings, walk::WalkSettings};
 
 /// Files remembered.
 const RECENT: usize = 8;
@@ -15,10 +15,11 @@ const RECENT: usize = 8;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings {
     pub theme: ThemePreference,
-    /// Recordings and databases, the last opened first.
+    /// Recordings, databases and reports, the last opened first.
     pub recent: Vec<PathBuf>,
     pub walk: WalkSettings,
     pub drive: DriveSettings,
+    pub gap: GapSettings,
 }
 
 impl Settings {
@@ -29,6 +30,7 @@ impl Settings {
             recent: part(storage, "recent"),
             walk: part(storage, "walk"),
             drive: part(storage, "drive"),
+            gap: part(storage, "gap"),
         }
     }
 
@@ -38,6 +40,7 @@ impl Settings {
         eframe::set_value(storage, "recent", &self.recent);
         eframe::set_value(storage, "walk", &self.walk);
         eframe::set_value(storage, "drive", &self.drive);
+        eframe::set_value(storage, "gap", &self.gap);
     }
 
     /// Puts a path to the front of the recent ones. One that is no text cannot be stored: it is left out.

@@ -8,6 +8,7 @@ pub enum Action {
     OpenPath,
     Walk,
     Drive,
+    Gap,
     Theme,
     Screenshot,
     Help,
@@ -23,6 +24,12 @@ pub enum Action {
     Right,
     TurnLeft,
     TurnRight,
+    OtherModel,
+    Difference,
+    ChannelBefore,
+    ChannelAfter,
+    EffectAbove,
+    EffectBelow,
 }
 
 /// Where a key is heard.
@@ -31,6 +38,7 @@ pub enum Place {
     Everywhere,
     Walk,
     Drive,
+    Gap,
 }
 
 const fn plain(key: Key) -> KeyboardShortcut {
@@ -43,9 +51,10 @@ const fn command(key: Key) -> KeyboardShortcut {
 
 /// All of them, in the order in which they are listed.
 const TABLE: &[(Place, KeyboardShortcut, Action, &str)] = &[
-    (Place::Everywhere, command(Key::O), Action::OpenPath, "open a recording or a database"),
+    (Place::Everywhere, command(Key::O), Action::OpenPath, "open a recording, a database or a report"),
     (Place::Everywhere, command(Key::Num1), Action::Walk, "show Walk"),
     (Place::Everywhere, command(Key::Num2), Action::Drive, "show Drive"),
+    (Place::Everywhere, command(Key::Num3), Action::Gap, "show Gap"),
     (Place::Everywhere, command(Key::T), Action::Theme, "light or dark"),
     (Place::Everywhere, command(Key::P), Action::Screenshot, "save a screenshot"),
     (Place::Everywhere, plain(Key::F1), Action::Help, "this list"),
@@ -63,12 +72,18 @@ const TABLE: &[(Place, KeyboardShortcut, Action, &str)] = &[
     (Place::Drive, plain(Key::Q), Action::TurnLeft, "turn to the left"),
     (Place::Drive, plain(Key::E), Action::TurnRight, "turn to the right"),
     (Place::Drive, plain(Key::Space), Action::PlayPause, "follow the drawn path, or stop"),
+    (Place::Gap, plain(Key::Space), Action::OtherModel, "without or with what was found"),
+    (Place::Gap, plain(Key::D), Action::Difference, "wipe or difference"),
+    (Place::Gap, plain(Key::ArrowLeft), Action::ChannelBefore, "the channel before"),
+    (Place::Gap, plain(Key::ArrowRight), Action::ChannelAfter, "the next channel"),
+    (Place::Gap, plain(Key::ArrowUp), Action::EffectAbove, "the effect above"),
+    (Place::Gap, plain(Key::ArrowDown), Action::EffectBelow, "the effect below"),
 ];
 
 impl Action {
     /// Whether it happens again and again while its key is held down.
     const fn repeats(self) -> bool {
-        matches!(self, Self::StepBack | Self::StepForward)
+        matches!(self, Self::StepBack | Self::StepForward | Self::ChannelBefore | Self::ChannelAfter)
     }
 }
 
@@ -136,9 +151,12 @@ pub fn window(ui: &Ui, is_open: &mut bool) {
     egui::Window::new("Keys and mouse").open(is_open).resizable(false).collapsible(false).vscroll(true).show(
         ui.ctx(),
         |ui| {
-            for (title, place) in
-                [("Everywhere", Place::Everywhere), ("Walk", Place::Walk), ("Drive", Place::Drive)]
-            {
+            for (title, place) in [
+                ("Everywhere", Place::Everywhere),
+                ("Walk", Place::Walk),
+                ("Drive", Place::Drive),
+                ("Gap", Place::Gap),
+            ] {
                 ui.strong(title);
                 egui::Grid::new(title).num_columns(2).spacing([24.0, 2.0]).show(ui, |ui| {
                     for (_, shortcut, _, text) in TABLE.iter().filter(|(heard, ..)| *heard == place) {

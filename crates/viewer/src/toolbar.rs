@@ -12,6 +12,7 @@ pub enum PanelKind {
     #[default]
     Walk,
     Drive,
+    Gap,
 }
 
 /// What the bar shows.
@@ -19,7 +20,7 @@ pub struct Toolbar<'a> {
     /// The panels that have something to show.
     pub panels: &'a [PanelKind],
     pub shown: PanelKind,
-    /// What is open.
+    /// What the panel shown shows.
     pub open: Option<&'a Path>,
     pub theme: ThemePreference,
 }
@@ -36,6 +37,7 @@ impl Toolbar<'_> {
             let (text, action) = match panel {
                 PanelKind::Walk => ("Walk", Action::Walk),
                 PanelKind::Drive => ("Drive", Action::Drive),
+                PanelKind::Gap => ("Gap", Action::Gap),
             };
             if ui
                 .selectable_label(panel == self.shown, egui::RichText::new(text).strong().size(15.0))
@@ -51,7 +53,7 @@ impl Toolbar<'_> {
                 clicked = Some(action);
             }
         };
-        button(ui, "Open…", Action::OpenPath, "Open a recording or a database");
+        button(ui, "Open…", Action::OpenPath, "Open a recording, a database or a report");
         if let Some(path) = self.open {
             let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
             ui.add(egui::Label::new(name).truncate()).on_hover_text(path.display().to_string());

@@ -10,9 +10,10 @@ use anyhow::Context;
 use image::DynamicImage;
 
 use reality_sim::{
-    Archive, CameraPose,
+    Archive, StampedPose,
     evaluation::percentile,
     montage::strip,
+    sensor::Trajectory,
     sequence::{read_camera, save_image},
 };
 
@@ -33,10 +34,15 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     args.check_outputs()?;
     let mut setup = archive.setup().clone();
     if let Some(file) = &args.camera {
-        setup.camera = read_camera(file)?.camera;
+        let other = read_camera(file)?;
+        setup.camera = other.camera;
+        setup.photometry = other.photometry.or(setup.photometry);
     }
     let synthesizer = args.synthesis.synthesizer(archive.clone(), setup.camera.clone())?;
-    let painter = Painter::new(args.method, &synthesizer, &setup);
+    let painter = match &args.model {
+        Some(model) => Painter::with_model(model, trajectory(args, &poses)?, archive.field(), &setup)?,
+        None => Painter::new(args.method, &synthesizer, &setup),
+    };
     let report = match &args.path {
         Some(path) => along_path(args, path, &painter, &poses)?,
         None => at_pose(args, &painter, &archive, poses[0])?,
@@ -44,11 +50,18 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     if args.json { print_json(&report) } else { print(&report.text()) }
 }
 
+/// The camera's way through the poses; at a single one it stands still.
+fn trajectory(args: &RenderArgs, poses: &[StampedPose]) -> anyhow::Result<Trajectory> {
+    let Some(path) = &args.path else { return Ok(Trajectory::still(poses[0].pose)) };
+    let stamped: Vec<_> = poses.iter().map(|stamped| (stamped.timestamp_s, stamped.pose)).collect();
+    Trajectory::new(&stamped).with_context(|| path.display().to_string())
+}
+
 fn at_pose(
     args: &RenderArgs,
     painter: &Painter,
     archive: &Archive,
-    pose: CameraPose,
+    pose: StampedPose,
 ) -> anyhow::Result<Report> {
     painter.paint(pose)?;
     // Once more, for the time that it takes when the neighbours are decoded.
@@ -80,7 +93,7 @@ fn along_path(
     args: &RenderArgs,
     path: &Path,
     painter: &Painter,
-    poses: &[CameraPose],
+    poses: &[StampedPose],
 ) -> anyhow::Result<Report> {
     let progress = frame_progress(poses.len())?;
     let mut times = Vec::new();

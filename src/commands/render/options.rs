@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 
-use reality_sim::{Archive, CameraPose, Pose2, sequence::read_tum};
+use reality_sim::{Archive, CameraPose, Pose2, StampedPose, sequence::read_tum};
 
 use crate::commands::{
     output::{check_distinct, check_output_picture, create_output_folder},
@@ -42,6 +42,10 @@ pub struct RenderArgs {
     /// Draw as this camera sees, not as the one that took the pictures
     #[arg(long, value_name = "FILE")]
     pub camera: Option<PathBuf>,
+    /// Effects of the simulated camera, as `gap` writes them: with --method simulated. A single pose is that of a camera
+    /// that stands still; along --path the poses and their times tell how it moves
+    #[arg(long, value_name = "FILE")]
+    pub model: Option<PathBuf>,
     #[command(flatten)]
     pub synthesis: SynthesisArgs,
     /// Print one JSON object on standard output
@@ -99,20 +103,27 @@ impl RenderArgs {
             return Err("--origins, --trust: a simulated picture comes from no recorded one: leave them out"
                 .to_owned());
         }
+        if self.method != MethodName::Simulated && self.model.is_some() {
+            return Err(
+                "--model: recorded pictures have no model of the camera: add --method simulated".to_owned()
+            );
+        }
         self.synthesis.backend.check_usage()
     }
 
-    /// The poses asked for; what a pose leaves open is as usual in the archive.
-    pub fn poses(&self, archive: &Archive) -> anyhow::Result<Vec<CameraPose>> {
+    /// The poses asked for, with their times; what a pose leaves open is as usual in the archive. A single pose is at
+    /// time 0.
+    pub fn poses(&self, archive: &Archive) -> anyhow::Result<Vec<StampedPose>> {
         let usual = archive.usual_pose();
         match (&self.pose, &self.path) {
             (Some(WantedPose { planar, attitude }), _) => {
                 let [height_m, pitch_rad, roll_rad] =
                     attitude.unwrap_or([usual.height_m, usual.pitch_rad, usual.roll_rad]);
-                Ok(vec![CameraPose::new(*planar, height_m, pitch_rad, roll_rad)])
+                let pose = CameraPose::new(*planar, height_m, pitch_rad, roll_rad);
+                Ok(vec![StampedPose { timestamp_s: 0.0, pose }])
             }
             (None, Some(file)) => {
-                let poses: Vec<CameraPose> = read_tum(file)?.iter().map(|stamped| stamped.pose).collect();
+                let poses = read_tum(file)?;
                 if poses.is_empty() {
                     bail!("{}: holds no poses: give a TUM file with one pose a line", file.display());
                 }
@@ -125,11 +136,12 @@ impl RenderArgs {
 
     /// Whoever waited for a thousand pictures must not learn then that one of them has no place.
     pub fn check_outputs(&self) -> anyhow::Result<()> {
-        let inputs: Vec<PathBuf> = [Some(&self.database), self.path.as_ref(), self.camera.as_ref()]
-            .into_iter()
-            .flatten()
-            .cloned()
-            .collect();
+        let inputs: Vec<PathBuf> =
+            [Some(&self.database), self.path.as_ref(), self.camera.as_ref(), self.model.as_ref()]
+                .into_iter()
+                .flatten()
+                .cloned()
+                .collect();
         let beside = [&self.origins, &self.trust, &self.strip].into_iter().flatten();
         check_distinct(&std::iter::once(&self.out).chain(beside.clone()).collect::<Vec<_>>())?;
         beside.clone().try_for_each(|output| check_output_picture(output, &inputs))?;

@@ -1,23 +1,28 @@
 //! What makes the pictures: recorded ones, or the model of the field.
 
-use std::time::Instant;
+use std::{path::Path, time::Instant};
 
 use image::RgbImage;
 
 use reality_sim::{
-    CameraPose, Reconstruction, Synthesizer,
+    FieldDimensions, Reconstruction, StampedPose, Synthesizer,
     probing::SIMULATED,
-    sensor::{Renderer, SceneColors},
+    sensor::{Model, Renderer, SceneColors, Trajectory},
     sequence::CameraSetup,
     synthesis::{Auto, Blend, Method, Nearest, Plane, Quadratic},
 };
 
 use super::options::MethodName;
 
+/// Pictures at different times have different noise.
+const NOISE_SEED: u64 = 0;
+
 /// What draws.
 pub enum Painter<'a> {
     Recorded(&'a Synthesizer, &'static dyn Method),
     Simulated(Box<Renderer>),
+    /// With effects, by a camera on its way.
+    Modelled(Box<Renderer>, Trajectory),
 }
 
 /// A picture.
@@ -68,20 +73,35 @@ impl<'a> Painter<'a> {
         Self::Recorded(synthesizer, recorded)
     }
 
+    /// The simulated camera with the effects of a model file, on its way.
+    pub fn with_model(
+        model: &Path,
+        trajectory: Trajectory,
+        field: &FieldDimensions,
+        setup: &CameraSetup,
+    ) -> anyhow::Result<Self> {
+        let colors = SceneColors::new(setup, field);
+        let renderer = Renderer::with_model(setup, field, colors, &Model::read(model)?);
+        Ok(Self::Modelled(Box::new(renderer.map_err(|error| error.in_file(model))?), trajectory))
+    }
+
     /// The method's name.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Recorded(_, method) => method.name(),
-            Self::Simulated(_) => SIMULATED,
+            Self::Simulated(_) | Self::Modelled(..) => SIMULATED,
         }
     }
 
     /// The picture at a pose.
-    pub fn paint(&self, pose: CameraPose) -> anyhow::Result<Painted> {
+    pub fn paint(&self, StampedPose { timestamp_s, pose }: StampedPose) -> anyhow::Result<Painted> {
         let start = Instant::now();
         let work = match self {
             Self::Recorded(synthesizer, method) => Work::Reconstructed(synthesizer.image_at(pose, *method)?),
             Self::Simulated(renderer) => Work::Drawn(renderer.draw(pose)?),
+            Self::Modelled(renderer, trajectory) => {
+                Work::Drawn(renderer.draw_at(trajectory, timestamp_s, Some(NOISE_SEED))?)
+            }
         };
         Ok(Painted { work, milliseconds: 1e3 * start.elapsed().as_secs_f64() })
     }

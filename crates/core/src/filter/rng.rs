@@ -15,6 +15,8 @@ pub enum Purpose {
     Diffuse = 3,
     /// Choosing survivors.
     Resample = 4,
+    /// Noise of a simulated picture; a pixel takes a particle's place.
+    Picture = 5,
 }
 
 /// One stream of random numbers: a seed, a purpose, and where in the recording it is used.

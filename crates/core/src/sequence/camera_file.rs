@@ -46,7 +46,7 @@ pub struct Photometry {
     /// Standard deviation of the noise without light, linear.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise_read: Option<f64>,
-    /// Standard deviation of the blur by lens and sensor, pixels.
+    /// Standard deviation of the blur by lens and sensor, pixels: of a Gaussian sampled at the pixels' centres.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub psf_sigma_px: Option<f64>,
 }

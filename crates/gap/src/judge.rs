@@ -1,0 +1,123 @@
+//! The gap before and after, on frames that no fit has seen, beside the noise floor.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DVector, Vector6};
+use reality_sim_sensor::Model;
+
+use crate::{
+    measure::{MeasureError, linearise},
+    recording::Recording,
+    rows::{Channel, Row},
+    system::{FrameRows, Left},
+    workflow::Found,
+};
+
+/// Residuals of all frames under a model.
+pub(crate) struct Judged {
+    /// At the reference poses and nominal values, frame by frame, row by row: what a simulator that is given these poses
+    /// gets wrong.
+    pub(crate) residuals: Vec<Vec<f64>>,
+    /// With poses refitted within their errors.
+    refitted: Vec<Vec<f64>>,
+}
+
+/// Sizes of one channel's residuals, root mean square.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct ChannelGap {
+    /// With the model as it was given.
+    pub before: f64,
+    /// With the extended model.
+    pub after: f64,
+    /// What noise alone makes, from neighbouring measurements in one picture.
+    pub floor: f64,
+    /// Of the three.
+    pub unit: String,
+}
+
+impl Judged {
+    /// Residuals under a model of what was measured with the extended one.
+    pub(crate) fn new(recording: &Recording<'_>, found: &Found, model: &Model) -> Result<Self, MeasureError> {
+        let measured = &found.measured;
+        let frames = linearise(recording, &measured.looks, model, &[], &measured.tolerances)?;
+        let nowhere = DVector::zeros(measured.tolerances.len());
+        let sigmas = &measured.system.pose_sigmas;
+        let residual = |frame: &FrameRows, pose_sigmas: &[f64; 6]| {
+            let weights = inlier_weights(frame, &measured.system.sigmas);
+            Left::new(frame, &weights, &nowhere, pose_sigmas).residuals
+        };
+        Ok(Self {
+            residuals: frames.iter().map(|frame| residual(frame, &[1e-12; 6])).collect(),
+            refitted: frames.iter().map(|frame| residual(frame, sigmas)).collect(),
+        })
+    }
+}
+
+/// Weights of rows by their group's scatter alone.
+fn inlier_weights(frame: &FrameRows, sigmas: &BTreeMap<(Channel, u8), f64>) -> Vec<f64> {
+    let weight = |(row, residual): (&Row, &f64)| {
+        let sigma = sigmas.get(&(row.group.channel, row.group.part));
+        sigma.filter(|_| residual.is_finite()).map_or(0.0, |sigma| sigma.powi(-2))
+    };
+    frame.rows.iter().zip(&frame.residuals).map(weight).collect()
+}
+
+/// The gap of every channel that was measured, on the judged frames.
+pub(crate) fn gaps(found: &Found, before: &Judged, after: &Judged) -> BTreeMap<Channel, ChannelGap> {
+    let mut sums: BTreeMap<Channel, Squares> = BTreeMap::new();
+    for frame in found.split.judged() {
+        let rows = &found.measured.frames[frame];
+        let mut last: BTreeMap<(Channel, u8), f64> = BTreeMap::new();
+        for (index, row) in rows.rows.iter().enumerate() {
+            let key = (row.group.channel, row.group.part);
+            let (b, a) = (before.residuals[frame][index], after.residuals[frame][index]);
+            let refitted = after.refitted[frame][index];
+            let sigma = found.measured.system.sigmas.get(&key).copied().unwrap_or(0.0);
+            // What is no measurement of a line or of carpet stays out.
+            if !(b.is_finite() && a.is_finite() && refitted.abs() < OUTLYING * sigma) {
+                continue;
+            }
+            let sums = sums.entry(key.0).or_default();
+            sums.before += b * b;
+            sums.after += a * a;
+            sums.count += 1.0;
+            sums.poses += pose_variance(&rows.pose[index], &found.measured.system.pose_sigmas);
+            if let Some(previous) = last.insert(key, refitted) {
+                sums.steps += 0.5 * (refitted - previous).powi(2);
+                sums.pairs += 1.0;
+            }
+        }
+    }
+    sums.into_iter().map(|(channel, sums)| (channel, sums.gap(channel))).collect()
+}
+
+/// A row this many standard deviations off is something else.
+const OUTLYING: f64 = 5.0;
+
+/// Sums of squares of a channel.
+#[derive(Debug, Clone, Copy, Default)]
+struct Squares {
+    before: f64,
+    after: f64,
+    count: f64,
+    /// Of what the reference poses' errors make.
+    poses: f64,
+    /// Of half the differences between neighbouring rows.
+    steps: f64,
+    pairs: f64,
+}
+
+impl Squares {
+    fn gap(&self, channel: Channel) -> ChannelGap {
+        let mean = |sum: f64| sum / self.count.max(1.0);
+        let (before, after) = (mean(self.before).sqrt(), mean(self.after).sqrt());
+        let noise = (self.steps / self.pairs.max(1.0) + mean(self.poses)).sqrt();
+        // Odometry has no neighbours in one picture: its floor is what the scatter leaves.
+        let floor = if channel == Channel::Motion { after } else { noise.min(after) };
+        ChannelGap { before, after, floor, unit: channel.unit().to_owned() }
+    }
+}
+
+fn pose_variance(gradient: &Vector6<f64>, sigmas: &[f64; 6]) -> f64 {
+    gradient.iter().zip(sigmas).map(|(gradient, sigma)| (gradient * sigma).powi(2)).sum()
+}

@@ -1,0 +1,45 @@
+//! Where a camera's simulation and its pictures disagree, which effect is missing, and how much it explains.
+//!
+//! recording → looks (what is measured in each picture) → rows (measured against expected) → system (normal equations
+//! by frame) → evidence → names → extended model → report.
+
+mod analysis;
+mod carpet;
+mod columns;
+mod evidence;
+pub mod html;
+mod jpeg;
+mod judge;
+mod limits;
+mod look;
+mod maps;
+mod measure;
+mod naming;
+mod passing;
+mod pictures;
+mod predict;
+mod presence;
+mod profile;
+mod recording;
+pub mod report;
+mod report_file;
+mod rows;
+mod split;
+mod starting;
+mod system;
+mod tolerance;
+mod total;
+mod unknown;
+mod words;
+mod workflow;
+
+pub use self::{
+    analysis::{Analysis, analyse, gap_of},
+    judge::ChannelGap,
+    measure::MeasureError,
+    pictures::{Pictures, PicturesError},
+    recording::{LEAST_FRAMES, PoseSource, Recording, RecordingError},
+    report_file::{ReportError, ReportFault},
+    rows::Channel,
+    workflow::{Options, Stage},
+};

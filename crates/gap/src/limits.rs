@@ -1,0 +1,133 @@
+//! How large an effect that was not found would have to be to be found, and which cannot be seen at all.
+
+use reality_sim_sensor::{Effect, Stage, library};
+
+use crate::{
+    evidence::{UNSEEN, student_quantile},
+    naming::{ALPHA, Naming},
+    recording::{LEAST_VIEWS, Recording},
+};
+
+/// The limit is where an effect is found in nine recordings of ten.
+const POWER: f64 = 0.9;
+
+/// An effect that was not found.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NotFound {
+    /// It would have been found at this size of its first parameter.
+    Limit {
+        /// As in the parameter's unit.
+        value: f64,
+        /// The parameter's.
+        unit: &'static str,
+        /// The parameter's.
+        parameter: &'static str,
+    },
+    /// It cannot be seen in this recording.
+    Unobservable {
+        /// Why.
+        reason: String,
+        /// What to do to see it, as an imperative.
+        remedy: String,
+        /// Whether another recording by the same robot would do; else its files lack something.
+        by_recording: bool,
+    },
+}
+
+/// What can be said of an effect beside those in the model.
+pub(crate) fn limit(
+    recording: &Recording<'_>,
+    naming: &Naming<'_>,
+    effect: usize,
+    all: &[usize],
+) -> NotFound {
+    let used = library()[effect];
+    if let Some([reason, remedy]) = missing_input(recording, used) {
+        return unobservable(reason, remedy, false);
+    }
+    let columns = naming.columns_of(&[effect]);
+    let sizes: Vec<usize> = columns.into_iter().filter(|&column| naming.columns[column].is_size()).collect();
+    // The first that can be seen: parameters are listed by their weight.
+    let limit = sizes.iter().find_map(|&column| Some((column, limit_of(naming, column, all)?)));
+    let Some((column, value)) = limit else {
+        return unobservable(unseen_reason(recording, used), used.recording_that_would_decide(), true);
+    };
+    let parameter = naming.columns[column].parameter();
+    NotFound::Limit { value, unit: parameter.unit, parameter: parameter.name }
+}
+
+/// The limit of one column alone beside the effects of the model, in its unit. None where it cannot be seen.
+fn limit_of(naming: &Naming<'_>, column: usize, all: &[usize]) -> Option<f64> {
+    if naming.evidence.views() < LEAST_VIEWS {
+        return None;
+    }
+    let mut free = naming.columns_of(all);
+    free.insert(0, column);
+    let fit = naming.evidence.fit(&free)?;
+    let (unexplained, sigma) = (fit.prior_share(column), naming.evidence.sigma(&fit, column));
+    if unexplained > UNSEEN || sigma <= 0.0 {
+        return None;
+    }
+    let tests = naming.effects().len() as f64;
+    let degrees = naming.evidence.degrees() as f64;
+    let sure = student_quantile(1.0 - ALPHA / (2.0 * tests), degrees);
+    let coordinate = (sure + student_quantile(POWER, degrees)) * sigma;
+    let parameter = naming.columns[column].parameter();
+    let value = naming.columns[column].size(coordinate).max(parameter.material);
+    let reach = (parameter.range[1] - parameter.neutral).max(parameter.neutral - parameter.range[0]);
+    (value < reach).then_some(value)
+}
+
+fn unobservable(reason: &str, remedy: &str, by_recording: bool) -> NotFound {
+    NotFound::Unobservable { reason: reason.to_owned(), remedy: remedy.to_owned(), by_recording }
+}
+
+/// What an effect needs and the recording's files do not have, and how to add it.
+fn missing_input(recording: &Recording<'_>, effect: &dyn Effect) -> Option<[&'static str; 2]> {
+    let sequence = recording.sequence;
+    let photometric = matches!(effect.stage(), Stage::Exposure | Stage::Sensor | Stage::Encoding)
+        || ["vignetting", "uneven_illumination"].contains(&effect.id());
+    let photometry = sequence.setup.photometry;
+    let noise = photometry.is_some_and(|p| p.noise_shot.is_some() || p.noise_read.is_some());
+    let sharpness = photometry.is_some_and(|p| p.psf_sigma_px.is_some());
+    if effect.stage() == Stage::Odometry && sequence.frames.iter().all(|frame| frame.odometry.is_none()) {
+        Some([
+            "frames.csv has no odometry",
+            "write odometry_x_m, odometry_y_m and odometry_yaw_rad into frames.csv",
+        ])
+    } else if photometric && recording.scene.is_none() {
+        Some([
+            "camera.toml does not say how bright lines and carpet are",
+            "write line_linear_rgb and carpet_linear_rgb into [photometry] of camera.toml",
+        ])
+    } else if effect.id() == "sensor_noise" && !noise {
+        Some([
+            "camera.toml does not say how much noise to expect",
+            "write noise_shot and noise_read into [photometry] of camera.toml",
+        ])
+    } else if ["defocus", "motion_blur"].contains(&effect.id()) && !sharpness {
+        Some([
+            "camera.toml does not say how sharp the picture should be",
+            "write psf_sigma_px into [photometry] of camera.toml",
+        ])
+    } else {
+        None
+    }
+}
+
+fn unseen_reason(recording: &Recording<'_>, effect: &dyn Effect) -> &'static str {
+    let moves = recording.moves();
+    let views = recording.views().last().map_or(0, |last| last + 1);
+    match effect.stage() {
+        Stage::Motion if !moves => {
+            "the camera hardly moves: nothing depends on when a row or a picture is taken"
+        }
+        Stage::Odometry if !moves => "the robot hardly moves: its odometry has nothing to report",
+        _ if views < LEAST_VIEWS => {
+            "the frames show one and the same view, or a few: what is odd in it may be the place's"
+        }
+        _ => {
+            "what it changes in these pictures, other parts of the model or errors of the poses could change as well"
+        }
+    }
+}

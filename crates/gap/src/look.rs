@@ -1,0 +1,296 @@
+//! What is looked at in a picture, and what is measured there: pieces of white line and blocks of plain carpet, where
+//! the model expects them.
+
+use glam::{DVec2, DVec3};
+use image::RgbImage;
+use reality_sim_core::{
+    field::{Curve, FieldDimensions, LineSample, VisibleSample, sample_lines, visible_samples},
+    pose::CameraPose,
+    preprocess::{Texture, luma},
+    refine::{MeasureConfig, measure_offsets},
+};
+use reality_sim_sensor::{Chain, Frame, Trajectory};
+
+use crate::{
+    carpet::{self, Block, Spectrum},
+    jpeg::{BLOCK, luma_steps},
+    profile::{self, Piece, Profile},
+};
+
+/// Between samples along a line on the ground, metres.
+const SPACING_M: f64 = 0.03;
+/// Between them in the picture, pixels.
+const SPACING_PX: f64 = 9.0;
+/// A line stands out from the carpet by at least this, grey levels.
+const MIN_CONTRAST: f64 = 25.0;
+/// Lines whose half width in the picture is outside this are too thin to be measured, or too near, pixels.
+const HALF_WIDTH_PX: std::ops::RangeInclusive<f64> = 0.5..=30.0;
+/// Blocks of carpet stay this far from lines and the carpet's edge beside what the blur takes, metres.
+const CARPET_MARGIN_M: f64 = 0.03;
+/// Sides of marks on the field, metres: lines beside them are left out.
+const MARK_M: f64 = 0.15;
+/// Variance of a pixel's own square aperture, pixels squared.
+pub(crate) const APERTURE_PX2: f64 = 1.0 / 12.0;
+/// Room that a profile needs beyond a line's sides and the search, pixels.
+const ROOM_PX: f64 = 8.0;
+/// A pixel's speed is found from its places this long before and after, seconds.
+const FLOW_STEP_S: f64 = 2e-3;
+
+/// A piece of line that the model expects in the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Expected {
+    /// Which of the field's curves.
+    pub(crate) curve: usize,
+    /// Half its width in the picture, pixels.
+    pub(crate) half_width_px: f64,
+}
+
+/// A piece of line that was found.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Line {
+    /// Which of the field's curves, and where on it as a fraction of its length.
+    pub(crate) curve: usize,
+    pub(crate) fraction: f64,
+    /// On the ground, metres.
+    pub(crate) ground: DVec2,
+    /// Where the model has it, and across it in the picture.
+    pub(crate) pixel: DVec2,
+    pub(crate) normal: DVec2,
+    /// How fast what is seen moves along the normal, pixels a second.
+    pub(crate) speed_px_s: f64,
+    pub(crate) profile: Profile,
+    /// Half its width in the picture, pixels.
+    pub(crate) half_width_px: f64,
+    /// Whether it is so far from the picture's rim that it is among the expected ones.
+    pub(crate) is_expected: bool,
+}
+
+/// All that was measured in one picture.
+#[derive(Debug, Clone)]
+pub(crate) struct Look {
+    /// The projection centre in the world, metres.
+    pub(crate) camera: DVec3,
+    pub(crate) lines: Vec<Line>,
+    /// All pieces of line that the model expects in the picture, found or not.
+    pub(crate) expected_lines: Vec<Expected>,
+    pub(crate) blocks: Vec<Block>,
+    /// Rounding of the coefficients that noise was measured in, grey levels.
+    pub(crate) noise_steps: Vec<f64>,
+}
+
+/// The model's view of one frame.
+#[derive(Debug)]
+pub(crate) struct View<'a> {
+    pub(crate) chain: &'a Chain,
+    pub(crate) trajectory: &'a Trajectory,
+    pub(crate) time_s: f64,
+    /// The field's lines.
+    pub(crate) curves: Vec<Curve>,
+    /// The pose while the middle row is exposed.
+    pub(crate) pose: CameraPose,
+    frame: Frame<'a>,
+}
+
+impl<'a> View<'a> {
+    pub(crate) fn new(chain: &'a Chain, trajectory: &'a Trajectory, time_s: f64) -> Self {
+        Self {
+            chain,
+            trajectory,
+            time_s,
+            curves: chain.field().curves(),
+            pose: chain.pose(trajectory, time_s, 0.5),
+            frame: chain.frame(trajectory, time_s),
+        }
+    }
+
+    /// Where a point of the ground is seen in a colour's picture.
+    pub(crate) fn project(&self, ground: DVec2, channel: usize) -> Option<DVec2> {
+        self.frame.project(ground.extend(0.0), channel)
+    }
+}
+
+/// How fast points of the ground move through the picture.
+struct Flow<'a> {
+    /// The view a moment before and a moment after; none where nothing moves.
+    around: Option<[View<'a>; 2]>,
+}
+
+impl<'a> Flow<'a> {
+    fn new(view: &View<'a>) -> Self {
+        let at = |time_s: f64| View::new(view.chain, view.trajectory, time_s);
+        let around = (!view.trajectory.is_still())
+            .then(|| [at(view.time_s - FLOW_STEP_S), at(view.time_s + FLOW_STEP_S)]);
+        Self { around }
+    }
+
+    /// Along a direction in the picture, pixels a second.
+    fn speed_px_s(&self, ground: DVec2, direction: DVec2) -> f64 {
+        let Some([before, after]) = &self.around else { return 0.0 };
+        match (before.project(ground, 1), after.project(ground, 1)) {
+            (Some(before), Some(after)) => direction.dot(after - before) / (2.0 * FLOW_STEP_S),
+            _ => 0.0,
+        }
+    }
+}
+
+/// How a picture is looked at.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Looking {
+    /// Lines are searched this far from where the model has them, pixels.
+    pub(crate) search_px: f64,
+    /// Of the camera's nominal encoding.
+    pub(crate) gamma: f64,
+}
+
+/// Measures a picture, given also as the bytes of its file.
+pub(crate) fn look(view: &View<'_>, picture: &RgbImage, bytes: &[u8], looking: Looking) -> Look {
+    let spectrum = Spectrum::new(&luma_steps(bytes));
+    let (lines, expected_lines) = find_lines(view, picture, looking);
+    Look {
+        camera: view.pose.position_in_world(),
+        lines,
+        expected_lines,
+        blocks: find_carpet(view, picture, &spectrum),
+        noise_steps: spectrum.steps,
+    }
+}
+
+fn find_lines(view: &View<'_>, picture: &RgbImage, looking: Looking) -> (Vec<Line>, Vec<Expected>) {
+    let field = view.chain.field();
+    let flow = Flow::new(view);
+    let samples = sample_lines(field, SPACING_M);
+    let visible = visible_samples(field, &samples, view.chain.camera(), view.pose, SPACING_PX);
+    let expected: Vec<VisibleSample> = visible
+        .into_iter()
+        .filter(|visible| {
+            HALF_WIDTH_PX.contains(&visible.half_width_px) && stands_alone(field, view, visible)
+        })
+        .filter_map(|visible| {
+            Some(VisibleSample { pixel: view.project(visible.sample.point_in_world, 1)?, ..visible })
+        })
+        .collect();
+    let config = MeasureConfig { search_px: looking.search_px, min_contrast: MIN_CONTRAST };
+    let found = measure_offsets(&Texture::pack(&luma(picture)), &expected, config);
+    // At the picture's rim a profile has no room.
+    let size = DVec2::new(f64::from(picture.width()), f64::from(picture.height()));
+    let has_room = |visible: &VisibleSample| {
+        let room = visible.pixel.min(size - 1.0 - visible.pixel).min_element();
+        room > looking.search_px + 2.0 * visible.half_width_px + ROOM_PX
+    };
+    let line = |visible: &VisibleSample, offset_px: f64| {
+        let ground = visible.sample.point_in_world;
+        let normal = visible.normal_in_image;
+        let speed_px_s = flow.speed_px_s(ground, normal);
+        let smear_px = view.chain.exposure_s() * speed_px_s;
+        let variance_px2 =
+            view.chain.psf_variance_px2(visible.pixel) + APERTURE_PX2 + smear_px * smear_px / 12.0;
+        let piece =
+            Piece { pixel: visible.pixel, normal, half_width_px: visible.half_width_px, variance_px2 };
+        let profile = profile::fit(picture, looking.gamma, &piece, offset_px)?;
+        let curve = visible.sample.curve;
+        let fraction = fraction(&view.curves[curve], ground);
+        Some(Line {
+            curve,
+            fraction,
+            ground,
+            pixel: visible.pixel,
+            normal,
+            speed_px_s,
+            profile,
+            half_width_px: visible.half_width_px,
+            is_expected: has_room(visible),
+        })
+    };
+    let lines = found.iter().filter_map(|found| line(&found.visible, found.offset_px)).collect();
+    let all = expected
+        .iter()
+        .filter(|visible| has_room(visible))
+        .map(|visible| Expected { curve: visible.sample.curve, half_width_px: visible.half_width_px });
+    (lines, all.collect())
+}
+
+/// Whether no other line and no mark is so near that it is in the profile.
+fn stands_alone(field: &FieldDimensions, view: &View<'_>, visible: &VisibleSample) -> bool {
+    let LineSample { point_in_world, clearance_m, .. } = visible.sample;
+    let m_per_px = 0.5 * field.line_width_m / visible.half_width_px;
+    let blur_px = view.chain.psf_variance_px2(visible.pixel).sqrt();
+    let needed_m = field.line_width_m + m_per_px * (6.0 + 2.5 * blur_px);
+    let off_marks = field.marks().iter().all(|mark| mark.distance(point_in_world) > MARK_M + needed_m);
+    clearance_m > needed_m && off_marks
+}
+
+/// Where on a curve a point of it lies, as a fraction of the curve's length.
+fn fraction(curve: &Curve, point: DVec2) -> f64 {
+    match curve {
+        Curve::Segment { from, to } => (point - *from).dot(*to - *from) / from.distance_squared(*to),
+        Curve::Circle { center, .. } => {
+            (point - *center).to_angle().rem_euclid(std::f64::consts::TAU) / std::f64::consts::TAU
+        }
+    }
+}
+
+/// Side of a block of carpet, pixels: smaller in small pictures.
+fn block_side(picture: &RgbImage) -> u32 {
+    if picture.width() >= 480 { 2 * BLOCK as u32 } else { BLOCK as u32 }
+}
+
+fn find_carpet(view: &View<'_>, picture: &RgbImage, spectrum: &Spectrum) -> Vec<Block> {
+    let side = block_side(picture);
+    let ground = Ground::new(view);
+    let mut blocks = Vec::new();
+    for row in 0..picture.height() / side {
+        for column in 0..picture.width() / side {
+            let corner = [column * side, row * side];
+            if let Some(point) = ground.plain_carpet(corner, side) {
+                blocks.push(carpet::measure(picture, spectrum, corner, side, point));
+            }
+        }
+    }
+    blocks
+}
+
+/// What of the ground is plain carpet, from a view.
+struct Ground<'a> {
+    view: &'a View<'a>,
+    half_extent_m: DVec2,
+}
+
+impl<'a> Ground<'a> {
+    fn new(view: &'a View<'a>) -> Self {
+        Self { view, half_extent_m: view.chain.field().carpet_half_extent_m() }
+    }
+
+    /// The ground's point in the middle of a square of pixels, where all of the square shows plain carpet.
+    fn plain_carpet(&self, corner: [u32; 2], side: u32) -> Option<DVec2> {
+        let middle = DVec2::new(f64::from(corner[0]), f64::from(corner[1])) + 0.5 * f64::from(side - 1);
+        let camera = self.view.chain.camera();
+        camera.check_inside(middle).ok()?;
+        let at = |pixel: DVec2| camera.unproject_to_ground(self.view.pose, pixel).ok();
+        let center = at(middle)?;
+        let field = self.view.chain.field();
+        // No line is nearer than the square's farthest corner.
+        let blur_px = self.view.chain.psf_variance_px2(middle).sqrt();
+        let reach_px = 0.5 * f64::from(side) + 2.0 + 2.0 * blur_px;
+        let mut radius_m: f64 = 0.0;
+        for offset in
+            [DVec2::new(-1.0, -1.0), DVec2::new(1.0, -1.0), DVec2::new(-1.0, 1.0), DVec2::new(1.0, 1.0)]
+        {
+            radius_m = radius_m.max(at(middle + reach_px * offset)?.distance(center));
+        }
+        let free_m = radius_m + CARPET_MARGIN_M + 0.5 * field.line_width_m;
+        let inside = (center.abs() + radius_m + CARPET_MARGIN_M).cmple(self.half_extent_m).all();
+        let off_lines = self.view.curves.iter().all(|curve| curve.distance_m(center) > free_m);
+        let off_marks = field.marks().iter().all(|mark| mark.distance(center) > radius_m + MARK_M);
+        let posts = field.goals().into_iter().flat_map(|goal| goal.posts);
+        let off_posts = posts.into_iter().all(|post| !self.hides(post.center, post.radius_m + 0.05, center));
+        (inside && off_lines && off_marks && off_posts).then_some(center)
+    }
+
+    /// Whether something upright of some radius stands between the camera and a point of the ground, or near the point.
+    fn hides(&self, foot: DVec2, radius_m: f64, ground: DVec2) -> bool {
+        let camera: DVec3 = self.view.pose.position_in_world();
+        let way = ground - camera.truncate();
+        let fraction = ((foot - camera.truncate()).dot(way) / way.length_squared().max(1e-9)).clamp(0.0, 1.0);
+        (camera.truncate() + fraction * way).distance(foot) < radius_m
+    }
+}

@@ -1,0 +1,206 @@
+//! Which effects are missing: one after the other is added while the frames that a fit has not seen get more likely.
+
+use nalgebra::DVector;
+use reality_sim_sensor::{Covariate, library};
+
+use crate::{
+    columns::Column,
+    evidence::{Evidence, Gain, HeldOut},
+    recording::LEAST_VIEWS,
+    total::Fit,
+};
+
+/// An effect is named where it is this unlikely to be chance, corrected for all effects tested.
+pub(crate) const ALPHA: f64 = 0.005;
+/// And where its gain on unseen frames is this many standard deviations above zero.
+pub(crate) const LEAST_SCORE: f64 = 2.5;
+/// And is at least this large: a factor of fifty in likelihood.
+const LEAST_GAIN: f64 = 4.0;
+/// Parameters of an effect with no more sizes than this are tried one by one, too.
+const TRIED_ALONE: usize = 12;
+/// Effects whose gains are this many standard deviations of their difference apart can be told apart.
+pub(crate) const TELLS_APART: f64 = 2.5;
+
+/// An effect that gains this part of what the best one does, and leaves nothing for it to add, may be the right one.
+const STANDS_FOR: f64 = 0.4;
+/// No more than this many are tried in full.
+const MOST_ALTERNATIVES: usize = 3;
+
+/// What speaks for an effect.
+#[derive(Debug, Clone)]
+pub(crate) struct Case {
+    /// Index in the library.
+    pub(crate) effect: usize,
+    /// Corrected for the number of effects tested.
+    pub(crate) p_value: f64,
+    /// On unseen frames, over the same model without it.
+    pub(crate) gain: Gain,
+    /// Whether it is large enough to matter.
+    pub(crate) material: bool,
+    /// The gain of the whole set of effects.
+    held_out: HeldOut,
+    pub(crate) fit: Fit,
+}
+
+impl Case {
+    pub(crate) fn holds(&self) -> bool {
+        let gains = self.gain.value > LEAST_GAIN && self.gain.score() > LEAST_SCORE;
+        self.material && self.p_value < ALPHA && gains
+    }
+}
+
+/// The evidence with names.
+pub(crate) struct Naming<'a> {
+    pub(crate) evidence: &'a Evidence<'a>,
+    pub(crate) columns: &'a [Column],
+}
+
+impl Naming<'_> {
+    /// Columns of some effects.
+    pub(crate) fn columns_of(&self, effects: &[usize]) -> Vec<usize> {
+        (0..self.columns.len()).filter(|&column| effects.contains(&self.columns[column].effect)).collect()
+    }
+
+    /// The effects that have columns.
+    pub(crate) fn effects(&self) -> Vec<usize> {
+        let mut effects: Vec<usize> = self.columns.iter().map(|column| column.effect).collect();
+        effects.dedup();
+        effects
+    }
+
+    /// What speaks for an effect beside others, `tested` effects being tried.
+    pub(crate) fn case(&self, effect: usize, beside: &[usize], tested: usize) -> Option<Case> {
+        let without: Vec<usize> = beside.iter().copied().filter(|other| *other != effect).collect();
+        let with: Vec<usize> = without.iter().copied().chain([effect]).collect();
+        let free = self.columns_of(&with);
+        let fit = self.evidence.fit(&free)?;
+        let over_time = changes_over_time(&with);
+        let held_out = self.evidence.held_out(&free, over_time)?;
+        let before = self.evidence.held_out(&self.columns_of(&without), over_time)?;
+        let sizes: Vec<usize> =
+            self.columns_of(&[effect]).into_iter().filter(|&column| self.columns[column].is_size()).collect();
+        let p_value = if self.is_possible(&fit, &sizes) {
+            self.evidence.p_value(&fit, &sizes).min(self.alone(&without, &sizes))
+        } else {
+            1.0
+        };
+        Some(Case {
+            effect,
+            p_value: (p_value * tested as f64).min(1.0),
+            gain: held_out.over(&before),
+            material: self.is_material(&fit, &sizes),
+            held_out,
+            fit,
+        })
+    }
+
+    /// The least p-value of one of an effect's sizes alone, corrected for their number: few of them may be at work.
+    fn alone(&self, beside: &[usize], sizes: &[usize]) -> f64 {
+        if !(2..=TRIED_ALONE).contains(&sizes.len()) {
+            return 1.0;
+        }
+        let p_value = |&size: &usize| {
+            let mut free = self.columns_of(beside);
+            free.push(size);
+            self.evidence.fit(&free).map_or(1.0, |fit| self.evidence.p_value(&fit, &[size]))
+        };
+        sizes.len() as f64 * sizes.iter().map(p_value).fold(1.0, f64::min)
+    }
+
+    /// What cannot be below none, as a blur, is no effect where it would have to be.
+    fn is_possible(&self, fit: &Fit, sizes: &[usize]) -> bool {
+        let below = |column: &usize| {
+            let parameter = self.columns[*column].parameter();
+            parameter.range[0] >= parameter.neutral && self.coordinate(fit, *column) <= 0.0
+        };
+        !sizes.iter().all(below)
+    }
+
+    pub(crate) fn coordinate(&self, fit: &Fit, column: usize) -> f64 {
+        self.evidence.base[column] + fit.delta[column]
+    }
+
+    pub(crate) fn value(&self, fit: &Fit, column: usize) -> f64 {
+        self.columns[column].value(self.coordinate(fit, column))
+    }
+
+    fn is_material(&self, fit: &Fit, sizes: &[usize]) -> bool {
+        sizes.iter().any(|&column| {
+            let parameter = self.columns[column].parameter();
+            (self.value(fit, column) - parameter.neutral).abs() >= parameter.material
+        })
+    }
+
+    /// The effect that speaks most for itself beside those already named, if one does, and behind it those that may stand
+    /// for it: the linearised model cannot tell for sure which of them is closest to what is large.
+    pub(crate) fn next(&self, named: &[usize]) -> Vec<usize> {
+        if self.evidence.views() < LEAST_VIEWS {
+            return Vec::new();
+        }
+        let others: Vec<usize> =
+            self.effects().into_iter().filter(|effect| !named.contains(effect)).collect();
+        let mut cases: Vec<Case> =
+            others.iter().filter_map(|&effect| self.case(effect, named, others.len())).collect();
+        cases.retain(Case::holds);
+        cases.sort_by(|a, b| b.gain.value.total_cmp(&a.gain.value));
+        let Some(best) = cases.first() else { return Vec::new() };
+        let stands_for = |case: &&Case| {
+            case.gain.value > STANDS_FOR * best.gain.value
+                && !self.adds(best.effect, case.effect, named, others.len())
+        };
+        let alternatives = cases[1..].iter().filter(stands_for).take(MOST_ALTERNATIVES);
+        std::iter::once(best).chain(alternatives).map(|case| case.effect).collect()
+    }
+
+    /// An effect not named that explains clearly more than one named does, in its place: the old one, the new one.
+    pub(crate) fn better(&self, all: &[usize], named: &[usize]) -> Option<(usize, usize)> {
+        let columns = self.columns_of(all);
+        let now = [false, true].map(|over_time| self.evidence.held_out(&columns, over_time));
+        let others: Vec<usize> = self.effects().into_iter().filter(|effect| !all.contains(effect)).collect();
+        let tries = named.iter().flat_map(|&old| others.iter().map(move |&new| (old, new)));
+        let gains = tries.filter_map(|(old, new)| {
+            let without: Vec<usize> = all.iter().copied().filter(|effect| *effect != old).collect();
+            let case = self.case(new, &without, others.len())?;
+            let set: Vec<usize> = without.iter().copied().chain([new]).collect();
+            let now = now[usize::from(changes_over_time(&set))].as_ref()?;
+            let gain = case.held_out.over(now);
+            let replaces =
+                case.holds() && gain.score() > TELLS_APART && !self.adds(old, new, &without, others.len());
+            replaces.then_some((gain.value, (old, new)))
+        });
+        gains.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, pair)| pair)
+    }
+
+    /// Other effects that explain as much as one of those named does, in its place.
+    pub(crate) fn rivals(&self, effect: usize, named: &[usize]) -> Vec<usize> {
+        let without: Vec<usize> = named.iter().copied().filter(|other| *other != effect).collect();
+        let columns = self.columns_of(named);
+        let best = [false, true].map(|over_time| self.evidence.held_out(&columns, over_time));
+        let others: Vec<usize> = self.effects().into_iter().filter(|other| !named.contains(other)).collect();
+        let rivals = |other: &usize| {
+            let Some(case) = self.case(*other, &without, others.len()) else { return false };
+            let set: Vec<usize> = without.iter().copied().chain([*other]).collect();
+            let Some(best) = &best[usize::from(changes_over_time(&set))] else { return false };
+            case.holds()
+                && best.over(&case.held_out).score() < TELLS_APART
+                && !self.adds(effect, *other, &without, others.len())
+        };
+        others.iter().copied().filter(rivals).collect()
+    }
+
+    /// Whether an effect has something to add to another one: then they are two, not one in two shapes.
+    fn adds(&self, effect: usize, other: usize, without: &[usize], tested: usize) -> bool {
+        let beside: Vec<usize> = without.iter().copied().chain([other]).collect();
+        self.case(effect, &beside, tested).is_some_and(|case| case.holds())
+    }
+}
+
+/// Whether one of these effects is another thing at another time.
+fn changes_over_time(effects: &[usize]) -> bool {
+    effects.iter().any(|&effect| library()[effect].covariates().contains(&Covariate::Time))
+}
+
+/// Where a model is, in the columns' coordinates.
+pub(crate) fn base(columns: &[Column], model: &reality_sim_sensor::Model) -> DVector<f64> {
+    DVector::from_iterator(columns.len(), columns.iter().map(|column| column.coordinate_in(model)))
+}

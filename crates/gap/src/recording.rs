@@ -1,0 +1,228 @@
+//! A recording as the workflow uses it: frames with reference poses, in the order of time.
+
+use std::{ops::Range, path::PathBuf};
+
+use image::RgbImage;
+use rayon::prelude::*;
+use reality_sim_core::{
+    pose::{CameraPose, Pose2},
+    sequence::{Sequence, SequenceError, decode_image},
+};
+use reality_sim_sensor::{Trajectory, TrajectoryError};
+
+use crate::{predict::Scene, rows::Step, system::Reference};
+
+/// Fewer frames than this tell nothing: there are as many again for judging.
+pub const LEAST_FRAMES: usize = 12;
+/// More frames than this are not looked at, but every so many are taken.
+const MOST_FRAMES: usize = 240;
+/// Poses nearer than this show one view.
+const SAME_VIEW_M: f64 = 0.025;
+/// And turned by less than this.
+const SAME_VIEW_RAD: f64 = 0.02;
+/// With fewer views than this nothing can be told.
+pub(crate) const LEAST_VIEWS: usize = 8;
+/// Odometry between frames farther apart than this is not compared, seconds.
+const LONGEST_STEP_S: f64 = 0.6;
+
+/// Why a recording cannot be compared with a model.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    /// Too few frames with a reference pose.
+    #[error(
+        "{name}: only {found} of the {frames} frames chosen have a reference pose, the comparison needs at least {LEAST_FRAMES}: record more, choose more with --frames, or give poses with --poses"
+    )]
+    TooFewFrames {
+        /// The recording.
+        name: String,
+        /// Frames with a pose.
+        found: usize,
+        /// Frames chosen.
+        frames: usize,
+    },
+    /// The frames asked for are not in the recording.
+    #[error("{name} has the frames 0 to {last}: {from}..{to} is no range of them")]
+    NoSuchFrames {
+        /// The recording.
+        name: String,
+        /// Index of its last frame.
+        last: usize,
+        /// As asked.
+        from: usize,
+        /// As asked, not included.
+        to: usize,
+    },
+    /// The reference poses are no way of a camera.
+    #[error("{name}: the reference poses are no way of a camera: {source}")]
+    Trajectory {
+        /// The recording.
+        name: String,
+        /// What is wrong.
+        source: TrajectoryError,
+    },
+}
+
+/// Where the reference poses come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PoseSource {
+    /// Something else than the pictures: motion capture.
+    Measured,
+    /// Place and heading were found in the pictures themselves; height, pitch and roll are those of the robot.
+    Tagged,
+}
+
+/// One frame to compare.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Frame {
+    /// Index in the sequence.
+    pub(crate) index: usize,
+    pub(crate) time_s: f64,
+    pub(crate) step: Option<Step>,
+}
+
+/// The frames of a sequence that are compared.
+#[derive(Debug)]
+pub struct Recording<'a> {
+    pub(crate) sequence: &'a Sequence,
+    pub(crate) trajectory: Trajectory,
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) source: PoseSource,
+    pub(crate) scene: Option<Scene>,
+    /// Files of frames whose picture is broken or missing.
+    pub(crate) left_out: Vec<PathBuf>,
+}
+
+impl<'a> Recording<'a> {
+    /// The frames of a sequence, or a range of them, with their reference poses: as many as the sequence has frames.
+    pub fn new(
+        sequence: &'a Sequence,
+        poses: &[Option<CameraPose>],
+        source: PoseSource,
+        range: Option<Range<usize>>,
+    ) -> Result<Self, RecordingError> {
+        let name = || sequence.name.clone();
+        let count = sequence.frames.len();
+        let range = range.unwrap_or(0..count);
+        if range.start >= range.end || range.end > count {
+            let (from, to) = (range.start, range.end);
+            return Err(RecordingError::NoSuchFrames { name: name(), last: count - 1, from, to });
+        }
+        let frames = range.len();
+        let posed: Vec<(usize, f64, CameraPose)> = range
+            .filter_map(|index| {
+                Some((index, sequence.frames[index].timestamp_s, poses.get(index).copied()??))
+            })
+            .collect();
+        if posed.len() < LEAST_FRAMES {
+            return Err(RecordingError::TooFewFrames { name: name(), found: posed.len(), frames });
+        }
+        let (posed, left_out) = readable(sequence, posed);
+        if posed.len() < LEAST_FRAMES {
+            return Err(RecordingError::TooFewFrames { name: name(), found: posed.len(), frames });
+        }
+        let way: Vec<(f64, CameraPose)> = posed.iter().map(|&(_, time_s, pose)| (time_s, pose)).collect();
+        let trajectory =
+            Trajectory::new(&way).map_err(|source| RecordingError::Trajectory { name: name(), source })?;
+        let every = posed.len().div_ceil(MOST_FRAMES);
+        let frame = |&(index, time_s, _): &(usize, f64, CameraPose)| Frame {
+            index,
+            time_s,
+            step: step(sequence, index),
+        };
+        let frames = posed.iter().step_by(every).map(frame).collect();
+        Ok(Self { sequence, trajectory, frames, source, scene: scene(sequence), left_out })
+    }
+
+    /// For each frame the number of its view: frames in a row whose poses differ by less than poses' errors may show one.
+    pub(crate) fn views(&self) -> Vec<usize> {
+        let mut first: Option<CameraPose> = None;
+        let mut number = 0;
+        let mut views = Vec::with_capacity(self.frames.len());
+        for frame in &self.frames {
+            let pose = self.trajectory.at(frame.time_s);
+            if let Some(first) = first.as_mut().filter(|first| !is_same_view(first, pose)) {
+                *first = pose;
+                number += 1;
+            }
+            first.get_or_insert(pose);
+            views.push(number);
+        }
+        views
+    }
+
+    /// Whether the camera's poses change by more than their errors between frames.
+    pub(crate) fn moves(&self) -> bool {
+        let poses: Vec<CameraPose> =
+            self.frames.iter().map(|frame| self.trajectory.at(frame.time_s)).collect();
+        let (Some(first), count) = (poses.first(), poses.len() as f64) else { return false };
+        let far = poses
+            .iter()
+            .map(|pose| (pose.position_in_world() - first.position_in_world()).length())
+            .sum::<f64>();
+        let turned =
+            poses.iter().map(|pose| first.planar().motion_to(pose.planar()).turn_rad.abs()).sum::<f64>();
+        far / count > 0.05 || turned / count > 0.05
+    }
+
+    pub(crate) fn gamma(&self) -> f64 {
+        self.sequence.setup.photometry.map_or(2.2, |photometry| photometry.gamma)
+    }
+
+    pub(crate) fn reference(&self) -> Reference {
+        match self.source {
+            PoseSource::Measured => Reference::Whole,
+            PoseSource::Tagged => Reference::Attitude,
+        }
+    }
+
+    /// A frame's picture and the bytes of its file.
+    pub(crate) fn picture(&self, frame: &Frame) -> Result<(RgbImage, Vec<u8>), SequenceError> {
+        let bytes = self.sequence.image_bytes(frame.index)?;
+        let camera = &self.sequence.setup.camera;
+        let path = self.sequence.image_path(frame.index)?;
+        Ok((decode_image(&path, &bytes, [camera.width, camera.height])?, bytes))
+    }
+}
+
+/// Frames whose pictures are whole, and the files of the others.
+fn readable(
+    sequence: &Sequence,
+    posed: Vec<(usize, f64, CameraPose)>,
+) -> (Vec<(usize, f64, CameraPose)>, Vec<PathBuf>) {
+    let whole: Vec<bool> = posed.par_iter().map(|(index, ..)| sequence.load_image(*index).is_ok()).collect();
+    let mut left_out = Vec::new();
+    let kept = posed.into_iter().zip(whole).filter_map(|(frame, whole)| {
+        if !whole {
+            left_out.push(sequence.frames[frame.0].image.clone());
+        }
+        whole.then_some(frame)
+    });
+    (kept.collect(), left_out)
+}
+
+/// Whether poses are so near that their pictures show the same.
+fn is_same_view(a: &CameraPose, b: CameraPose) -> bool {
+    let moved_m = (a.position_in_world() - b.position_in_world()).length();
+    let turned = a.rotation_world_from_camera().transpose() * b.rotation_world_from_camera();
+    let turned_rad =
+        (0.5 * (turned.x_axis.x + turned.y_axis.y + turned.z_axis.z - 1.0)).clamp(-1.0, 1.0).acos();
+    moved_m < SAME_VIEW_M && turned_rad < SAME_VIEW_RAD
+}
+
+/// What the camera's file tells of lines and carpet.
+fn scene(sequence: &Sequence) -> Option<Scene> {
+    let photometry = sequence.setup.photometry?;
+    Some(Scene {
+        line_linear_rgb: photometry.line_linear_rgb?,
+        carpet_linear_rgb: photometry.carpet_linear_rgb?,
+    })
+}
+
+/// The odometry from a frame to the next one.
+fn step(sequence: &Sequence, index: usize) -> Option<Step> {
+    let (from, to) = (&sequence.frames[index], sequence.frames.get(index + 1)?);
+    let (before, after): (Pose2, Pose2) = (from.odometry?, to.odometry?);
+    (to.timestamp_s - from.timestamp_s <= LONGEST_STEP_S)
+        .then_some(Step { until_s: to.timestamp_s, odometry: before.motion_to(after) })
+}

@@ -1,0 +1,335 @@
+//! The linearised model as normal equations, frame by frame, with the poses' errors projected out.
+//!
+//! In a frame, residuals are `r = J δ + P b + ε`: `J` is the change with the effects' parameters, `P` that of the
+//! lines' places with the pose, `b ~ N(0, Λ⁻¹)` the reference pose's error. Marginalising `b` leaves `J̃ᵀ W r = A δ`
+//! with `J̃ = J − P (Pᵀ W P + Λ)⁻¹ Pᵀ W J` and `A = J̃ᵀ W J`: all later fits, tests and comparisons need only the sums
+//! of `A` and `g = J̃ᵀ W r` over some frames, or over some part of the field.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector, Matrix6, Vector6};
+use rayon::prelude::*;
+
+use crate::rows::{Channel, Group, Row};
+
+/// Residuals beyond this many standard deviations count nothing (Tukey's biweight).
+const TUKEY: f64 = 5.0;
+/// Rounds in which weights, standard deviations and the poses' scatter are found.
+const ROUNDS: usize = 4;
+/// Numbers of one frame are not independent: they are worth this part of as many that are.
+pub(crate) const INDEPENDENT: f64 = 0.15;
+/// Standard deviations of poses at first: rotations (radians), positions (metres).
+const WIDE: [f64; 2] = [0.01, 0.02];
+/// Poses are never taken to be better than this.
+const NARROW: [f64; 2] = [2e-4, 5e-4];
+/// Side of a cell of the field, metres.
+const CELL_M: f64 = 0.5;
+/// Prior precision of a parameter in units of its range.
+pub(crate) const PRIOR: f64 = 1.0;
+
+/// A frame's rows with their derivatives.
+#[derive(Debug, Clone)]
+pub(crate) struct FrameRows {
+    pub(crate) rows: Vec<Row>,
+    /// Measured minus expected; not a number where there is nothing to compare.
+    pub(crate) residuals: Vec<f64>,
+    /// Change of what is expected with the columns, row by row: the columns that it changes with.
+    pub(crate) jacobian: Vec<Vec<(usize, f64)>>,
+    /// Change of a line's offset with the pose, see [`crate::predict::pose_gradient`]; zero for other rows.
+    pub(crate) pose: Vec<Vector6<f64>>,
+}
+
+/// Whether poses were measured by something else than the pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Reference {
+    /// All six numbers.
+    Whole,
+    /// Place and heading come from the pictures themselves: they are left free.
+    Attitude,
+}
+
+/// `A`, `g` and the sum of squares of some rows.
+#[derive(Debug, Clone)]
+pub(crate) struct Sums {
+    pub(crate) a: DMatrix<f64>,
+    pub(crate) g: DVector<f64>,
+}
+
+impl Sums {
+    fn zero(size: usize) -> Self {
+        Self { a: DMatrix::zeros(size, size), g: DVector::zeros(size) }
+    }
+}
+
+/// The whole system.
+#[derive(Debug, Clone)]
+pub(crate) struct System {
+    pub(crate) frames: Vec<Sums>,
+    /// The same sums by view: frames in a row from one place show the same errors again and again.
+    pub(crate) views: Vec<Sums>,
+    /// The same sums by cell of the field.
+    pub(crate) cells: Vec<Sums>,
+    /// Standard deviations of a row.
+    pub(crate) sigmas: BTreeMap<(Channel, u8), f64>,
+    /// Standard deviations of the poses' errors, see [`crate::predict::pose_gradient`].
+    pub(crate) pose_sigmas: [f64; 6],
+    /// Weights of all rows, frame by frame: 0 for what is no measurement.
+    pub(crate) weights: Vec<Vec<f64>>,
+}
+
+impl System {
+    pub(crate) fn new(frames: &[&FrameRows], size: usize, reference: Reference, views: &[usize]) -> Self {
+        let mut sigmas = first_sigmas(frames);
+        let mut weights: Vec<Vec<f64>> =
+            frames.iter().map(|frame| weigh(frame, &frame.residuals, &sigmas)).collect();
+        let mut pose_sigmas = pose_sigmas(None, reference);
+        for _ in 0..ROUNDS {
+            let sums = by_frame(frames, &weights, size, &pose_sigmas);
+            let all = solve(&sums, size);
+            let left: Vec<Left> = frames
+                .iter()
+                .zip(&weights)
+                .map(|(frame, weights)| Left::new(frame, weights, &all, &pose_sigmas))
+                .collect();
+            sigmas = robust_sigmas(frames, &left);
+            weights = frames
+                .iter()
+                .zip(&left)
+                .map(|(frame, left)| weigh(frame, &left.residuals, &sigmas))
+                .collect();
+            pose_sigmas = self::pose_sigmas(Some(&left), reference);
+        }
+        let sums = by_frame(frames, &weights, size, &pose_sigmas);
+        let cells = by_cell(frames, &weights, size, &pose_sigmas);
+        let views = by_view(&sums, views, size);
+        Self { frames: sums, views, cells, sigmas, pose_sigmas, weights }
+    }
+}
+
+/// What a fit leaves of a frame.
+pub(crate) struct Left {
+    /// The pose's error.
+    pub(crate) pose: Vector6<f64>,
+    pub(crate) residuals: Vec<f64>,
+}
+
+impl Left {
+    pub(crate) fn new(
+        frame: &FrameRows,
+        weights: &[f64],
+        delta: &DVector<f64>,
+        pose_sigmas: &[f64; 6],
+    ) -> Self {
+        let change =
+            |row: &Vec<(usize, f64)>| row.iter().map(|(column, value)| value * delta[*column]).sum::<f64>();
+        let mut residuals: Vec<f64> = frame
+            .residuals
+            .iter()
+            .zip(&frame.jacobian)
+            .map(|(residual, row)| residual - change(row))
+            .collect();
+        let (mut normal, mut gradient) = (prior(pose_sigmas), Vector6::zeros());
+        for ((pose, &weight), residual) in frame.pose.iter().zip(weights).zip(&residuals) {
+            if weight > 0.0 {
+                normal.ger(weight, pose, pose, 1.0);
+                gradient += weight * residual * pose;
+            }
+        }
+        let pose = normal.cholesky().map_or_else(Vector6::zeros, |normal| normal.solve(&gradient));
+        for (residual, row) in residuals.iter_mut().zip(&frame.pose) {
+            *residual -= row.dot(&pose);
+        }
+        Self { pose, residuals }
+    }
+}
+
+fn prior(sigmas: &[f64; 6]) -> Matrix6<f64> {
+    Matrix6::from_diagonal(&Vector6::from(sigmas.map(|sigma| sigma.powi(-2))))
+}
+
+/// Least squares over all columns, each held by its prior.
+fn solve(sums: &[Sums], size: usize) -> DVector<f64> {
+    let mut total = Sums::zero(size);
+    for sums in sums {
+        total.a += &sums.a;
+        total.g += &sums.g;
+    }
+    let held = total.a + DMatrix::identity(size, size) * PRIOR;
+    held.cholesky().map_or_else(|| DVector::zeros(size), |held| held.solve(&total.g))
+}
+
+fn by_frame(frames: &[&FrameRows], weights: &[Vec<f64>], size: usize, pose_sigmas: &[f64; 6]) -> Vec<Sums> {
+    let sums = |(frame, weights): (&&FrameRows, &Vec<f64>)| {
+        let mut sums = Sums::zero(size);
+        add(&mut sums, frame, weights, &projection(frame, weights, size, pose_sigmas));
+        sums
+    };
+    frames.par_iter().zip(weights).map(sums).collect()
+}
+
+/// A frame and some of its rows, by their indices.
+type RowsOfFrame = (usize, Vec<usize>);
+
+fn by_view(frames: &[Sums], views: &[usize], size: usize) -> Vec<Sums> {
+    let count = views.iter().max().map_or(0, |last| last + 1);
+    let mut sums = vec![Sums::zero(size); count];
+    for (frame, &view) in frames.iter().zip(views) {
+        sums[view].a += &frame.a;
+        sums[view].g += &frame.g;
+    }
+    sums.retain(|sums| sums.g.iter().any(|value| *value != 0.0));
+    sums
+}
+
+fn by_cell(frames: &[&FrameRows], weights: &[Vec<f64>], size: usize, pose_sigmas: &[f64; 6]) -> Vec<Sums> {
+    let projections: Vec<_> = frames
+        .par_iter()
+        .zip(weights)
+        .map(|(frame, weights)| projection(frame, weights, size, pose_sigmas))
+        .collect();
+    let mut members: BTreeMap<(i32, i32), Vec<RowsOfFrame>> = BTreeMap::new();
+    for (index, frame) in frames.iter().enumerate() {
+        for (row, _) in frame.rows.iter().enumerate().filter(|(_, row)| row.group.channel != Channel::Motion)
+        {
+            let cell = (frame.rows[row].ground / CELL_M).floor();
+            let lists = members.entry((cell.x as i32, cell.y as i32)).or_default();
+            match lists.last_mut() {
+                Some((last, rows)) if *last == index => rows.push(row),
+                _ => lists.push((index, vec![row])),
+            }
+        }
+    }
+    let sums = |lists: &Vec<RowsOfFrame>| {
+        let mut sums = Sums::zero(size);
+        for (frame, rows) in lists {
+            for &row in rows {
+                add_row(&mut sums, frames[*frame], weights[*frame][row], row, &projections[*frame]);
+            }
+        }
+        sums
+    };
+    members.into_values().collect::<Vec<_>>().par_iter().map(sums).collect()
+}
+
+/// `(Pᵀ W P + Λ)⁻¹ Pᵀ W J`: the pose's change that imitates each column.
+fn projection(frame: &FrameRows, weights: &[f64], size: usize, pose_sigmas: &[f64; 6]) -> DMatrix<f64> {
+    let mut normal = prior(pose_sigmas);
+    let mut cross = DMatrix::zeros(6, size);
+    for (row, (pose, &weight)) in frame.pose.iter().zip(weights).enumerate() {
+        if weight > 0.0 && frame.rows[row].group.channel == Channel::Geometry {
+            normal.ger(weight, pose, pose, 1.0);
+            for &(column, change) in &frame.jacobian[row] {
+                for axis in 0..6 {
+                    cross[(axis, column)] += weight * change * pose[axis];
+                }
+            }
+        }
+    }
+    match normal.cholesky() {
+        Some(normal) => {
+            let mut solved = DMatrix::zeros(6, size);
+            for column in 0..size {
+                let right: Vector6<f64> = Vector6::from_iterator(cross.column(column).iter().copied());
+                solved.set_column(column, &normal.solve(&right));
+            }
+            solved
+        }
+        None => cross * 0.0,
+    }
+}
+
+fn add(sums: &mut Sums, frame: &FrameRows, weights: &[f64], projection: &DMatrix<f64>) {
+    for (row, &weight) in weights.iter().enumerate() {
+        add_row(sums, frame, weight, row, projection);
+    }
+}
+
+/// Adds `J̃ᵀ W J` and `J̃ᵀ W r` of one row.
+fn add_row(sums: &mut Sums, frame: &FrameRows, weight: f64, row: usize, projection: &DMatrix<f64>) {
+    if weight <= 0.0 {
+        return;
+    }
+    let (plain, residual) = (&frame.jacobian[row], frame.residuals[row]);
+    let mut put = |column: usize, value: f64| {
+        sums.g[column] += weight * value * residual;
+        for &(other, plain) in plain {
+            sums.a[(column, other)] += weight * value * plain;
+        }
+    };
+    for &(column, value) in plain {
+        put(column, value);
+    }
+    if frame.rows[row].group.channel == Channel::Geometry {
+        for column in 0..projection.ncols() {
+            let imitated: f64 =
+                projection.column(column).iter().zip(frame.pose[row].iter()).map(|(a, b)| a * b).sum();
+            if imitated != 0.0 {
+                put(column, -imitated);
+            }
+        }
+    }
+}
+
+/// Weights by Tukey's biweight of what a fit leaves.
+fn weigh(frame: &FrameRows, residuals: &[f64], sigmas: &BTreeMap<(Channel, u8), f64>) -> Vec<f64> {
+    let weight = |(row, residual): (&Row, &f64)| {
+        let Some(&sigma) = sigmas.get(&key(row.group)) else { return 0.0 };
+        let variance = sigma * sigma + row.sigma * row.sigma;
+        let outlying = (residual * residual / (TUKEY * TUKEY * variance)).min(1.0);
+        let independent = if row.group.channel == Channel::Motion { 1.0 } else { INDEPENDENT };
+        if residual.is_finite() { independent * (1.0 - outlying).powi(2) / variance } else { 0.0 }
+    };
+    frame.rows.iter().zip(residuals).map(weight).collect()
+}
+
+fn key(group: Group) -> (Channel, u8) {
+    (group.channel, group.part)
+}
+
+fn robust_sigmas(frames: &[&FrameRows], left: &[Left]) -> BTreeMap<(Channel, u8), f64> {
+    group_sigmas(
+        frames
+            .iter()
+            .zip(left)
+            .flat_map(|(frame, left)| frame.rows.iter().zip(left.residuals.iter().copied())),
+    )
+}
+
+fn first_sigmas(frames: &[&FrameRows]) -> BTreeMap<(Channel, u8), f64> {
+    group_sigmas(frames.iter().flat_map(|frame| frame.rows.iter().zip(frame.residuals.iter().copied())))
+}
+
+/// Standard deviations by the median of absolute residuals about zero.
+fn group_sigmas<'a>(rows: impl Iterator<Item = (&'a Row, f64)>) -> BTreeMap<(Channel, u8), f64> {
+    let mut groups: BTreeMap<(Channel, u8), Vec<f64>> = BTreeMap::new();
+    for (row, residual) in rows.filter(|(_, residual)| residual.is_finite()) {
+        groups.entry(key(row.group)).or_default().push(residual.abs());
+    }
+    groups.into_iter().map(|(group, mut values)| (group, (1.4826 * median(&mut values)).max(1e-6))).collect()
+}
+
+pub(crate) fn median(values: &mut [f64]) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// The scatter of the poses' errors from frame to frame: what changes slowly is no error of the reference.
+fn pose_sigmas(left: Option<&[Left]>, reference: Reference) -> [f64; 6] {
+    let mut sigmas = [WIDE[0], WIDE[0], WIDE[0], WIDE[1], WIDE[1], WIDE[1]];
+    if let Some(left) = left {
+        for (axis, sigma) in sigmas.iter_mut().enumerate() {
+            let mut steps: Vec<f64> =
+                left.windows(2).map(|pair| (pair[1].pose[axis] - pair[0].pose[axis]).abs()).collect();
+            let narrow = NARROW[axis / 3];
+            *sigma = (1.4826 * median(&mut steps) / std::f64::consts::SQRT_2).max(narrow);
+        }
+    }
+    if reference == Reference::Attitude {
+        // Yaw, x and y.
+        (sigmas[1], sigmas[3], sigmas[4]) = (0.1, 0.3, 0.3);
+    }
+    sigmas
+}

@@ -1,0 +1,114 @@
+//! What the camera's file says is not exact: nominal values are trusted this far, and left free within it in every fit.
+
+use std::collections::BTreeSet;
+
+use glam::DVec2;
+
+use crate::{
+    look::Look,
+    rows::{Channel, Group, Row},
+};
+
+/// A nominal value that may be a little off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Tolerance {
+    /// All rows of a group are off by the same.
+    Offset {
+        group: Group,
+        /// Standard deviation, in the rows' unit.
+        sigma: f64,
+    },
+    /// Carpet seen at a grazing angle reflects some of the light as it is, more so to the power given of one less the
+    /// cosine of the angle of incidence: a linear value added to all colours alike.
+    Sheen {
+        power: i32,
+        /// Standard deviation, linear, at grazing incidence.
+        sigma: f64,
+    },
+    /// Broad lines look a little more or less blurred than thin ones: their profile is not quite the one that is fitted.
+    Width {
+        /// Standard deviation for each factor of e in width, pixels squared.
+        sigma: f64,
+    },
+    /// A patch of carpet is brighter or darker than the rest, in all colours alike.
+    Patch {
+        /// Which square of the field, see [`cell_of`].
+        cell: [i32; 2],
+        /// Standard deviation of the logarithm.
+        sigma: f64,
+    },
+}
+
+/// How white a line is: worn and dusty ones differ by a few percent.
+const LINE: f64 = 0.02;
+/// How bright carpet is: rolls and dirt.
+const CARPET: f64 = 0.07;
+/// The nominal blur's variance, pixels squared.
+const BLUR: f64 = 0.03;
+/// Its change with the width of lines, pixels squared for each factor of e.
+const WIDTH: f64 = 0.02;
+/// The nominal noise's variance, of which fine texture of the carpet cannot be told: natural logarithm.
+const NOISE: f64 = 0.2;
+/// The carpet's sheen, linear.
+const SHEEN: f64 = 0.01;
+
+/// How much patches of carpet differ, logarithm.
+const PATCH: f64 = 0.05;
+/// Side of a patch, metres.
+const PATCH_M: f64 = 0.5;
+
+/// Those that every recording has.
+const COMMON: [Tolerance; 11] = [
+    offset(Channel::Photometry, 0, LINE),
+    offset(Channel::Photometry, 1, LINE),
+    offset(Channel::Photometry, 2, LINE),
+    offset(Channel::Photometry, 3, CARPET),
+    offset(Channel::Photometry, 4, CARPET),
+    offset(Channel::Photometry, 5, CARPET),
+    offset(Channel::Sharpness, 0, BLUR),
+    offset(Channel::Noise, 0, NOISE),
+    Tolerance::Width { sigma: WIDTH },
+    Tolerance::Sheen { power: 1, sigma: SHEEN },
+    Tolerance::Sheen { power: 2, sigma: SHEEN },
+];
+
+const fn offset(channel: Channel, part: u8, sigma: f64) -> Tolerance {
+    Tolerance::Offset { group: Group { channel, part }, sigma }
+}
+
+/// Which square of the field a point of it is in.
+pub(crate) fn cell_of(ground: DVec2) -> [i32; 2] {
+    let cell = (ground / PATCH_M).floor();
+    [cell.x as i32, cell.y as i32]
+}
+
+/// All tolerances of what was looked at.
+pub(crate) fn tolerances(looks: &[Look]) -> Vec<Tolerance> {
+    let blocks = looks.iter().flat_map(|look| &look.blocks);
+    let cells: BTreeSet<[i32; 2]> = blocks.map(|block| cell_of(block.ground)).collect();
+    let patches = cells.into_iter().map(|cell| Tolerance::Patch { cell, sigma: PATCH });
+    COMMON.into_iter().chain(patches).collect()
+}
+
+impl Tolerance {
+    /// Change of a row that is expected to be `expected`, with one standard deviation.
+    pub(crate) fn change(&self, row: &Row, expected: f64) -> f64 {
+        match *self {
+            Self::Offset { group, sigma } if row.group == group => sigma,
+            Self::Width { sigma } if row.group.channel == Channel::Sharpness => {
+                sigma * row.half_width_px.ln()
+            }
+            Self::Patch { cell, sigma } if is_carpet(row) && cell_of(row.ground) == cell => sigma,
+            Self::Sheen { power, sigma } if is_carpet(row) => {
+                // Rows of photometry are logarithms.
+                let change = sigma * (1.0 - row.cos_incidence).powi(power) * (-expected).exp();
+                if change.is_finite() { change } else { 0.0 }
+            }
+            _ => 0.0,
+        }
+    }
+}
+
+fn is_carpet(row: &Row) -> bool {
+    row.group.channel == Channel::Photometry && row.group.part >= 3
+}

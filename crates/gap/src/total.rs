@@ -1,0 +1,114 @@
+//! Sums over some frames, the tolerances solved for once: fits of any set of effects are then small.
+//!
+//! With the columns in two blocks, effects `p` and tolerances `t`, the tolerances of a fit are `δt = y − X δp` with
+//! `X = (A_tt + I)⁻¹ A_tp` and `y = (A_tt + I)⁻¹ g_t`; what is left for the effects is the Schur complement
+//! `A_pp − A_pt X` and `g_p − A_pt y`.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::system::{PRIOR, Sums};
+
+/// A set of columns fitted to some frames; the other effects are held where they vanish.
+#[derive(Debug, Clone)]
+pub(crate) struct Fit {
+    /// The effects' columns that are free.
+    pub(crate) free: Vec<usize>,
+    /// Change of every column from where the model is.
+    pub(crate) delta: DVector<f64>,
+    /// Inverse of the information on the free columns.
+    pub(crate) inverse: DMatrix<f64>,
+}
+
+impl Fit {
+    /// What a fit leaves of what was known of a free column before, as a part of its variance: 1 where it tells nothing.
+    pub(crate) fn prior_share(&self, column: usize) -> f64 {
+        let place = self.free.iter().position(|&free| free == column);
+        place.map_or(1.0, |place| self.inverse[(place, place)] * PRIOR)
+    }
+}
+
+/// Sums over some frames.
+#[derive(Debug, Clone)]
+pub(crate) struct Total {
+    /// Left for the effects.
+    a: DMatrix<f64>,
+    g: DVector<f64>,
+    /// The tolerances that follow from the effects.
+    x: DMatrix<f64>,
+    y: DVector<f64>,
+}
+
+impl Total {
+    /// Of frames, with `parameters` columns of effects before those of the tolerances.
+    pub(crate) fn of<'a>(sums: impl Iterator<Item = &'a Sums>, size: usize, parameters: usize) -> Self {
+        let (mut a, mut g) = (DMatrix::zeros(size, size), DVector::zeros(size));
+        for sums in sums {
+            a += &sums.a;
+            g += &sums.g;
+        }
+        let count = size - parameters;
+        let across = a.view((0, parameters), (parameters, count)).clone_owned();
+        let mut tolerances = a.view((parameters, parameters), (count, count)).clone_owned();
+        tolerances += DMatrix::identity(count, count) * PRIOR;
+        // Sums of squares and a prior: positive definite but for rounding.
+        let solve = |right: &DMatrix<f64>| match tolerances.clone().cholesky() {
+            Some(cholesky) => cholesky.solve(right),
+            None => right * 0.0,
+        };
+        let x = solve(&a.view((parameters, 0), (count, parameters)).clone_owned());
+        let rest = g.rows(parameters, count).clone_owned();
+        let y = solve(&DMatrix::from_column_slice(count, 1, rest.as_slice())).column(0).clone_owned();
+        Self {
+            a: a.view((0, 0), (parameters, parameters)).clone_owned() - &across * &x,
+            g: g.rows(0, parameters).clone_owned() - &across * &y,
+            x,
+            y,
+        }
+    }
+
+    /// Least squares over the free columns. `base` is where the model is, in the effects' coordinates.
+    pub(crate) fn fit(&self, free: &[usize], base: &DVector<f64>) -> Option<Fit> {
+        let mut effects = -base;
+        for &column in free {
+            effects[column] = 0.0;
+        }
+        let held = &self.g - &self.a * &effects;
+        let count = free.len();
+        let information = DMatrix::from_fn(count, count, |i, j| {
+            let both = 0.5 * (self.a[(free[i], free[j])] + self.a[(free[j], free[i])]);
+            both + if i == j { PRIOR } else { 0.0 }
+        });
+        let right = DVector::from_fn(count, |i, _| held[free[i]] - PRIOR * base[free[i]]);
+        let inverse = information.try_inverse()?;
+        let solved = &inverse * right;
+        for (i, &column) in free.iter().enumerate() {
+            effects[column] = solved[i];
+        }
+        let tolerances = &self.y - &self.x * &effects;
+        let delta = DVector::from_iterator(
+            effects.len() + tolerances.len(),
+            effects.iter().chain(tolerances.iter()).copied(),
+        );
+        Some(Fit { free: free.to_vec(), delta, inverse })
+    }
+
+    /// What moving by this gains, the tolerances solved for; up to a constant.
+    pub(crate) fn gain(&self, delta: &DVector<f64>) -> f64 {
+        let effects = delta.rows(0, self.g.len());
+        self.g.dot(&effects) - 0.5 * effects.dot(&(&self.a * effects))
+    }
+
+    /// The free effects' part of scores of all columns, the tolerances projected out.
+    pub(crate) fn projected(&self, scores: &DVector<f64>, free: &[usize]) -> DVector<f64> {
+        let parameters = self.g.len();
+        let tolerances = scores.rows(parameters, scores.len() - parameters);
+        DVector::from_fn(free.len(), |i, _| scores[free[i]] - self.x.column(free[i]).dot(&tolerances))
+    }
+
+    /// What the tolerances' own prior adds to the scatter of scores: no frame shows it.
+    pub(crate) fn tolerance_scatter(&self, free: &[usize]) -> DMatrix<f64> {
+        DMatrix::from_fn(free.len(), free.len(), |i, j| {
+            PRIOR * self.x.column(free[i]).dot(&self.x.column(free[j]))
+        })
+    }
+}

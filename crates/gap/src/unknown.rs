@@ -1,0 +1,305 @@
+//! What is left when all effects are fitted, and is in the shape of none of them.
+//!
+//! Residuals are binned by where and when they were measured. Bins that keep their mean from one part of the recording
+//! to the others are no chance: as for effects, frames are judged by the means of the other parts.
+
+use std::collections::BTreeMap;
+
+use glam::{DMat2, DVec2};
+
+use crate::{
+    evidence::{Gain, sum_of, two_sided},
+    rows::{Channel, Row},
+    system::median,
+    words,
+};
+
+/// Columns and rows of the picture's grid.
+pub(crate) const GRID: [usize; 2] = [8, 6];
+/// Side of a cell of the field, metres.
+pub(crate) const FIELD_CELL_M: f64 = 1.0;
+/// Parts of the recording that are judged by the others.
+const FOLDS: usize = 4;
+/// A residual counts at most this many standard deviations.
+const CLIP: f64 = 4.0;
+/// A pattern is significant where its gain on unseen frames is this many standard deviations above zero.
+const LEAST_SCORE: f64 = 3.2;
+/// Weight of the assumption that there is no pattern, in rows.
+const SHRINK: f64 = 20.0;
+
+/// What residuals are binned by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) enum Locus {
+    /// Place in the picture.
+    Picture,
+    /// Place on the field.
+    Field,
+    /// When.
+    Time,
+}
+
+/// A pattern that no effect of the library explains.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Pattern {
+    pub(crate) channel: Channel,
+    pub(crate) locus: Locus,
+    pub(crate) gain: Gain,
+    /// Root mean square of the pattern where it is strongest: the tenth of the rows with the largest means.
+    pub(crate) size: f64,
+    /// The bin whose mean is least likely chance.
+    pub(crate) strongest: (i32, i32),
+    /// How unlikely that is, corrected for all bins of all patterns.
+    pub(crate) p_value: f64,
+    /// Mean there.
+    pub(crate) strongest_size: f64,
+    /// The usual variance of the blur, pixels squared.
+    scale: f64,
+}
+
+impl Pattern {
+    fn is_all_over(&self) -> bool {
+        self.gain.score() > LEAST_SCORE && self.size > material(self.channel, self.scale)
+    }
+
+    /// Where it is, in words.
+    pub(crate) fn place(&self) -> String {
+        match self.locus {
+            Locus::Picture => {
+                format!("in the picture, strongest {}", words::picture_place(self.strongest, GRID))
+            }
+            Locus::Field => {
+                let corner =
+                    DVec2::new(f64::from(self.strongest.0), f64::from(self.strongest.1)) * FIELD_CELL_M;
+                format!("on the field, strongest {}", words::field_place(corner.x, corner.y, FIELD_CELL_M))
+            }
+            Locus::Time => format!("over time, strongest {} s after the start", self.strongest.0),
+        }
+    }
+
+    /// The larger of its size all over and in one place, as far as each is significant.
+    pub(crate) fn reported_size(&self) -> f64 {
+        if self.p_value < LIKELY_CHANCE {
+            self.strongest_size.max(if self.is_all_over() { self.size } else { 0.0 })
+        } else {
+            self.size
+        }
+    }
+
+    fn is_significant(&self) -> bool {
+        let in_one_place =
+            self.p_value < LIKELY_CHANCE && self.strongest_size > material(self.channel, self.scale);
+        self.is_all_over() || in_one_place
+    }
+}
+
+/// A place is seen in so many frames at least.
+const LEAST_FRAMES: usize = 6;
+/// A bin's mean is no chance below this, all bins considered; it has to be large besides.
+const LIKELY_CHANCE: f64 = 0.02;
+/// All bins of all patterns, about: what p-values are corrected for.
+const BINS: f64 = 500.0;
+
+/// A frame's residuals after the fit.
+pub(crate) struct Residuals<'a> {
+    pub(crate) rows: &'a [Row],
+    pub(crate) values: Vec<f64>,
+    pub(crate) time_s: f64,
+    pub(crate) size: [u32; 2],
+}
+
+/// Sizes below which a pattern does not matter, in the channel's unit.
+fn material(channel: Channel, scale: f64) -> f64 {
+    match channel {
+        Channel::Geometry => 0.12,
+        Channel::Photometry => 0.06,
+        // A line's profile is not quite the one that is fitted: the error grows with the blur.
+        Channel::Sharpness => 0.08_f64.max(0.06 * scale),
+        // Centres of mass of blurred lines scatter with the flanks.
+        Channel::Color => 0.08 + 0.04 * scale,
+        Channel::Noise => 0.6,
+        Channel::Motion => f64::INFINITY,
+    }
+}
+
+/// Every significant pattern.
+pub(crate) fn patterns(
+    frames: &[Residuals<'_>],
+    sigmas: &BTreeMap<(Channel, u8), f64>,
+    from_s: f64,
+) -> Vec<Pattern> {
+    let channels =
+        [Channel::Geometry, Channel::Photometry, Channel::Sharpness, Channel::Color, Channel::Noise];
+    let loci = [Locus::Picture, Locus::Field, Locus::Time];
+    let pairs = channels.into_iter().flat_map(|channel| loci.map(|locus| (channel, locus)));
+    pairs
+        .filter_map(|(channel, locus)| pattern(frames, sigmas, channel, locus, from_s))
+        .filter(Pattern::is_significant)
+        .collect()
+}
+
+/// Sums of a bin: information and score of a mean vector. Offsets of lines have two numbers a bin, all else has one.
+#[derive(Debug, Clone, Copy, Default)]
+struct Bin {
+    information: DMat2,
+    score: DVec2,
+    rows: f64,
+}
+
+impl Bin {
+    fn mean(&self, shrink: f64) -> DVec2 {
+        (self.information + DMat2::from_diagonal(DVec2::splat(shrink))).inverse() * self.score
+    }
+}
+
+impl std::ops::AddAssign for Bin {
+    fn add_assign(&mut self, other: Self) {
+        self.information += other.information;
+        self.score += other.score;
+        self.rows += other.rows;
+    }
+}
+
+fn pattern(
+    frames: &[Residuals<'_>],
+    sigmas: &BTreeMap<(Channel, u8), f64>,
+    channel: Channel,
+    locus: Locus,
+    from_s: f64,
+) -> Option<Pattern> {
+    let binned: Vec<BTreeMap<(i32, i32), Bin>> =
+        frames.iter().map(|frame| bins(frame, sigmas, channel, locus, from_s)).collect();
+    let count = frames.len();
+    // Sharper than the mean of a group: patterns are measured in its standard deviations.
+    let sigma = sigmas
+        .iter()
+        .filter(|((group, _), _)| *group == channel)
+        .map(|(_, sigma)| *sigma)
+        .fold(0.0, f64::max);
+    let mut gains = Vec::with_capacity(count);
+    for (index, frame) in binned.iter().enumerate() {
+        let fold = index * FOLDS / count;
+        let mut others: BTreeMap<(i32, i32), Bin> = BTreeMap::new();
+        for (other, bins) in binned.iter().enumerate() {
+            let is_other = match locus {
+                // A time's pattern is judged by the frames next to it, not by other times.
+                Locus::Time => other % 2 != index % 2,
+                _ => other * FOLDS / count != fold,
+            };
+            if is_other {
+                bins.iter().for_each(|(place, bin)| *others.entry(*place).or_default() += *bin);
+            }
+        }
+        let gain = frame.iter().map(|(place, bin)| {
+            let mean = others.get(place).map_or(DVec2::ZERO, |others| others.mean(SHRINK));
+            mean.dot(bin.score) - 0.5 * mean.dot(bin.information * mean)
+        });
+        gains.push(gain.sum::<f64>());
+    }
+    let mut all: BTreeMap<(i32, i32), Bin> = BTreeMap::new();
+    for bins in &binned {
+        bins.iter().for_each(|(place, bin)| *all.entry(*place).or_default() += *bin);
+    }
+    let mut means: Vec<(f64, f64, (i32, i32))> =
+        all.iter().map(|(place, bin)| (bin.mean(SHRINK).length(), bin.rows, *place)).collect();
+    means.sort_by(|a, b| b.0.total_cmp(&a.0));
+    // Of the places that are no chance the one with the largest mean; where all may be chance, the least likely.
+    let places = all.iter().filter_map(|(place, bin)| {
+        let p_value = (BINS * p_value(&binned, *place)?).min(1.0);
+        let rank = if p_value < LIKELY_CHANCE { 1.0 + bin.mean(SHRINK).length() } else { 1.0 - p_value };
+        Some((rank, p_value, *place))
+    });
+    let (_, p_value, strongest) = places.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let wanted = 0.1 * means.iter().map(|mean| mean.1).sum::<f64>();
+    let (mut squares, mut rows) = (0.0, 0.0);
+    for (mean, count, _) in &means {
+        if rows < wanted {
+            squares += mean * mean * count;
+            rows += count;
+        }
+    }
+    Some(Pattern {
+        channel,
+        locus,
+        gain: sum_of(&gains),
+        size: sigma * (squares / rows.max(1.0)).sqrt(),
+        strongest,
+        p_value,
+        scale: middle(frames, Channel::Sharpness),
+        strongest_size: sigma * all[&strongest].mean(SHRINK).length(),
+    })
+}
+
+/// The median of a channel's measurements.
+fn middle(frames: &[Residuals<'_>], channel: Channel) -> f64 {
+    let rows = frames.iter().flat_map(|frame| frame.rows).filter(|row| row.group.channel == channel);
+    let mut values: Vec<f64> = rows.map(|row| row.measured).filter(|value| value.is_finite()).collect();
+    median(&mut values)
+}
+
+/// How unlikely a bin's mean is chance, by its scatter from frame to frame; the less likely of its two numbers.
+fn p_value(frames: &[BTreeMap<(i32, i32), Bin>], place: (i32, i32)) -> Option<f64> {
+    let bins: Vec<&Bin> = frames.iter().filter_map(|frame| frame.get(&place)).collect();
+    if bins.len() < LEAST_FRAMES {
+        return None;
+    }
+    let total = bins.iter().fold(Bin::default(), |mut total, bin| {
+        total += **bin;
+        total
+    });
+    let mean = total.mean(1e-6);
+    let axis = |pick: fn(DVec2) -> f64| {
+        let scores: Vec<f64> = bins.iter().map(|bin| pick(bin.score - bin.information * mean)).collect();
+        let scatter = sum_of(&scores).sigma;
+        two_sided(pick(total.score) / scatter.max(1e-9), bins.len() as f64 - 1.0)
+    };
+    let smaller = axis(|v| v.x).min(axis(|v| v.y));
+    smaller.is_finite().then_some(smaller)
+}
+
+fn bins(
+    frame: &Residuals<'_>,
+    sigmas: &BTreeMap<(Channel, u8), f64>,
+    channel: Channel,
+    locus: Locus,
+    from_s: f64,
+) -> BTreeMap<(i32, i32), Bin> {
+    let mut bins: BTreeMap<(i32, i32), Bin> = BTreeMap::new();
+    for (row, value) in frame.rows.iter().zip(&frame.values) {
+        let sigma = sigmas.get(&(row.group.channel, row.group.part));
+        let Some(&sigma) = sigma.filter(|_| row.group.channel == channel && value.is_finite()) else {
+            continue;
+        };
+        // Other things on the carpet are no pattern of it; what is odd about a line is.
+        let is_thing = matches!(channel, Channel::Photometry | Channel::Noise) && value.abs() > CLIP * sigma;
+        if is_thing {
+            continue;
+        }
+        let residual = (value / sigma).clamp(-CLIP, CLIP);
+        let direction = match (channel, locus) {
+            (Channel::Geometry | Channel::Color, Locus::Picture) => row.normal,
+            _ => DVec2::X,
+        };
+        let place = match locus {
+            Locus::Picture => picture_cell(row.pixel, frame.size),
+            Locus::Field => {
+                ((row.ground.x / FIELD_CELL_M).floor() as i32, (row.ground.y / FIELD_CELL_M).floor() as i32)
+            }
+            Locus::Time => (((frame.time_s - from_s) / 1.0).floor() as i32, 0),
+        };
+        let bin = bins.entry(place).or_default();
+        *bin += Bin {
+            information: DMat2::from_cols(direction * direction.x, direction * direction.y),
+            score: residual * direction,
+            rows: 1.0,
+        };
+    }
+    bins
+}
+
+/// The cell of the picture's grid.
+pub(crate) fn picture_cell(pixel: DVec2, size: [u32; 2]) -> (i32, i32) {
+    let cell = |value: f64, size: u32, cells: usize| {
+        ((value + 0.5) / f64::from(size) * cells as f64).clamp(0.0, cells as f64 - 1.0) as i32
+    };
+    (cell(pixel.x, size[0], GRID[0]), cell(pixel.y, size[1], GRID[1]))
+}

@@ -1,0 +1,274 @@
+//! Detect, name, add, until nothing more is found.
+
+use std::collections::BTreeMap;
+
+use reality_sim_sensor::{Model, library};
+
+use crate::{
+    columns::{Column, columns},
+    evidence::Evidence,
+    look::Look,
+    measure::{MeasureError, linearise, look_at},
+    naming::{Naming, base},
+    recording::Recording,
+    rows::Channel,
+    split::Split,
+    starting::starting_values,
+    system::{FrameRows, INDEPENDENT, Left, System},
+    tolerance::{Tolerance, tolerances},
+    total::Fit,
+};
+
+/// How far from where they are expected lines are looked for at first and once a model has been moved, as a part of
+/// the picture's width.
+const SEARCH: [f64; 2] = [0.028, 0.014];
+/// No more effects than this are added to a model in one go.
+const MOST_EFFECTS: usize = 6;
+/// Rounds of Gauss and Newton's method after an effect was added.
+const SETTLING: usize = 6;
+/// A model has settled when a step gains less than this in log-likelihood.
+const SETTLED: f64 = 1.0;
+
+/// Residuals beyond this many standard deviations are no measurements.
+const CUT_OFF: f64 = 5.0;
+/// Rows of a channel in the pictures that a mean residual stands for.
+const PICTURE_ROWS: f64 = 3000.0;
+/// Rows of the odometry that it stands for.
+const MOTION_ROWS: f64 = 60.0;
+
+/// What the workflow is doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Looking at the pictures.
+    Measuring,
+    /// Testing every effect.
+    Testing,
+    /// Fitting all effects of the extended model together.
+    Fitting,
+    /// Judging on frames that no fit has seen.
+    Judging,
+}
+
+/// How to work.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Chooses the frames that are kept for judging.
+    pub seed: u64,
+    /// Effects that are not in the library this time.
+    pub without: Vec<String>,
+}
+
+/// A recording measured where a model expects things.
+#[derive(Debug, Clone)]
+pub(crate) struct Measured {
+    pub(crate) model: Model,
+    pub(crate) looks: Vec<Look>,
+    pub(crate) tolerances: Vec<Tolerance>,
+    pub(crate) frames: Vec<FrameRows>,
+    pub(crate) system: System,
+}
+
+/// A model with the effects that were found.
+pub(crate) struct Found {
+    pub(crate) columns: Vec<Column>,
+    pub(crate) split: Split,
+    /// At the final model.
+    pub(crate) measured: Measured,
+    /// Indices into the library of the effects that the model had, and of those found, in the order of finding.
+    pub(crate) given: Vec<usize>,
+    pub(crate) named: Vec<usize>,
+}
+
+impl Found {
+    /// All effects of the extended model.
+    pub(crate) fn all(&self) -> Vec<usize> {
+        self.given.iter().chain(&self.named).copied().collect()
+    }
+
+    pub(crate) fn evidence(&self) -> Evidence<'_> {
+        self.measured.evidence(&self.columns)
+    }
+}
+
+impl Measured {
+    fn new(
+        recording: &Recording<'_>,
+        model: Model,
+        columns: &[Column],
+        split: &Split,
+        search: f64,
+    ) -> Result<Self, MeasureError> {
+        let search_px = search * f64::from(recording.sequence.setup.camera.width);
+        let looks = look_at(recording, &model, search_px)?;
+        let tolerances = tolerances(&looks);
+        let frames = linearise(recording, &looks, &model, columns, &tolerances)?;
+        let fitted: Vec<&FrameRows> = split.fitted().map(|frame| &frames[frame]).collect();
+        let views = recording.views();
+        let views: Vec<usize> = split.fitted().map(|frame| views[frame]).collect();
+        let size = columns.len() + tolerances.len();
+        let system = System::new(&fitted, size, recording.reference(), &views);
+        Ok(Self { model, looks, tolerances, frames, system })
+    }
+
+    pub(crate) fn evidence(&self, columns: &[Column]) -> Evidence<'_> {
+        Evidence::new(&self.system, base(columns, &self.model))
+    }
+}
+
+/// Runs the loop. `progress` hears of every stage.
+pub(crate) fn find(
+    recording: &Recording<'_>,
+    model: &Model,
+    options: &Options,
+    progress: &dyn Fn(Stage),
+) -> Result<Found, MeasureError> {
+    let columns = columns(&options.without);
+    let split = Split::new(recording.frames.len(), options.seed);
+    let index = |id: &str| library().iter().position(|effect| effect.id() == id);
+    let given: Vec<usize> = model.effects.iter().filter_map(|used| index(used.effect.id())).collect();
+    let finder = Finder { recording, columns: &columns, split: &split, progress };
+    progress(Stage::Measuring);
+    let mut measured = Measured::new(recording, model.clone(), &columns, &split, SEARCH[0])?;
+    let mut named: Vec<usize> = Vec::new();
+    if !given.is_empty() {
+        measured = finder.settle(measured, &given)?;
+    }
+    // Sets that were tried: swapping must not go round in circles.
+    let mut tried: Vec<Vec<usize>> = vec![Vec::new()];
+    while named.len() < MOST_EFFECTS {
+        progress(Stage::Testing);
+        let mut sets = finder.next_sets(&measured, &given, &named);
+        sets.retain(|set| !tried.contains(&sorted(set)));
+        let Some((set, settled)) = finder.closest(&measured, &given, sets)? else { break };
+        tried.push(sorted(&set));
+        (named, measured) = (set, settled);
+    }
+    Ok(Found { columns, split, measured, given, named })
+}
+
+/// A recording measured with a model as it is.
+pub(crate) fn as_given(
+    recording: &Recording<'_>,
+    model: &Model,
+    options: &Options,
+) -> Result<Found, MeasureError> {
+    let columns = columns(&options.without);
+    let split = Split::new(recording.frames.len(), options.seed);
+    let measured = Measured::new(recording, model.clone(), &columns, &split, SEARCH[1])?;
+    Ok(Found { columns, split, measured, given: Vec::new(), named: Vec::new() })
+}
+
+fn sorted(effects: &[usize]) -> Vec<usize> {
+    let mut sorted = effects.to_vec();
+    sorted.sort_unstable();
+    sorted
+}
+
+struct Finder<'a> {
+    recording: &'a Recording<'a>,
+    columns: &'a [Column],
+    split: &'a Split,
+    progress: &'a dyn Fn(Stage),
+}
+
+impl Finder<'_> {
+    /// The next sets of effects to try, one of which is to be taken: one dropped that no longer holds, one replaced by a
+    /// better one, or one more.
+    fn next_sets(&self, measured: &Measured, given: &[usize], named: &[usize]) -> Vec<Vec<usize>> {
+        let evidence = measured.evidence(self.columns);
+        let naming = Naming { evidence: &evidence, columns: self.columns };
+        let all: Vec<usize> = given.iter().chain(named).copied().collect();
+        let tested = naming.effects().len();
+        let fallen =
+            named.iter().find(|&&effect| naming.case(effect, &all, tested).is_none_or(|case| !case.holds()));
+        if let Some(fallen) = fallen {
+            return vec![named.iter().copied().filter(|effect| effect != fallen).collect()];
+        }
+        if let Some((old, new)) = naming.better(&all, named) {
+            return vec![named.iter().map(|&effect| if effect == old { new } else { effect }).collect()];
+        }
+        naming.next(&all).into_iter().map(|next| named.iter().copied().chain([next]).collect()).collect()
+    }
+
+    /// Of several sets the one whose settled model leaves least, with that model.
+    fn closest(
+        &self,
+        measured: &Measured,
+        given: &[usize],
+        sets: Vec<Vec<usize>>,
+    ) -> Result<Option<(Vec<usize>, Measured)>, MeasureError> {
+        let only = sets.len() == 1;
+        let mut best: Option<(f64, Vec<usize>, Measured)> = None;
+        for set in sets {
+            let all: Vec<usize> = given.iter().chain(&set).copied().collect();
+            let settled = self.settle(measured.clone(), &all)?;
+            let left = if only { 0.0 } else { self.left(&settled, &measured.system) };
+            if best.as_ref().is_none_or(|(least, ..)| left < *least) {
+                best = Some((left, set, settled));
+            }
+        }
+        Ok(best.map(|(_, set, settled)| (set, settled)))
+    }
+
+    /// What a settled model leaves, minus log-likelihood: residuals in the standard deviations of one system, cut off
+    /// where they are no measurement, and what tolerances have to be.
+    fn left(&self, measured: &Measured, system: &System) -> f64 {
+        let evidence = measured.evidence(self.columns);
+        let Some(fit) = evidence.as_it_is() else { return f64::INFINITY };
+        let strain = 0.5 * fit.delta.norm_squared();
+        let mut means: BTreeMap<(Channel, u8), (f64, f64)> = BTreeMap::new();
+        for (frame, weights) in self.split.fitted().zip(&measured.system.weights) {
+            let rows = &measured.frames[frame];
+            let left = Left::new(rows, weights, &fit.delta, &system.pose_sigmas);
+            for (row, residual) in rows.rows.iter().zip(&left.residuals).filter(|(_, left)| left.is_finite())
+            {
+                let key = (row.group.channel, row.group.part);
+                if let Some(sigma) = system.sigmas.get(&key) {
+                    let mean = means.entry(key).or_default();
+                    mean.0 += (residual / sigma).powi(2).min(CUT_OFF * CUT_OFF);
+                    mean.1 += 1.0;
+                }
+            }
+        }
+        // Other models find other numbers of lines: means count, times as many as there are independent.
+        let counted = means.iter().map(|((channel, _), (sum, count))| {
+            let rows = if *channel == Channel::Motion { MOTION_ROWS } else { INDEPENDENT * PICTURE_ROWS };
+            0.5 * rows * sum / count.max(1.0)
+        });
+        counted.sum::<f64>() + strain
+    }
+
+    /// Fits the effects together and measures anew where they put things, until nothing moves.
+    fn settle(&self, mut measured: Measured, effects: &[usize]) -> Result<Measured, MeasureError> {
+        for _ in 0..SETTLING {
+            (self.progress)(Stage::Fitting);
+            let evidence = measured.evidence(self.columns);
+            let naming = Naming { evidence: &evidence, columns: self.columns };
+            let Some(fit) = evidence.fit(&naming.columns_of(effects)) else { break };
+            let still = evidence.improvement(&fit) < SETTLED;
+            let model = self.moved(&measured.model, &naming, &fit, effects);
+            (self.progress)(Stage::Measuring);
+            measured = Measured::new(self.recording, model, self.columns, self.split, SEARCH[1])?;
+            if still {
+                break;
+            }
+        }
+        Ok(measured)
+    }
+
+    /// The model with only these effects, at the fitted values.
+    fn moved(&self, model: &Model, naming: &Naming<'_>, fit: &Fit, effects: &[usize]) -> Model {
+        let mut moved = Model::default();
+        for &index in effects {
+            let effect = library()[index];
+            let mut values = model
+                .values(effect.id())
+                .map_or_else(|| starting_values(effect, self.recording), <[f64]>::to_vec);
+            for column in naming.columns_of(&[index]) {
+                values[self.columns[column].parameter] = naming.value(fit, column);
+            }
+            moved = moved.with(effect, values);
+        }
+        moved
+    }
+}

@@ -1,0 +1,160 @@
+//! From rays to pixels: a disc for defocus, then the lens's Gaussian and the pixel's own aperture.
+
+use crate::rays::{Frame, PER_PIXEL};
+
+/// Where the Gaussian is cut, standard deviations.
+const CUT: f64 = 4.0;
+
+/// Pixels beyond the picture from which light comes into it.
+pub fn margin_px(psf_sigma_px: f64, defocus_px: f64) -> usize {
+    // A pixel's half and a ray's.
+    (1.0 + CUT * psf_sigma_px + 2.0 * defocus_px).ceil() as usize
+}
+
+/// Light of one colour, a value a ray, becomes a value a pixel.
+pub fn reduce(light: &[f32], frame: Frame, psf_sigma_px: f64) -> Vec<f32> {
+    let kernel = pixel_kernel(psf_sigma_px);
+    let width = frame.rays_per_row();
+    let [columns, rows] = frame.size;
+    let first = (frame.margin * PER_PIXEL + PER_PIXEL / 2) - kernel.len() / 2;
+    let narrow: Vec<f32> = light
+        .chunks(width)
+        .flat_map(|row| {
+            let kernel = &kernel;
+            (0..columns).map(move |column| {
+                let from = first + column * PER_PIXEL;
+                row[from..from + kernel.len()]
+                    .iter()
+                    .zip(kernel)
+                    .map(|(value, weight)| value * weight)
+                    .sum::<f32>()
+            })
+        })
+        .collect();
+    let mut pixels = vec![0.0; columns * rows];
+    for (row, pixels) in pixels.chunks_mut(columns).enumerate() {
+        let from = first + row * PER_PIXEL;
+        for (values, weight) in narrow.chunks(columns).skip(from).zip(&kernel) {
+            pixels.iter_mut().zip(values).for_each(|(pixel, value)| *pixel += value * weight);
+        }
+    }
+    pixels
+}
+
+/// Weights of the rays around a pixel's centre: a Gaussian seen through an aperture of one pixel. A ray stands for a
+/// square cell, whose variance is taken off.
+fn pixel_kernel(psf_sigma_px: f64) -> Vec<f32> {
+    const APERTURE_STEPS: i32 = 60;
+    let cell = 1.0 / (12.0 * (PER_PIXEL * PER_PIXEL) as f64);
+    let sigma_px = (psf_sigma_px * psf_sigma_px - cell).max(cell).sqrt();
+    let reach = ((0.5 + CUT * psf_sigma_px) * PER_PIXEL as f64) as i32;
+    let weight = |index: i32| -> f64 {
+        let place = f64::from(index) / PER_PIXEL as f64;
+        let steps = 0..APERTURE_STEPS;
+        steps
+            .map(|step| {
+                let distance = place + (f64::from(step) + 0.5) / f64::from(APERTURE_STEPS) - 0.5;
+                (-0.5 * (distance / sigma_px).powi(2)).exp()
+            })
+            .sum()
+    };
+    let weights: Vec<f64> = (-reach..=reach).map(weight).collect();
+    let sum: f64 = weights.iter().sum();
+    weights.iter().map(|weight| (weight / sum) as f32).collect()
+}
+
+/// Light of one colour, a value a ray, behind a lens that makes a disc of this standard deviation of every point.
+pub fn defocus(light: &[f32], frame: Frame, sigma_px: f64) -> Vec<f32> {
+    let disc = disc_weights(sigma_px * PER_PIXEL as f64);
+    let reach = disc.len() / 2;
+    let width = frame.rays_per_row();
+    let rows: Vec<&[f32]> = light.chunks(width).collect();
+    let mut blurred = vec![0.0; light.len()];
+    for (row, target) in blurred.chunks_mut(width).enumerate() {
+        // What lies beyond the margin does not come into the picture.
+        for (weights, source) in disc
+            .iter()
+            .zip(row..)
+            .filter_map(|(weights, place)| Some((weights, rows.get(place.checked_sub(reach)?)?)))
+        {
+            for (column, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
+                add_shifted(target, source, column as i32 - reach as i32, *weight);
+            }
+        }
+    }
+    blurred
+}
+
+/// Adds to each ray's light a part of that of the ray `shift` places on.
+fn add_shifted(target: &mut [f32], source: &[f32], shift: i32, weight: f32) {
+    let (to, from) = ((-shift).max(0) as usize, shift.max(0) as usize);
+    let pairs = target.iter_mut().skip(to).zip(&source[from..]);
+    pairs.for_each(|(target, source)| *target += weight * source);
+}
+
+/// How much of each cell, a square of one ray, a disc about the middle one covers, in rows; the sum is 1. Cells widen
+/// the disc by their own variance, which is taken off.
+fn disc_weights(sigma: f64) -> Vec<Vec<f32>> {
+    const SLICES: i32 = 16;
+    let radius = 2.0 * (sigma * sigma - 1.0 / 12.0).max(0.01).sqrt();
+    let reach = (radius + 0.5) as i32;
+    let covered = |row: i32, column: i32| -> f64 {
+        let slices = (0..SLICES).map(|slice| {
+            let y = f64::from(row) + (f64::from(slice) + 0.5) / f64::from(SLICES) - 0.5;
+            let half = (radius * radius - y * y).max(0.0).sqrt();
+            let (left, right) = (f64::from(column) - 0.5, f64::from(column) + 0.5);
+            (right.min(half) - left.max(-half)).max(0.0)
+        });
+        slices.sum()
+    };
+    let cells = || -reach..=reach;
+    let total: f64 =
+        cells().flat_map(|row| cells().map(move |column| (row, column))).map(|(r, c)| covered(r, c)).sum();
+    cells().map(|row| cells().map(|column| (covered(row, column) / total) as f32).collect()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sum, and variance along x and y in square pixels, of what becomes of the lit rays of one pixel in the middle.
+    fn moments(psf_sigma_px: f64, defocus_px: f64) -> [f64; 3] {
+        let frame = Frame { size: [21, 21], margin: margin_px(psf_sigma_px, defocus_px) };
+        let mut light = vec![0.0; frame.rays_per_row() * frame.rows() * PER_PIXEL];
+        let middle = (frame.margin + 10) * PER_PIXEL;
+        for (row, column) in (0..PER_PIXEL).flat_map(|row| (0..PER_PIXEL).map(move |column| (row, column))) {
+            light[(middle + row) * frame.rays_per_row() + middle + column] = 1.0;
+        }
+        if defocus_px > 0.0 {
+            light = defocus(&light, frame, defocus_px);
+        }
+        let mut moments = [0.0; 3];
+        for (index, value) in reduce(&light, frame, psf_sigma_px).iter().enumerate() {
+            let (x, y) = ((index % 21) as f64 - 10.0, (index / 21) as f64 - 10.0);
+            for (moment, weight) in moments.iter_mut().zip([1.0, x * x, y * y]) {
+                *moment += f64::from(*value) * weight;
+            }
+        }
+        [moments[0], moments[1] / moments[0], moments[2] / moments[0]]
+    }
+
+    #[test]
+    fn a_point_becomes_the_gaussian_and_the_aperture() {
+        let [sum, x, y] = moments(0.5, 0.0);
+        // The Gaussian, the aperture, and the lit pixel, whose rays stand for cells.
+        let expected = 0.25 + 1.0 / 12.0 + 1.0 / 12.0 - 2.0 / 108.0;
+        assert!((sum - 1.0).abs() < 0.01, "{sum}");
+        assert!((x - expected).abs() < 0.005 && (y - expected).abs() < 0.005, "{x} {y}");
+    }
+
+    #[test]
+    fn defocus_adds_its_variance_on_both_axes() {
+        let [_, plain, _] = moments(0.5, 0.0);
+        for sigma_px in [0.3, 0.6, 1.3] {
+            let [sum, x, y] = moments(0.5, sigma_px);
+            let added = [x - plain, y - plain].map(|added| added.sqrt() / sigma_px);
+            assert!((sum - 1.0).abs() < 0.01, "{sum}");
+            assert!(added.iter().all(|ratio| (ratio - 1.0).abs() < 0.03), "{sigma_px}: {added:?}");
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! A picture's light: every ray followed into the hall, row by row and moment by moment.
+
+use glam::{Mat3, Vec3};
+
+use crate::{
+    blur,
+    rays::{CONE_PX, Frame, PER_PIXEL, Rays},
+    rotation,
+    scene::{Ray, Scene},
+    solid::Thing,
+    trajectory::{Station, Trajectory},
+    truth::Truth,
+};
+
+/// A moving picture is the mean of moments this far apart or less, seconds, within these numbers.
+const MOMENT_S: f64 = 0.003;
+const FEWEST_MOMENTS: f64 = 8.0;
+const MOST_MOMENTS: f64 = 24.0;
+
+/// A camera that is ready to take pictures.
+pub struct Exposer {
+    truth: Truth,
+    frame: Frame,
+    psf_sigma_px: f64,
+    rays: Vec<Rays>,
+}
+
+/// Where the camera is, in the precision of rays.
+struct View {
+    origin: Vec3,
+    world_from_camera: Mat3,
+}
+
+impl Exposer {
+    /// For pictures of this size, pixels.
+    pub fn new(truth: &Truth, size: [u32; 2], psf_sigma_px: f64) -> Self {
+        let margin = blur::margin_px(psf_sigma_px, truth.defocus_px);
+        let frame = Frame { size: size.map(|side| side as usize), margin };
+        Self { rays: crate::rays::cast(truth, frame), truth: truth.clone(), frame, psf_sigma_px }
+    }
+
+    /// Linear red, green and blue of every pixel, row by row, of a picture taken at a time of the robot's clock,
+    /// seconds.
+    pub fn expose(&self, scene: &Scene, trajectory: &Trajectory, time_s: f64) -> [Vec<f32>; 3] {
+        let things = scene.things(time_s);
+        let mut planes = [const { Vec::new() }; 3];
+        for rays in &self.rays {
+            let light = self.follow(rays, scene, &things, trajectory, time_s);
+            for (channel, light) in rays.channels.iter().zip(light) {
+                planes[*channel] = self.blurred(&light);
+            }
+        }
+        planes
+    }
+
+    fn blurred(&self, light: &[f32]) -> Vec<f32> {
+        if self.truth.defocus_px > 0.0 {
+            let light = blur::defocus(light, self.frame, self.truth.defocus_px);
+            return blur::reduce(&light, self.frame, self.psf_sigma_px);
+        }
+        blur::reduce(light, self.frame, self.psf_sigma_px)
+    }
+
+    /// Light of each of the set's channels along each of its rays.
+    fn follow(
+        &self,
+        rays: &Rays,
+        scene: &Scene,
+        things: &[Thing],
+        trajectory: &Trajectory,
+        time_s: f64,
+    ) -> Vec<Vec<f32>> {
+        let mut light = vec![vec![0.0; rays.directions.len()]; rays.channels.len()];
+        let moments = self.moments();
+        for row in 0..self.frame.rows() {
+            for moment in &moments {
+                let station = trajectory.station(time_s + self.row_delay_s(row) + moment);
+                let view = self.view(station);
+                for cone in 0..self.frame.cones_per_row() {
+                    self.follow_cone(rays, scene, things, &view, [row, cone], &mut |ray, rgb| {
+                        for (plane, channel) in light.iter_mut().zip(&rays.channels) {
+                            plane[ray] += rgb[*channel] / moments.len() as f32;
+                        }
+                    });
+                }
+            }
+        }
+        light
+    }
+
+    /// Hands the light of every ray of one cone to `put`, with the ray's index.
+    fn follow_cone(
+        &self,
+        rays: &Rays,
+        scene: &Scene,
+        things: &[Thing],
+        view: &View,
+        [row, cone]: [usize; 2],
+        put: &mut impl FnMut(usize, Vec3),
+    ) {
+        let width = self.frame.rays_per_row();
+        let around = rays.cones[row * self.frame.cones_per_row() + cone];
+        let axis = view.world_from_camera * around.axis;
+        let near: Vec<&Thing> = things
+            .iter()
+            .filter(|thing| is_in_cone(thing, view.origin, axis, around.half_angle_rad))
+            .collect();
+        let columns = cone * CONE_PX * PER_PIXEL..((cone + 1) * CONE_PX * PER_PIXEL).min(width);
+        for line in row * PER_PIXEL..(row + 1) * PER_PIXEL {
+            for index in columns.clone().map(|column| line * width + column) {
+                let in_camera = rays.directions[index];
+                if in_camera == Vec3::ZERO {
+                    continue;
+                }
+                let ray = Ray {
+                    origin: view.origin,
+                    direction: view.world_from_camera * in_camera,
+                    steps_in_camera: [1, width].map(|step| step_between(&rays.directions, index, step)),
+                    world_from_camera: &view.world_from_camera,
+                };
+                put(index, scene.light(&ray, near.iter().copied()));
+            }
+        }
+    }
+
+    /// The true camera where everyone believes it to be at `believed`.
+    fn view(&self, believed: Station) -> View {
+        let pitched = rotation::pitch_in_camera(believed.world_from_camera, self.truth.mount_pitch_rad);
+        let turned = rotation::roll_about_axis(pitched, self.truth.mount_roll_rad);
+        let raised = believed.position + glam::DVec3::Z * self.truth.raised_m;
+        View { origin: raised.as_vec3(), world_from_camera: turned.as_mat3() }
+    }
+
+    /// When a row of pixels, margins counted, is exposed, against the picture's time, seconds.
+    fn row_delay_s(&self, row: usize) -> f64 {
+        let row = row as f64 - self.frame.margin as f64;
+        let last = (self.frame.size[1] as f64 - 1.0).max(1.0);
+        self.truth.readout_s * (row / last - 0.5)
+    }
+
+    /// Times at which light is collected, against a row's time, seconds.
+    fn moments(&self) -> Vec<f64> {
+        let exposure_s = self.truth.exposure_s;
+        if exposure_s == 0.0 {
+            return vec![0.0];
+        }
+        let count = (exposure_s / MOMENT_S).ceil().clamp(FEWEST_MOMENTS, MOST_MOMENTS);
+        (0..count as u32).map(|index| exposure_s * ((f64::from(index) + 0.5) / count - 0.5)).collect()
+    }
+}
+
+/// From a ray to the one that many places on, or from the one before.
+fn step_between(directions: &[Vec3], index: usize, places: usize) -> Vec3 {
+    match directions.get(index + places) {
+        Some(next) if *next != Vec3::ZERO => *next - directions[index],
+        _ => directions[index] - directions[index.saturating_sub(places)],
+    }
+}
+
+/// Whether a thing can be met by a ray of a cone.
+fn is_in_cone(thing: &Thing, origin: Vec3, axis: Vec3, half_angle_rad: f32) -> bool {
+    let to_center = thing.center - origin;
+    let distance = to_center.length();
+    if distance <= thing.radius {
+        return true;
+    }
+    let half_angle_rad = half_angle_rad + (thing.radius / distance).asin() + 1e-3;
+    half_angle_rad > 3.0 || to_center.dot(axis) >= distance * half_angle_rad.cos()
+}

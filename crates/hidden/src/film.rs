@@ -1,0 +1,161 @@
+//! From light to pixel values: losses in the lens, gains, noise, black level, gamma.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+use image::RgbImage;
+
+use crate::{
+    effect::{Course, Falloff},
+    nominal::Light,
+    random::Random,
+    truth::Truth,
+};
+
+/// What dirt on the lens scatters into the picture, linear.
+const DIRT_LIGHT: f64 = 0.02;
+
+/// The sensor and what of the lens only makes darker.
+pub struct Film {
+    truth: Truth,
+    light: Light,
+    size: [u32; 2],
+    /// The recording's first and last time, seconds.
+    span_s: [f64; 2],
+    /// What the lens lets through, a number a pixel.
+    transmission: Vec<f32>,
+    /// What the lens adds, a number a pixel.
+    haze: Vec<f32>,
+}
+
+impl Film {
+    /// For pictures of this size taken between two times, seconds.
+    pub fn new(truth: &Truth, light: Light, size: [u32; 2], span_s: [f64; 2]) -> Self {
+        let pixels = (0..size[1]).flat_map(|v| (0..size[0]).map(move |u| DVec2::new(u.into(), v.into())));
+        let dirt = |pixel| truth.dirt.iter().map(|dirt| dirt.at(pixel).x).sum::<f64>().min(1.0);
+        let (transmission, haze) = pixels
+            .map(|pixel| {
+                let clean = 1.0 - dirt(pixel);
+                ((clean * vignette(truth, pixel, size)) as f32, ((1.0 - clean) * DIRT_LIGHT) as f32)
+            })
+            .unzip();
+        Self { truth: truth.clone(), light, size, span_s, transmission, haze }
+    }
+
+    /// The picture of a frame (from 0) from the linear light of its three colours; `random` is the noise.
+    pub fn develop(
+        &self,
+        planes: &[Vec<f32>; 3],
+        frame: usize,
+        time_s: f64,
+        random: &mut Random,
+    ) -> RgbImage {
+        let exposure = self.exposure(time_s);
+        let width = self.size[0] as usize;
+        let rows: Vec<f64> = (0..self.size[1]).map(|row| exposure * self.flicker(row, frame)).collect();
+        let mut picture = RgbImage::new(self.size[0], self.size[1]);
+        for (index, pixel) in picture.pixels_mut().enumerate() {
+            let gain = rows[index / width] * f64::from(self.transmission[index]);
+            for (channel, plane) in planes.iter().enumerate() {
+                let light = (f64::from(plane[index]) * gain + f64::from(self.haze[index]))
+                    * self.truth.gains[channel];
+                pixel.0[channel] = self.encode(self.noisy(light, random));
+            }
+        }
+        picture
+    }
+
+    fn noisy(&self, light: f64, random: &mut Random) -> f64 {
+        let variance = self.light.noise_shot * light.max(0.0) + self.light.noise_read.powi(2);
+        light + self.truth.noise * variance.sqrt() * random.normal()
+    }
+
+    fn encode(&self, light: f64) -> u8 {
+        let raised = light * (1.0 - self.truth.black_level) + self.truth.black_level;
+        let gamma = self.light.gamma + self.truth.gamma_change;
+        (raised.clamp(0.0, 1.0).powf(1.0 / gamma) * 255.0).round() as u8
+    }
+
+    /// Gain of a time, seconds.
+    fn exposure(&self, time_s: f64) -> f64 {
+        let [first_s, last_s] = self.span_s;
+        let stops = self.truth.drifts.iter().map(|&(amplitude_ev, course)| match course {
+            Course::Linear => amplitude_ev * (2.0 * (time_s - first_s) / (last_s - first_s).max(1e-9) - 1.0),
+            Course::Sine { period_s, phase_rad } => {
+                amplitude_ev * (TAU * time_s / period_s + phase_rad).sin()
+            }
+        });
+        stops.sum::<f64>().exp2()
+    }
+
+    /// Gain of a row of a frame.
+    fn flicker(&self, row: u32, frame: usize) -> f64 {
+        let part = f64::from(row) / f64::from(self.size[1]);
+        let wave = |&[amplitude, bands, roll]: &[f64; 3]| {
+            1.0 + amplitude * (TAU * (bands * part + roll * frame as f64)).sin()
+        };
+        self.truth.flicker.iter().map(wave).product()
+    }
+}
+
+/// What the lens lets through at a pixel, dirt apart.
+fn vignette(truth: &Truth, pixel: DVec2, size: [u32; 2]) -> f64 {
+    let corner_px = (DVec2::from(size.map(f64::from)) - 1.0).length() / 2.0;
+    let square = pixel.distance_squared(truth.lens.center_px) / (corner_px * corner_px);
+    let gain = |&(strength, falloff): &(f64, Falloff)| match falloff {
+        Falloff::Quadratic => 1.0 - strength * square,
+        // cos⁴ of the angle whose tangent is the relative distance; in the corner it is a quarter.
+        Falloff::Cos4 => 1.0 - strength * (1.0 - (1.0 + square).powi(-2)) / 0.75,
+    };
+    truth.vignettes.iter().map(gain).product::<f64>().max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{effect::Hidden, nominal::Nominal};
+
+    fn film(effects: &[Hidden]) -> Film {
+        let nominal = Nominal::new(1, [120, 90]);
+        Film::new(&Truth::new(&nominal, effects), nominal.light, nominal.size, [0.2, 4.0])
+    }
+
+    /// Mean and standard deviation of the linear values of the green of a flat picture.
+    fn flat(film: &Film, light: f32) -> (f64, f64) {
+        let planes = [0; 3].map(|_| vec![light; 120 * 90]);
+        let picture = film.develop(&planes, 0, 0.2, &mut Random::new(2));
+        let values: Vec<f64> =
+            picture.pixels().map(|pixel| (f64::from(pixel.0[1]) / 255.0).powf(2.2)).collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64;
+        (mean, variance.sqrt())
+    }
+
+    #[test]
+    fn noise_of_flat_light_has_the_deviation_of_the_sensor() {
+        for (light, factor) in [(0.1_f32, 0.0), (0.6, 0.0), (0.3, 0.5)] {
+            let (mean, deviation) = flat(&film(&[Hidden::SensorNoise { factor }]), light);
+            let expected = (1.0 + factor) * (0.0015 * f64::from(light) + 0.004 * 0.004).sqrt();
+            assert!((mean - f64::from(light)).abs() < 1e-3, "{light}: {mean}");
+            assert!((deviation / expected - 1.0).abs() < 0.03, "{light}: {deviation} {expected}");
+        }
+    }
+
+    #[test]
+    fn corners_lose_the_strength_of_the_vignetting() {
+        for falloff in [Falloff::Quadratic, Falloff::Cos4] {
+            let nominal = Nominal::new(1, [120, 90]);
+            let mut truth = Truth::new(&nominal, &[Hidden::Vignetting { strength: 0.3, falloff }]);
+            truth.lens.center_px = DVec2::new(59.5, 44.5);
+            assert!((vignette(&truth, DVec2::ZERO, [120, 90]) - 0.7).abs() < 1e-12);
+            assert!((vignette(&truth, truth.lens.center_px, [120, 90]) - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_black_level_keeps_full_scale() {
+        let film = film(&[Hidden::BlackLevel { offset: 0.02 }]);
+        assert_eq!(film.encode(1.0), 255);
+        assert_eq!(film.encode(0.0), (0.02_f64.powf(1.0 / 2.2) * 255.0).round() as u8);
+    }
+}

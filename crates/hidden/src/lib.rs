@@ -1,0 +1,45 @@
+//! Recordings in which the camera, the hall or the odometry does something that the files beside the pictures know
+//! nothing of: what a search for missing effects is tested on.
+//!
+//! The pictures are made by casting rays, nine or more a pixel, and share no code with the models that are fitted:
+//! lens, rotations, field pattern, blur and noise are written here once more. Of the core only plain numbers and the
+//! writer of sequence folders are used.
+//!
+//! ```no_run
+//! use reality_sim_hidden::{Hidden, Random, Recipe};
+//! let effect = Hidden::of("mount_pitch", 3.0, &mut Random::new(7))?;
+//! let recipe = Recipe { effects: vec![effect], ..Recipe::new(7) };
+//! let sequence = recipe.record("some/folder".as_ref())?;
+//! # Ok::<(), reality_sim_hidden::Error>(())
+//! ```
+
+mod blur;
+mod effect;
+mod error;
+mod exposure;
+mod film;
+mod jpeg;
+mod lens;
+mod log;
+mod nominal;
+mod pattern;
+mod random;
+mod rays;
+mod recipe;
+mod rotation;
+mod scene;
+mod solid;
+mod texture;
+mod trajectory;
+mod truth;
+
+#[cfg(test)]
+mod tests;
+
+pub use self::{
+    effect::{Course, FOREIGN, Falloff, Hidden, LIBRARY, Light},
+    error::Error,
+    random::Random,
+    recipe::Recipe,
+    trajectory::Walk,
+};

@@ -1,0 +1,125 @@
+//! What the files beside the pictures say: lens, mount, colours and field before anything is hidden.
+
+use glam::DVec2;
+use reality_sim_core::{
+    camera::{Camera, Distortion, OpencvFisheye},
+    field::FieldDimensions,
+    sequence::{CameraSetup, Photometry},
+};
+
+use crate::{error::Error, lens::Fisheye, random::Random};
+
+/// A lens like those of humanoid robots, at 640 pixels of width.
+const FOCAL_PX: f64 = 211.8;
+const WIDTH_PX: f64 = 640.0;
+const K: [f64; 4] = [-0.0663, 0.00994, -0.001_103, 0.000_054_6];
+
+/// The camera and the field as everyone believes they are.
+#[derive(Debug, Clone)]
+pub struct Nominal {
+    /// The lens.
+    pub lens: Fisheye,
+    /// Width and height of the picture, pixels.
+    pub size: [u32; 2],
+    /// Of the projection centre above the carpet, metres.
+    pub height_m: f64,
+    /// Colours, gamma, noise, blur.
+    pub light: Light,
+    /// The field.
+    pub field: FieldDimensions,
+}
+
+/// How light becomes pixel values; linear values have 1 as full scale.
+#[derive(Debug, Clone, Copy)]
+pub struct Light {
+    /// Linear colour of the lines.
+    pub line_rgb: [f64; 3],
+    /// Linear colour of the carpet, its mean.
+    pub carpet_rgb: [f64; 3],
+    /// A pixel value is full scale times the linear value to the power of 1 / gamma.
+    pub gamma: f64,
+    /// Variance of the noise for each unit of the linear value.
+    pub noise_shot: f64,
+    /// Standard deviation of the noise without light.
+    pub noise_read: f64,
+    /// Standard deviation of the Gaussian blur beside the pixel's own aperture, pixels.
+    pub psf_sigma_px: f64,
+}
+
+impl Nominal {
+    /// Drawn from the seed around the numbers of one robot.
+    pub fn new(seed: u64, size: [u32; 2]) -> Self {
+        let random = &mut Random::stream(seed, "nominal", 0);
+        let [width, height] = size.map(f64::from);
+        let scale = width / WIDTH_PX;
+        let bend = random.between(0.93, 1.07);
+        let center = DVec2::new(width - 1.0, height - 1.0) / 2.0;
+        let lens = Fisheye {
+            focal_px: rounded(FOCAL_PX * scale * random.between(0.96, 1.04), 1e6),
+            center_px: (center + scale * DVec2::new(random.between(-3.0, 3.0), random.between(-3.0, 3.0)))
+                .map(|value| rounded(value, 1e3)),
+            k: K.map(|k| rounded(k * bend, 1e9)),
+        };
+        let mut near = |value: f64| rounded(value * random.between(0.95, 1.05), 1e4);
+        let light = Light {
+            line_rgb: [near(0.65), near(0.665), near(0.648)],
+            carpet_rgb: [near(0.041), near(0.144), near(0.051)],
+            gamma: 2.2,
+            noise_shot: 0.0015,
+            noise_read: 0.004,
+            psf_sigma_px: 0.5,
+        };
+        let height_m = near(0.52);
+        Self { lens, size, height_m, light, field: kid_size_field() }
+    }
+
+    /// The content of `camera.toml`.
+    pub fn setup(&self) -> Result<CameraSetup, Error> {
+        let Fisheye { focal_px, center_px, k } = self.lens;
+        let intrinsics = [focal_px, focal_px, center_px.x, center_px.y];
+        let lens = Distortion::OpencvFisheye(OpencvFisheye { k });
+        let camera = Camera::new(self.size, intrinsics, lens).map_err(|_| Error::Recipe {
+            name: "size",
+            value: f64::from(self.size[0]),
+            rule: "a number of pixels that a camera can have",
+        })?;
+        let light = &self.light;
+        let photometry = Photometry {
+            gamma: light.gamma,
+            line_linear_rgb: Some(light.line_rgb),
+            carpet_linear_rgb: Some(light.carpet_rgb),
+            black_level: Some(0.0),
+            noise_shot: Some(light.noise_shot),
+            noise_read: Some(light.noise_read),
+            psf_sigma_px: Some(light.psf_sigma_px),
+        };
+        Ok(CameraSetup { camera, mount_height_m: self.height_m, photometry: Some(photometry) })
+    }
+}
+
+/// To a multiple of 1 / `per_unit`: files of calibrations have few digits.
+pub fn rounded(value: f64, per_unit: f64) -> f64 {
+    (value * per_unit).round() / per_unit
+}
+
+/// The field of 6 × 4 m of the Humanoid League of 2010.
+pub fn kid_size_field() -> FieldDimensions {
+    FieldDimensions {
+        name: "humanoid-kidsize-2010".to_owned(),
+        length_m: 6.0,
+        width_m: 4.0,
+        line_width_m: 0.05,
+        border_strip_m: 0.7,
+        goal_area_length_m: 0.6,
+        goal_area_width_m: 2.2,
+        penalty_mark_distance_m: 1.8,
+        center_circle_diameter_m: 1.2,
+        goal_width_m: 1.5,
+        goal_height_m: 0.8,
+        goal_post_diameter_m: 0.1,
+        penalty_area_length_m: None,
+        penalty_area_width_m: None,
+        goal_srgb_positive_x: None,
+        goal_srgb_negative_x: None,
+    }
+}

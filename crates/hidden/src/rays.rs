@@ -1,0 +1,116 @@
+//! The rays of a camera, several a pixel, computed once for a recording.
+
+use glam::{DVec2, DVec3, Vec3};
+use rayon::prelude::*;
+
+use crate::truth::Truth;
+
+/// Rays along each side of a pixel.
+pub const PER_PIXEL: usize = 3;
+
+/// Pixels that share one cone for what they may see.
+pub const CONE_PX: usize = 8;
+
+/// The rays of the colours that the lens treats alike.
+pub struct Rays {
+    /// Red is 0, green 1, blue 2.
+    pub channels: Vec<usize>,
+    /// Unit directions in the camera's axes, row by row; zero where the lens sees nothing.
+    pub directions: Vec<Vec3>,
+    /// Of each row of pixels, `cones_per_row` of them.
+    pub cones: Vec<Cone>,
+}
+
+/// What surrounds the rays of a few neighbouring pixels.
+#[derive(Debug, Clone, Copy)]
+pub struct Cone {
+    /// Unit vector in the camera's axes; zero where there is no ray.
+    pub axis: Vec3,
+    /// Largest angle of a ray from the axis, radians.
+    pub half_angle_rad: f32,
+}
+
+/// The size of a picture of rays: pixels with a margin that blur takes its light from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Frame {
+    /// Of the picture without margin, pixels.
+    pub size: [usize; 2],
+    /// On each side, pixels.
+    pub margin: usize,
+}
+
+impl Frame {
+    /// Pixels in a row, margins included.
+    pub fn columns(&self) -> usize {
+        self.size[0] + 2 * self.margin
+    }
+
+    /// Rows of pixels, margins included.
+    pub fn rows(&self) -> usize {
+        self.size[1] + 2 * self.margin
+    }
+
+    /// Rays in a row.
+    pub fn rays_per_row(&self) -> usize {
+        self.columns() * PER_PIXEL
+    }
+
+    /// Cones in a row of pixels.
+    pub fn cones_per_row(&self) -> usize {
+        self.columns().div_ceil(CONE_PX)
+    }
+
+    /// The place in the picture of the ray with this index along a side, pixels.
+    fn place(&self, index: usize) -> f64 {
+        (index as f64 + 0.5) / PER_PIXEL as f64 - 0.5 - self.margin as f64
+    }
+}
+
+/// The rays of the true lens: one set where all colours take the same way, else one a colour.
+pub fn cast(truth: &Truth, frame: Frame) -> Vec<Rays> {
+    let alike = truth.magnification == [1.0; 3];
+    let sets = if alike { vec![vec![0, 1, 2]] } else { vec![vec![0], vec![1], vec![2]] };
+    sets.into_iter()
+        .map(|channels| {
+            let directions = directions(truth, frame, truth.magnification[channels[0]]);
+            Rays { cones: cones(&directions, frame), channels, directions }
+        })
+        .collect()
+}
+
+fn directions(truth: &Truth, frame: Frame, magnification: f64) -> Vec<Vec3> {
+    let max_angle_rad = truth.lens.max_angle_rad();
+    let width = frame.rays_per_row();
+    let mut directions = vec![Vec3::ZERO; width * frame.rows() * PER_PIXEL];
+    directions.par_chunks_mut(width).enumerate().for_each(|(row, rays)| {
+        for (column, ray) in rays.iter_mut().enumerate() {
+            let pixel = DVec2::new(frame.place(column), frame.place(row));
+            // Where a lens without dents and with one magnification would see the same.
+            let undented = pixel + truth.dents.iter().map(|dent| dent.at(pixel)).sum::<DVec2>();
+            let center = truth.lens.center_px;
+            let place = center + (undented - center) / magnification;
+            *ray = truth.lens.ray(place, max_angle_rad).map_or(Vec3::ZERO, DVec3::as_vec3);
+        }
+    });
+    directions
+}
+
+fn cones(directions: &[Vec3], frame: Frame) -> Vec<Cone> {
+    let width = frame.rays_per_row();
+    let rows = directions.chunks(width * PER_PIXEL);
+    rows.flat_map(|rows| {
+        (0..frame.cones_per_row()).map(move |cone| {
+            let from = cone * CONE_PX * PER_PIXEL;
+            let to = (from + CONE_PX * PER_PIXEL).min(width);
+            cone_of(rows.chunks(width).flat_map(|row| &row[from..to]))
+        })
+    })
+    .collect()
+}
+
+fn cone_of<'a>(rays: impl Iterator<Item = &'a Vec3> + Clone) -> Cone {
+    let axis = rays.clone().copied().sum::<Vec3>().normalize_or_zero();
+    let lit = rays.filter(|ray| **ray != Vec3::ZERO);
+    let half_angle_rad = lit.map(|ray| axis.angle_between(*ray)).fold(0.0, f32::max);
+    Cone { axis, half_angle_rad }
+}

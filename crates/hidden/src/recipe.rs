@@ -1,0 +1,131 @@
+//! A recording from a seed and the effects hidden in it.
+
+use std::{fs, path::Path};
+
+use glam::DVec2;
+use rayon::prelude::*;
+use reality_sim_core::sequence::Sequence;
+
+use crate::{
+    effect::Hidden,
+    error::Error,
+    exposure::Exposer,
+    film::Film,
+    jpeg, log,
+    nominal::Nominal,
+    random::Random,
+    scene::Scene,
+    trajectory::{Trajectory, Walk},
+    truth::Truth,
+};
+
+/// The camera stays this far inside the lines, metres.
+const INSIDE_M: f64 = 0.5;
+/// Longer recordings and larger pictures are a mistake.
+const MOST_FRAMES: usize = 100_000;
+const MOST_PIXELS: u32 = 8192;
+/// Effects shift the robot's clock and expose for less, seconds.
+const LONGEST_S: f64 = 0.5;
+
+/// What is recorded. Whatever is not hidden here is drawn from the seed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recipe {
+    /// Of the hall, the camera, the walk and all noise. The same recipe gives the same bytes.
+    pub seed: u64,
+    /// Pictures, five a second.
+    pub frames: usize,
+    /// Width and height of the pictures, pixels.
+    pub size: [u32; 2],
+    /// What the files beside the pictures know nothing of. Effects of one kind add up.
+    pub effects: Vec<Hidden>,
+    /// What the robot does.
+    pub walk: Walk,
+}
+
+impl Recipe {
+    /// 60 pictures of 640 × 480 pixels on a walk, with nothing hidden.
+    pub fn new(seed: u64) -> Self {
+        Self { seed, frames: 60, size: [640, 480], effects: Vec::new(), walk: Walk::Walking }
+    }
+
+    /// Writes a whole sequence folder, which is created where it is missing, and gives what it holds: `sequence.toml`,
+    /// `camera.toml`, `field.toml`, `frames.csv`, `groundtruth.tum` and the pictures.
+    pub fn record(&self, folder: &Path) -> Result<Sequence, Error> {
+        self.check()?;
+        let nominal = Nominal::new(self.seed, self.size);
+        let truth = Truth::new(&nominal, &self.effects);
+        let trajectory = self.trajectory(&nominal);
+        self.take_pictures(folder, &nominal, &truth, &trajectory)?;
+        let sequence = Sequence {
+            folder: folder.to_path_buf(),
+            files: Vec::new(),
+            name: format!("hidden-{}", self.seed),
+            setup: nominal.setup()?,
+            frames: log::frames(self.seed, self.frames, self.walk, &trajectory, &truth),
+            start: Some(log::start(&trajectory)),
+            groundtruth: log::references(self.seed, self.frames, &trajectory),
+            field: nominal.field,
+        };
+        sequence.write(folder)?;
+        Ok(Sequence::open(folder)?)
+    }
+
+    pub(crate) fn trajectory(&self, nominal: &Nominal) -> Trajectory {
+        let inside = DVec2::new(nominal.field.length_m, nominal.field.width_m) / 2.0 - INSIDE_M;
+        let duration_s = log::timestamp_s(self.frames);
+        Trajectory::new(self.seed, self.walk, duration_s, inside, nominal.height_m)
+    }
+
+    fn take_pictures(
+        &self,
+        folder: &Path,
+        nominal: &Nominal,
+        truth: &Truth,
+        trajectory: &Trajectory,
+    ) -> Result<(), Error> {
+        let images = folder.join("images");
+        fs::create_dir_all(&images).map_err(|source| Error::Unwritable { path: images.clone(), source })?;
+        let scene = Scene::new(self.seed, nominal, truth, trajectory);
+        let exposer = Exposer::new(truth, self.size, nominal.light.psf_sigma_px);
+        let span_s = [log::timestamp_s(0), log::timestamp_s(self.frames - 1)];
+        let film = Film::new(truth, nominal.light, self.size, span_s);
+        (0..self.frames).into_par_iter().try_for_each(|frame| {
+            let time_s = log::timestamp_s(frame);
+            let planes = exposer.expose(&scene, trajectory, time_s + truth.offset_s);
+            let noise = &mut Random::stream(self.seed, "noise", frame as u64);
+            let picture = film.develop(&planes, frame, time_s, noise);
+            let path = images.join(format!("{frame:06}.jpg"));
+            let bytes =
+                jpeg::encode(&picture).map_err(|source| Error::Unencodable { path: path.clone(), source })?;
+            fs::write(&path, bytes).map_err(|source| Error::Unwritable { path, source })
+        })
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let check = |name, value: f64, holds: bool, rule| {
+            if holds { Ok(()) } else { Err(Error::Recipe { name, value, rule }) }
+        };
+        let frames = (1..=MOST_FRAMES).contains(&self.frames);
+        check("frames", self.frames as f64, frames, "from 1 to 100000")?;
+        for side in self.size {
+            check("size", side.into(), (16..=MOST_PIXELS).contains(&side), "from 16 to 8192 pixels")?;
+        }
+        for effect in &self.effects {
+            let (name, value, low, high, rule) = match *effect {
+                Hidden::Defocus { sigma_px } => ("defocus", sigma_px, 0.0, 50.0, "from 0 to 50 pixels"),
+                Hidden::MotionBlur { exposure_s } => {
+                    ("motion_blur", exposure_s, 0.0, LONGEST_S, "from 0 to 0.5 seconds")
+                }
+                Hidden::RollingShutter { readout_s } => {
+                    ("rolling_shutter", readout_s, -LONGEST_S, LONGEST_S, "within 0.5 seconds")
+                }
+                Hidden::TimeOffset { offset_s } => {
+                    ("time_offset", offset_s, -LONGEST_S, LONGEST_S, "within 0.5 seconds")
+                }
+                _ => continue,
+            };
+            check(name, value, (low..=high).contains(&value), rule)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,216 @@
+//! What is really the case: the nominal numbers with the hidden effects.
+
+use glam::DVec2;
+use reality_sim_core::field::FieldDimensions;
+
+use crate::{
+    effect::{Course, Falloff, Hidden, Light},
+    lens::Fisheye,
+    nominal::Nominal,
+    pattern::Pattern,
+};
+
+/// The camera, the hall and the odometry as they are. Effects of one kind add up.
+#[derive(Debug, Clone)]
+pub struct Truth {
+    /// The lens for green light.
+    pub lens: Fisheye,
+    /// Magnification of red, green, blue.
+    pub magnification: [f64; 3],
+    /// Displacements in parts of the picture.
+    pub dents: Vec<Patch>,
+    /// In the camera's own frame, radians.
+    pub mount_pitch_rad: f64,
+    /// About the optical axis, after the pitch, radians.
+    pub mount_roll_rad: f64,
+    /// Of the camera above where it is believed to be, metres.
+    pub raised_m: f64,
+    /// From the first row to the last, seconds.
+    pub readout_s: f64,
+    /// Of the robot's clock, seconds.
+    pub offset_s: f64,
+    /// Seconds.
+    pub exposure_s: f64,
+    /// Of the disc, pixels; squares add up.
+    pub defocus_px: f64,
+    /// Losses towards the corners.
+    pub vignettes: Vec<(f64, Falloff)>,
+    /// Dark patches: the shift's first number is the opacity.
+    pub dirt: Vec<Patch>,
+    /// Amplitude, bands over the height, bands from picture to picture.
+    pub flicker: Vec<[f64; 3]>,
+    /// Of red, green, blue.
+    pub gains: [f64; 3],
+    /// Courses of the exposure, stops.
+    pub drifts: Vec<(f64, Course)>,
+    /// Added to the nominal gamma.
+    pub gamma_change: f64,
+    /// Linear.
+    pub black_level: f64,
+    /// Standard deviation against the nominal one.
+    pub noise: f64,
+    /// How the hall is lit.
+    pub lights: Vec<(f64, Light)>,
+    /// Per metre.
+    pub extinction_per_m: f64,
+    /// Amplitude, waves per metre in x and y, phase.
+    pub waves: Vec<[f64; 4]>,
+    /// Field and its paint.
+    pub field: FieldDimensions,
+    /// The paint.
+    pub pattern: Pattern,
+    /// People on the field.
+    pub people: u32,
+    /// Of odometry's distances.
+    pub odometry_scale: f64,
+    /// Of odometry's heading, radians per second.
+    pub odometry_drift_rad_per_s: f64,
+    /// Of odometry to the left, metres per metre forward.
+    pub odometry_slip: f64,
+}
+
+/// A Gaussian part of the picture.
+#[derive(Debug, Clone, Copy)]
+pub struct Patch {
+    /// Pixels.
+    pub center_px: DVec2,
+    /// Standard deviation, pixels.
+    pub sigma_px: f64,
+    /// What is largest at its centre.
+    pub amplitude: DVec2,
+}
+
+impl Patch {
+    /// What it is at a pixel.
+    pub fn at(&self, pixel: DVec2) -> DVec2 {
+        let square = pixel.distance_squared(self.center_px) / (self.sigma_px * self.sigma_px);
+        self.amplitude * (-0.5 * square).exp()
+    }
+}
+
+impl Truth {
+    /// The nominal numbers with these effects.
+    pub fn new(nominal: &Nominal, effects: &[Hidden]) -> Self {
+        let mut truth = Self::nothing_hidden(nominal);
+        let size = nominal.size.map(f64::from).into();
+        for effect in effects {
+            truth.hide_in_camera(effect, size);
+            truth.hide_in_light(effect, size);
+            truth.hide_in_hall(effect);
+            truth.hide_in_odometry(effect);
+        }
+        truth.pattern.resize(&truth.field);
+        truth
+    }
+
+    fn nothing_hidden(nominal: &Nominal) -> Self {
+        Self {
+            lens: nominal.lens,
+            magnification: [1.0; 3],
+            dents: Vec::new(),
+            mount_pitch_rad: 0.0,
+            mount_roll_rad: 0.0,
+            raised_m: 0.0,
+            readout_s: 0.0,
+            offset_s: 0.0,
+            exposure_s: 0.0,
+            defocus_px: 0.0,
+            vignettes: Vec::new(),
+            dirt: Vec::new(),
+            flicker: Vec::new(),
+            gains: [1.0; 3],
+            drifts: Vec::new(),
+            gamma_change: 0.0,
+            black_level: 0.0,
+            noise: 1.0,
+            lights: Vec::new(),
+            extinction_per_m: 0.0,
+            waves: Vec::new(),
+            field: nominal.field.clone(),
+            pattern: Pattern::new(&nominal.field),
+            people: 0,
+            odometry_scale: 1.0,
+            odometry_drift_rad_per_s: 0.0,
+            odometry_slip: 0.0,
+        }
+    }
+
+    /// Lens, mount and time.
+    fn hide_in_camera(&mut self, effect: &Hidden, size_px: DVec2) {
+        match *effect {
+            Hidden::RadialDistortion { k } => {
+                self.lens.k.iter_mut().zip(k).for_each(|(nominal, change)| *nominal += change);
+            }
+            Hidden::PrincipalPoint { dx_px, dy_px } => self.lens.center_px += DVec2::new(dx_px, dy_px),
+            Hidden::FocalLength { scale } => self.lens.focal_px *= 1.0 + scale,
+            Hidden::MountPitch { angle_rad } => self.mount_pitch_rad += angle_rad,
+            Hidden::MountRoll { angle_rad } => self.mount_roll_rad += angle_rad,
+            Hidden::CameraHeight { height_m } => self.raised_m += height_m,
+            Hidden::RollingShutter { readout_s } => self.readout_s += readout_s,
+            Hidden::TimeOffset { offset_s } => self.offset_s += offset_s,
+            Hidden::MotionBlur { exposure_s } => self.exposure_s += exposure_s,
+            Hidden::Defocus { sigma_px } => self.defocus_px = self.defocus_px.hypot(sigma_px),
+            Hidden::ChromaticAberration { red_scale, blue_scale } => {
+                self.magnification[0] *= 1.0 + red_scale;
+                self.magnification[2] *= 1.0 + blue_scale;
+            }
+            Hidden::LensDent { shift, center, sigma } => self.dents.push(Patch {
+                center_px: center * size_px,
+                sigma_px: sigma * size_px.x,
+                amplitude: shift * size_px.x,
+            }),
+            _ => {}
+        }
+    }
+
+    /// From the light behind the lens to pixel values.
+    fn hide_in_light(&mut self, effect: &Hidden, size_px: DVec2) {
+        match *effect {
+            Hidden::Vignetting { strength, falloff } => self.vignettes.push((strength, falloff)),
+            Hidden::ToneCurve { gamma_change } => self.gamma_change += gamma_change,
+            Hidden::BlackLevel { offset } => self.black_level += offset,
+            Hidden::WhiteBalance { red_gain, blue_gain } => {
+                self.gains[0] *= 1.0 + red_gain;
+                self.gains[2] *= 1.0 + blue_gain;
+            }
+            Hidden::ExposureDrift { amplitude_ev, course } => self.drifts.push((amplitude_ev, course)),
+            Hidden::SensorNoise { factor } => self.noise *= 1.0 + factor,
+            Hidden::FlickerBands { amplitude, bands, roll } => self.flicker.push([amplitude, bands, roll]),
+            Hidden::LensDirt { opacity, center, sigma } => self.dirt.push(Patch {
+                center_px: center * size_px,
+                sigma_px: sigma * size_px.x,
+                amplitude: DVec2::new(opacity, 0.0),
+            }),
+            _ => {}
+        }
+    }
+
+    /// Field, light and air.
+    fn hide_in_hall(&mut self, effect: &Hidden) {
+        match *effect {
+            Hidden::UnevenIllumination { strength, shape } => self.lights.push((strength, shape)),
+            Hidden::FieldDimensions { length_m, width_m } => {
+                self.field.length_m += length_m;
+                self.field.width_m += width_m;
+            }
+            Hidden::MissingLine { positive_x } => self.pattern.goal_areas[usize::from(positive_x)] = false,
+            Hidden::ShiftedLine { shift_m } => self.pattern.halfway_shift_m += shift_m as f32,
+            Hidden::MovingPeople { count } => self.people = (self.people + count).min(8),
+            Hidden::Fog { extinction_per_m } => self.extinction_per_m += extinction_per_m,
+            Hidden::WavyGround { amplitude_m, wavelength_m, angles_rad: [direction_rad, phase_rad] } => {
+                let waves = DVec2::from_angle(direction_rad) * std::f64::consts::TAU / wavelength_m;
+                self.waves.push([amplitude_m, waves.x, waves.y, phase_rad]);
+            }
+            _ => {}
+        }
+    }
+
+    fn hide_in_odometry(&mut self, effect: &Hidden) {
+        match *effect {
+            Hidden::OdometryScale { scale } => self.odometry_scale *= 1.0 + scale,
+            Hidden::OdometryYawDrift { rate_rad_per_s } => self.odometry_drift_rad_per_s += rate_rad_per_s,
+            Hidden::OdometryLateralSlip { slip_m_per_m } => self.odometry_slip += slip_m_per_m,
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,294 @@
+//! The simulated camera: its stages one after the other, each with the effects that change it.
+
+use glam::{DVec2, DVec3};
+use reality_sim_core::{
+    camera::Camera,
+    field::FieldDimensions,
+    pose::{CameraPose, Motion2},
+    sequence::{CameraSetup, Photometry},
+};
+
+use crate::{
+    effect::{Noise, Stage, Tone},
+    effects::{BLACK_LEVEL, library},
+    frame::Frame,
+    model::{Model, ModelError, ModelFault, Used},
+    trajectory::Trajectory,
+};
+
+/// Gamma of a camera whose photometry is not known.
+const DEFAULT_GAMMA: f64 = 2.2;
+
+/// One camera with its effects: from a point of the world to a pixel, from light to a pixel's value, from a motion to
+/// what the odometry says of it. Effects of one stage are applied in the order of [`library`].
+#[derive(Debug, Clone)]
+pub struct Chain {
+    model: Model,
+    /// Of this stage, as of the others, those that are not neutral.
+    world: Vec<Used>,
+    motion: Vec<Used>,
+    mount: Vec<Used>,
+    lens: Vec<Used>,
+    exposure: Vec<Used>,
+    /// First the nominal black level.
+    sensor: Vec<Used>,
+    odometry: Vec<Used>,
+    field: FieldDimensions,
+    camera: Camera,
+    clock_s: f64,
+    exposure_s: f64,
+    /// Whether rows are exposed at different times.
+    has_row_times: bool,
+    magnification: [f64; 3],
+    psf_variance_px2: f64,
+    noise: Noise,
+    tone: Tone,
+}
+
+/// Variance of a Gaussian kernel sampled at the pixels' centres: below the square of a sigma under half a pixel, which
+/// the pixels' neighbours hardly see.
+fn sampled_variance_px2(sigma_px: f64) -> f64 {
+    if sigma_px <= 0.0 {
+        return 0.0;
+    }
+    let reach = (8.0 * sigma_px).ceil() as i32 + 1;
+    let weight = |place: i32| (-0.5 * (f64::from(place) / sigma_px).powi(2)).exp();
+    let (sum, squares) = (-reach..=reach)
+        .map(|place| (weight(place), f64::from(place).powi(2)))
+        .fold((0.0, 0.0), |(sum, squares), (weight, square)| (sum + weight, squares + weight * square));
+    squares / sum
+}
+
+impl Chain {
+    /// The chain of a nominal camera, a nominal field and what the model changes of them. Where the camera's photometry
+    /// is not known, gamma is 2.2 and there is no black level, noise or blur. Fails where a value is not finite or
+    /// the effects leave no camera.
+    pub fn new(setup: &CameraSetup, field: &FieldDimensions, model: &Model) -> Result<Self, ModelError> {
+        check_finite(model)?;
+        let mut chain = Self::nominal(setup, field);
+        let [world, motion, mount, lens, exposure, sensor, encoding, odometry] =
+            Stage::ALL.map(|stage| effects_of(model, stage));
+        chain.field = changed_field(&world, field)?;
+        chain.clock_s = motion.iter().map(|used| used.effect.clock_s(&used.values)).sum();
+        chain.exposure_s = motion.iter().map(|used| used.effect.exposure_s(&used.values)).sum();
+        chain.has_row_times = delay_s(&motion, 0.0) != delay_s(&motion, 1.0);
+        chain.camera = changed_camera(&lens, &setup.camera)?;
+        chain.magnification = product(&lens, |used| used.effect.magnification(&used.values));
+        chain.noise = sensor.iter().fold(chain.noise, |noise, used| used.effect.noise(&used.values, noise));
+        chain.sensor.extend(sensor);
+        chain.tone = changed_tone(&encoding, chain.tone)?;
+        Ok(Self { model: model.clone(), world, motion, mount, lens, exposure, odometry, ..chain })
+    }
+
+    /// The chain of a camera and a field as they are written down, without effects.
+    pub fn nominal(setup: &CameraSetup, field: &FieldDimensions) -> Self {
+        let photometry = setup.photometry.as_ref();
+        let value = |of: fn(&Photometry) -> Option<f64>| photometry.and_then(of).unwrap_or(0.0);
+        let black_level = Used { effect: BLACK_LEVEL, values: vec![value(|p| p.black_level)] };
+        Self {
+            model: Model::default(),
+            world: Vec::new(),
+            motion: Vec::new(),
+            mount: Vec::new(),
+            lens: Vec::new(),
+            exposure: Vec::new(),
+            sensor: vec![black_level],
+            odometry: Vec::new(),
+            field: field.clone(),
+            camera: setup.camera.clone(),
+            clock_s: 0.0,
+            exposure_s: 0.0,
+            has_row_times: false,
+            magnification: [1.0; 3],
+            psf_variance_px2: sampled_variance_px2(value(|p| p.psf_sigma_px)),
+            noise: Noise { shot: value(|p| p.noise_shot), read_variance: value(|p| p.noise_read).powi(2) },
+            tone: Tone { gamma: photometry.map_or(DEFAULT_GAMMA, |p| p.gamma), contrast: 0.0 },
+        }
+    }
+
+    /// The effects.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The field as it is.
+    pub fn field(&self) -> &FieldDimensions {
+        &self.field
+    }
+
+    /// The camera with what effects change of its lens.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// How long after the time of the reference poses images and odometry are taken, seconds.
+    pub fn clock_s(&self) -> f64 {
+        self.clock_s
+    }
+
+    /// How long each row is exposed, seconds.
+    pub fn exposure_s(&self) -> f64 {
+        self.exposure_s
+    }
+
+    /// Whether the rows of one picture are exposed at different times.
+    pub fn has_row_times(&self) -> bool {
+        self.has_row_times
+    }
+
+    /// By how much red, green and blue are magnified about the principal point; 1 is not at all.
+    pub fn magnification(&self) -> [f64; 3] {
+        self.magnification
+    }
+
+    /// Whether red, green and blue are seen at different places.
+    pub fn splits_colors(&self) -> bool {
+        self.magnification.iter().any(|magnification| *magnification != self.magnification[1])
+    }
+
+    /// The camera's true pose in the middle of a row's exposure, of the frame with this time stamp. `trajectory` holds
+    /// the reference poses; rows run from 0, the top one, to 1.
+    pub fn pose(&self, trajectory: &Trajectory, time_s: f64, row: f64) -> CameraPose {
+        self.mounted(trajectory.at(self.exposure_middle_s(time_s, row)))
+    }
+
+    /// When the middle of a row's exposure is, on the clock of the reference poses, seconds.
+    pub fn exposure_middle_s(&self, time_s: f64, row: f64) -> f64 {
+        time_s + self.clock_s + delay_s(&self.motion, row)
+    }
+
+    /// The camera's true pose, from the reference one.
+    pub fn mounted(&self, pose: CameraPose) -> CameraPose {
+        self.mount.iter().fold(pose, |pose, used| used.effect.mount(&used.values, pose))
+    }
+
+    /// The picture with this time stamp, for many points.
+    pub fn frame<'a>(&'a self, trajectory: &'a Trajectory, time_s: f64) -> Frame<'a> {
+        Frame::new(self, trajectory, time_s)
+    }
+
+    /// Where a point of the world, metres, is seen in red (0), green (1) or blue (2) of the frame with this time stamp:
+    /// [`Frame::project`] for one point.
+    pub fn project(
+        &self,
+        trajectory: &Trajectory,
+        time_s: f64,
+        point_in_world: DVec3,
+        channel: usize,
+    ) -> Option<DVec2> {
+        self.frame(trajectory, time_s).project(point_in_world, channel)
+    }
+
+    /// Factor of red, green and blue on the light of a point of the scene: the light on the ground at `ground`, metres,
+    /// where the point lies there, the lens's falloff at `pixel`, and the gain of the frame with this time stamp.
+    pub fn light(&self, time_s: f64, pixel: DVec2, ground: Option<DVec2>) -> [f64; 3] {
+        let light = ground.map_or(1.0, |point| self.light_on_ground(point)) * self.falloff(pixel);
+        self.gain(time_s).map(|gain| light * gain)
+    }
+
+    /// Factor of the light on the ground at a point of it, metres.
+    pub fn light_on_ground(&self, point_in_world: DVec2) -> f64 {
+        let light = |used: &Used| used.effect.light(&used.values, point_in_world, &self.field);
+        self.world.iter().map(light).product()
+    }
+
+    /// The share of the light that reaches the sensor at a pixel.
+    pub fn falloff(&self, pixel: DVec2) -> f64 {
+        let radius = self.radius(pixel);
+        self.lens.iter().map(|used| used.effect.falloff(&used.values, radius)).product()
+    }
+
+    /// Factor of red, green and blue in the frame with this time stamp.
+    pub fn gain(&self, time_s: f64) -> [f64; 3] {
+        product(&self.exposure, |used| used.effect.gain(&used.values, time_s))
+    }
+
+    /// Variance, along each axis, of the blur by lens and sensor at a pixel, pixels²: the nominal one and that of the
+    /// effects. The pixel's own extent (1/12) and the blur by motion are not in it.
+    pub fn psf_variance_px2(&self, pixel: DVec2) -> f64 {
+        let radius = self.radius(pixel);
+        let added = |used: &Used| used.effect.blur_variance_px2(&used.values, radius);
+        self.psf_variance_px2 + self.lens.iter().map(added).sum::<f64>()
+    }
+
+    /// The sensor's linear output for a linear value, before noise.
+    pub fn respond(&self, linear: f64) -> f64 {
+        self.sensor.iter().fold(linear, |value, used| used.effect.respond(&used.values, value))
+    }
+
+    /// Noise of the sensor's linear output.
+    pub fn noise(&self) -> Noise {
+        self.noise
+    }
+
+    /// From linear output to pixel values.
+    pub(crate) fn tone(&self) -> Tone {
+        self.tone
+    }
+
+    /// The pixel value, 0 to 1, for the sensor's linear output.
+    pub fn encode(&self, linear: f64) -> f64 {
+        self.tone.encode(linear)
+    }
+
+    /// What the odometry reports of a true motion of the camera that took `duration_s` seconds. The robot's clock is
+    /// late: for two time stamps, `true_motion` is between the poses [`Chain::clock_s`] after them.
+    pub fn odometry(&self, true_motion: Motion2, duration_s: f64) -> Motion2 {
+        let reported = |motion, used: &Used| used.effect.odometry(&used.values, motion, duration_s);
+        self.odometry.iter().fold(true_motion, reported)
+    }
+
+    /// Distance from the principal point in halves of the picture's diagonal.
+    fn radius(&self, pixel: DVec2) -> f64 {
+        let diagonal_px = f64::from(self.camera.width - 1).hypot(f64::from(self.camera.height - 1));
+        2.0 * pixel.distance(DVec2::new(self.camera.cx, self.camera.cy)) / diagonal_px.max(1.0)
+    }
+}
+
+fn check_finite(model: &Model) -> Result<(), ModelError> {
+    for Used { effect, values } in &model.effects {
+        for (parameter, value) in effect.parameters().iter().zip(values) {
+            if !value.is_finite() {
+                return Err(ModelFault::NotFinite { id: effect.id(), key: parameter.name }.into());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Those of a stage that are not neutral, in the library's order.
+fn effects_of(model: &Model, stage: Stage) -> Vec<Used> {
+    let of_stage = library().iter().filter(|effect| effect.stage() == stage);
+    of_stage
+        .filter_map(|effect| model.effects.iter().find(|used| used.effect.id() == effect.id()))
+        .filter(|used| !used.is_neutral())
+        .cloned()
+        .collect()
+}
+
+fn changed_field(world: &[Used], field: &FieldDimensions) -> Result<FieldDimensions, ModelFault> {
+    let field = world.iter().fold(field.clone(), |field, used| used.effect.field(&used.values, field));
+    field.validate().map_err(ModelFault::Field)?;
+    Ok(field)
+}
+
+fn changed_camera(lens: &[Used], camera: &Camera) -> Result<Camera, ModelFault> {
+    lens.iter().try_fold(camera.clone(), |camera, used| {
+        let fault = |error| ModelFault::Camera { id: used.effect.id(), error };
+        used.effect.lens(&used.values, camera).map_err(fault)
+    })
+}
+
+fn changed_tone(encoding: &[Used], nominal: Tone) -> Result<Tone, ModelFault> {
+    let tone = encoding.iter().fold(nominal, |tone, used| used.effect.tone(&used.values, tone));
+    if tone.gamma > 0.0 { Ok(tone) } else { Err(ModelFault::Gamma { gamma: tone.gamma }) }
+}
+
+fn delay_s(motion: &[Used], row: f64) -> f64 {
+    motion.iter().map(|used| used.effect.delay_s(&used.values, row)).sum()
+}
+
+/// What several effects do to red, green and blue together.
+fn product(effects: &[Used], factors: impl Fn(&Used) -> [f64; 3]) -> [f64; 3] {
+    effects.iter().map(factors).fold([1.0; 3], |[r, g, b], [red, green, blue]| [r * red, g * green, b * blue])
+}

@@ -1,0 +1,67 @@
+//! The field is not as large as its rule book says.
+//!
+//! What is added to each dimension. Values that would leave no valid field are cut off.
+
+use reality_sim_core::field::FieldDimensions;
+
+use crate::effect::{About, Covariate, Effect, Parameter, Stage, values};
+
+/// Longer fields are a mistake, metres.
+const LARGEST_M: f64 = 200.0;
+/// A length that has to stay below another is at most this share of it.
+const ROOM: f64 = 1.0 - 1e-9;
+
+#[derive(Debug)]
+pub(super) struct FieldSize;
+
+const ABOUT: About = About {
+    id: "field_dimensions",
+    name: "the field is not as large as written down",
+    stage: Stage::World,
+    parameters: &[
+        Parameter::size("length_m", "m", [-1.0, 1.0], 0.005),
+        Parameter::size("width_m", "m", [-1.0, 1.0], 0.005),
+        Parameter::size("goal_area_length_m", "m", [-1.0, 1.0], 0.005),
+        Parameter::size("goal_area_width_m", "m", [-1.0, 1.0], 0.005),
+        Parameter::size("center_circle_diameter_m", "m", [-1.0, 1.0], 0.005),
+    ],
+    covariates: &[Covariate::FieldPosition],
+    because: "some lines lie beside where they should be, by the same distance on the ground from wherever they are seen",
+    recording_that_would_decide: "look at every line of the field, near ones above all, from several sides",
+};
+
+impl Effect for FieldSize {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn field(&self, p: &[f64], field: FieldDimensions) -> FieldDimensions {
+        let [length_m, width_m, area_length_m, area_width_m, circle_m] = values(p);
+        let length_m = (field.length_m + length_m).max(least_length_m(&field)).min(LARGEST_M);
+        let width_m = (field.width_m + width_m).max(least_width_m(&field)).min(LARGEST_M);
+        FieldDimensions {
+            length_m,
+            width_m,
+            goal_area_length_m: (field.goal_area_length_m + area_length_m).clamp(0.0, ROOM * length_m / 2.0),
+            goal_area_width_m: (field.goal_area_width_m + area_width_m).clamp(0.0, width_m),
+            center_circle_diameter_m: (field.center_circle_diameter_m + circle_m)
+                .clamp(0.0, length_m.min(width_m)),
+            ..field
+        }
+    }
+}
+
+/// What is marked along the field's length has to fit into its halves.
+fn least_length_m(field: &FieldDimensions) -> f64 {
+    let deepest_m = field.penalty_mark_distance_m.max(field.penalty_area_length_m.unwrap_or(0.0));
+    (2.0 * deepest_m / ROOM).max(least_side_m(field))
+}
+
+fn least_width_m(field: &FieldDimensions) -> f64 {
+    field.goal_width_m.max(field.penalty_area_width_m.unwrap_or(0.0)).max(least_side_m(field))
+}
+
+/// Lines are narrower than a tenth of the field.
+fn least_side_m(field: &FieldDimensions) -> f64 {
+    (10.0 * field.line_width_m / ROOM).max(0.5)
+}

@@ -1,0 +1,32 @@
+//! The lens magnifies more or less than its calibration says.
+
+use reality_sim_core::camera::{Camera, InvalidCamera};
+
+use super::with_intrinsics;
+use crate::effect::{About, Covariate, Effect, Parameter, Stage, values};
+
+#[derive(Debug)]
+pub(super) struct FocalLength;
+
+const ABOUT: About = About {
+    id: "focal_length",
+    name: "the picture is magnified more than calibrated",
+    stage: Stage::Lens,
+    parameters: &[Parameter::size("scale", "1", [-0.2, 0.2], 0.001)],
+    covariates: &[Covariate::Radius],
+    because: "lines are shifted away from the image centre in proportion to their distance from it",
+    recording_that_would_decide: "bring lines into every part of the picture, near and far ones",
+};
+
+impl Effect for FocalLength {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn lens(&self, p: &[f64], camera: Camera) -> Result<Camera, InvalidCamera> {
+        let [scale] = values(p);
+        let factor = 1.0 + scale;
+        let intrinsics = [factor * camera.fx, factor * camera.fy, camera.cx, camera.cy];
+        with_intrinsics(&camera, intrinsics, camera.distortion)
+    }
+}

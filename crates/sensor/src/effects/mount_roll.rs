@@ -1,0 +1,33 @@
+//! The camera is turned about its optical axis.
+//!
+//! The camera is turned about its own z axis after the nominal orientation: x turns towards y.
+
+use glam::DQuat;
+use reality_sim_core::pose::CameraPose;
+
+use super::turned;
+use crate::effect::{About, Covariate, Effect, Parameter, Stage, values};
+
+#[derive(Debug)]
+pub(super) struct MountRoll;
+
+const ABOUT: About = About {
+    id: "mount_roll",
+    name: "the camera is turned about its optical axis",
+    stage: Stage::Mount,
+    parameters: &[Parameter::size("roll_rad", "rad", [-0.15, 0.15], 0.0009)],
+    covariates: &[Covariate::Pixel, Covariate::Bearing],
+    because: "every picture is turned about its centre by the same angle",
+    recording_that_would_decide: "look at lines to the left and to the right, with the head lowered and raised",
+};
+
+impl Effect for MountRoll {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn mount(&self, p: &[f64], pose: CameraPose) -> CameraPose {
+        let [roll_rad] = values(p);
+        turned(pose, DQuat::from_rotation_z(roll_rad))
+    }
+}

@@ -1,0 +1,29 @@
+//! The robot's clock is not the clock of the reference poses.
+//!
+//! Images and odometry are taken this much after the time of the reference pose with the same time stamp.
+
+use crate::effect::{About, Covariate, Effect, Parameter, Stage, values};
+
+#[derive(Debug)]
+pub(super) struct TimeOffset;
+
+const ABOUT: About = About {
+    id: "time_offset",
+    name: "images and odometry are taken later than their time stamps say",
+    stage: Stage::Motion,
+    parameters: &[Parameter::size("offset_s", "s", [-0.15, 0.15], 0.002)],
+    covariates: &[Covariate::AngularRate, Covariate::Speed, Covariate::Frame],
+    because: "the whole picture is shifted in proportion to how fast the camera turns and moves, and the odometry with it",
+    recording_that_would_decide: "walk with quick turns of the head, with a reference pose for every picture",
+};
+
+impl Effect for TimeOffset {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn clock_s(&self, p: &[f64]) -> f64 {
+        let [offset_s] = values(p);
+        offset_s
+    }
+}

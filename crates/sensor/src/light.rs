@@ -1,0 +1,32 @@
+//! The light on the sensor: a picture in linear values, before it is recorded.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// Linear RGB of every pixel, row by row.
+#[derive(Debug, Clone)]
+pub(crate) struct Light {
+    width: usize,
+    pixels: Vec<Vec3>,
+}
+
+impl Light {
+    pub(crate) fn dark([width, height]: [u32; 2]) -> Self {
+        Self { width: width as usize, pixels: vec![Vec3::ZERO; width as usize * height as usize] }
+    }
+
+    pub(crate) fn rows(&self) -> impl IndexedParallelIterator<Item = &[Vec3]> {
+        self.pixels.par_chunks_exact(self.width)
+    }
+
+    pub(crate) fn rows_mut(&mut self) -> impl IndexedParallelIterator<Item = &mut [Vec3]> {
+        self.pixels.par_chunks_exact_mut(self.width)
+    }
+
+    /// The row nearest to the one asked for.
+    pub(crate) fn nearest_row(&self, v: isize) -> &[Vec3] {
+        let last = self.pixels.len() / self.width - 1;
+        let v = v.clamp(0, last as isize) as usize;
+        &self.pixels[v * self.width..(v + 1) * self.width]
+    }
+}

@@ -1,0 +1,39 @@
+//! From light to the sensor's linear output.
+
+use glam::Vec3;
+use reality_sim_core::filter::{Purpose, Stream};
+
+use crate::Chain;
+
+/// The sensor while one picture is taken.
+#[derive(Debug)]
+pub(crate) struct Sensor<'a> {
+    chain: &'a Chain,
+    gain: Vec3,
+    /// `None` where the picture is to have no noise.
+    noise: Option<Stream>,
+}
+
+impl<'a> Sensor<'a> {
+    /// Pictures of one seed and different times have different noise.
+    pub(crate) fn new(chain: &'a Chain, time_s: f64, noise_seed: Option<u64>) -> Self {
+        let gain = Vec3::from_array(chain.gain(time_s).map(|gain| gain as f32));
+        let bits = time_s.to_bits();
+        let frame = (bits ^ (bits >> 32)) as u32;
+        let noise = noise_seed.map(|seed| Stream::new(seed, Purpose::Picture, frame, 0));
+        Self { chain, gain, noise }
+    }
+
+    /// The output of a pixel, which is counted row by row.
+    pub(crate) fn record(&self, light: Vec3, pixel: u32) -> Vec3 {
+        let exposed = light * self.gain;
+        let output = Vec3::from_array(exposed.to_array().map(|v| self.chain.respond(f64::from(v)) as f32));
+        self.noise.map_or(output, |stream| output + self.noise(output, stream, pixel))
+    }
+
+    fn noise(&self, output: Vec3, stream: Stream, pixel: u32) -> Vec3 {
+        let [red, green, blue, ..] = stream.normals(pixel).map(|normal| normal as f32);
+        let variance = output.to_array().map(|v| self.chain.noise().variance(f64::from(v)) as f32);
+        Vec3::new(red, green, blue) * Vec3::from_array(variance.map(f32::sqrt))
+    }
+}

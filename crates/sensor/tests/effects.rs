@@ -1,0 +1,300 @@
+//! The library of effects, hook by hook, against closed forms.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+
+#[allow(dead_code, reason = "shared with other tests")]
+mod scene;
+
+use std::collections::BTreeSet;
+
+use glam::{DVec2, DVec3};
+use proptest::prelude::*;
+use reality_sim_core::{
+    camera::{Camera, Distortion},
+    pose::{CameraPose, Motion2},
+};
+use reality_sim_sensor::{Effect, Growth, Noise, Role, Stage, Tone, effect, library};
+
+/// What the hooks are asked about.
+#[derive(Debug, Clone)]
+struct Probe {
+    camera: Camera,
+    pose: CameraPose,
+    point: DVec2,
+    row: f64,
+    radius: f64,
+    time_s: f64,
+    linear: f64,
+    noise: Noise,
+    tone: Tone,
+    motion: Motion2,
+}
+
+fn any_probe() -> impl Strategy<Value = Probe> {
+    let camera = prop_oneof![
+        Just(scene::fisheye([64, 48], 22.0)),
+        Just(scene::pinhole([64, 48], 40.0)),
+        Just(scene::barrel([64, 48], 40.0).with_max_angle_rad(0.5).unwrap()),
+    ];
+    let pose = ([-3.0..3.0, -2.0..2.0, -3.1..3.1], [0.3..0.8, -1.5..1.5, -3.1..3.1])
+        .prop_map(|(planar, rest)| scene::pose(planar, rest));
+    let motion = proptest::array::uniform3(-0.5..0.5).prop_map(|[forward_m, left_m, turn_rad]| Motion2 {
+        forward_m,
+        left_m,
+        turn_rad,
+    });
+    (camera, pose, [-4.0..4.0, -3.0..3.0], proptest::array::uniform3(0.0..1.0f64), 0.0..1.0f64, motion)
+        .prop_map(|(camera, pose, point, [row, radius, linear], noise, motion)| Probe {
+            camera,
+            pose,
+            point: DVec2::from_array(point),
+            row,
+            radius,
+            time_s: 100.0 * noise,
+            linear,
+            noise: Noise { shot: 0.01 * noise, read_variance: 1e-4 * noise },
+            tone: Tone { gamma: 1.0 + noise, contrast: 0.1 * noise },
+            motion,
+        })
+}
+
+fn same_pose(a: CameraPose, b: CameraPose) -> bool {
+    let turned = a.rotation_world_from_camera() - b.rotation_world_from_camera();
+    a.position_in_world().distance(b.position_in_world()) < 1e-12
+        && turned.to_cols_array().iter().all(|value| value.abs() < 1e-9)
+}
+
+/// The stages whose hooks change what they are asked about.
+fn changed_stages(effect: &dyn Effect, p: &[f64], probe: &Probe) -> BTreeSet<Stage> {
+    let field = scene::field();
+    let hooks = [
+        (
+            Stage::World,
+            effect.field(p, field.clone()) == field && effect.light(p, probe.point, &field) == 1.0,
+        ),
+        (
+            Stage::Motion,
+            effect.delay_s(p, probe.row) == 0.0 && effect.exposure_s(p) == 0.0 && effect.clock_s(p) == 0.0,
+        ),
+        (Stage::Mount, same_pose(effect.mount(p, probe.pose), probe.pose)),
+        (
+            Stage::Lens,
+            effect.lens(p, probe.camera.clone()) == Ok(probe.camera.clone())
+                && effect.magnification(p) == [1.0; 3]
+                && effect.falloff(p, probe.radius) == 1.0
+                && effect.blur_variance_px2(p, probe.radius) == 0.0,
+        ),
+        (Stage::Exposure, effect.gain(p, probe.time_s) == [1.0; 3]),
+        (
+            Stage::Sensor,
+            effect.respond(p, probe.linear) == probe.linear && effect.noise(p, probe.noise) == probe.noise,
+        ),
+        (Stage::Encoding, effect.tone(p, probe.tone) == probe.tone),
+        (Stage::Odometry, effect.odometry(p, probe.motion, 0.2) == probe.motion),
+    ];
+    hooks.into_iter().filter(|(_, same)| !same).map(|(stage, _)| stage).collect()
+}
+
+proptest! {
+    #[test]
+    fn neutral_values_change_nothing(probe in any_probe()) {
+        for effect in library() {
+            let neutral: Vec<f64> = effect.parameters().iter().map(|parameter| parameter.neutral).collect();
+            for p in [neutral.as_slice(), &[]] {
+                prop_assert_eq!(changed_stages(*effect, p, &probe), BTreeSet::new(), "{}", effect.id());
+            }
+        }
+    }
+
+    #[test]
+    fn an_effect_changes_its_own_stage_and_no_other(probe in any_probe()) {
+        for effect in library() {
+            // Half of what is plausible, in the time of the recording.
+            let size = |range: [f64; 2]| if range[1].is_finite() { 0.5 * range[1] } else { probe.time_s };
+            let p: Vec<f64> = effect.parameters().iter().map(|parameter| size(parameter.range)).collect();
+            let changed = changed_stages(*effect, &p, &probe);
+            prop_assert_eq!(changed, BTreeSet::from([effect.stage()]), "{}", effect.id());
+        }
+    }
+}
+
+#[test]
+fn the_library_has_the_effects_that_reports_name() {
+    let expected = "radial_distortion principal_point focal_length mount_pitch mount_roll camera_height \
+        rolling_shutter time_offset motion_blur defocus chromatic_aberration vignetting tone_curve black_level \
+        white_balance exposure_drift uneven_illumination sensor_noise field_dimensions odometry_scale \
+        odometry_yaw_drift odometry_lateral_slip";
+    let known: BTreeSet<&str> = library().iter().map(|effect| effect.id()).collect();
+    assert_eq!(known, expected.split_whitespace().collect());
+    assert_eq!(library().len(), known.len());
+    assert!(known.iter().all(|id| effect(id).unwrap().id() == *id) && effect("fog").is_none());
+}
+
+#[test]
+fn every_effect_says_what_it_is_and_what_its_numbers_are() {
+    for effect in library() {
+        let id = effect.id();
+        for text in [effect.name(), effect.because(), effect.recording_that_would_decide()] {
+            assert!(
+                text.len() > 15 && !text.ends_with('.') && text.starts_with(char::is_lowercase),
+                "{id}: {text}"
+            );
+        }
+        assert!(!effect.covariates().is_empty());
+        let names: BTreeSet<&str> = effect.parameters().iter().map(|parameter| parameter.name).collect();
+        assert_eq!(names.len(), effect.parameters().len(), "{id}");
+        for parameter in effect.parameters() {
+            let [low, high] = parameter.range;
+            assert!(low <= parameter.neutral && parameter.neutral < high && parameter.step > 0.0, "{id}");
+            assert_eq!(parameter.role == Role::Size, parameter.material > 0.0, "{id}");
+            assert!(parameter.growth == Growth::Linear || low == parameter.neutral, "{id}");
+            assert!(parameter.step <= parameter.material || parameter.role != Role::Size, "{id}");
+        }
+        assert!(effect.parameters().iter().any(|parameter| parameter.role == Role::Size), "{id}");
+    }
+}
+
+fn known(id: &str) -> &'static dyn Effect {
+    effect(id).unwrap()
+}
+
+#[test]
+fn mount_effects_turn_and_lift_the_camera_in_its_own_axes() {
+    let pose = scene::pose([1.0, -0.5, 0.7], [0.5, 0.3, 0.2]);
+    let nominal = pose.rotation_world_from_camera();
+    let pitched = known("mount_pitch").mount(&[0.1], pose).rotation_world_from_camera();
+    let expected = nominal * DVec3::new(0.0, 0.1_f64.sin(), 0.1_f64.cos());
+    assert!(pitched.z_axis.distance(expected) < 1e-12 && pitched.x_axis.distance(nominal.x_axis) < 1e-12);
+    let rolled = known("mount_roll").mount(&[0.1], pose).rotation_world_from_camera();
+    let expected = nominal * DVec3::new(0.1_f64.cos(), 0.1_f64.sin(), 0.0);
+    assert!(rolled.x_axis.distance(expected) < 1e-12 && rolled.z_axis.distance(nominal.z_axis) < 1e-12);
+    assert_eq!(known("camera_height").mount(&[0.03], pose), CameraPose { height_m: 0.53, ..pose });
+}
+
+#[test]
+fn lens_effects_are_added_to_every_model() {
+    let p = [0.02, -0.01, 0.003, 0.0004];
+    let bent = |camera: Camera| known("radial_distortion").lens(&p, camera).unwrap();
+    let changed = |camera: &Camera| {
+        let before = camera.distortion.parameters();
+        let after = bent(camera.clone()).distortion.parameters();
+        after.iter().zip(before).map(|(after, before)| after - before).collect::<Vec<_>>()
+    };
+    let near =
+        |a: &[f64], b: &[f64]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12);
+    let (fisheye, barrel) = (scene::fisheye([64, 48], 22.0), scene::barrel([64, 48], 40.0));
+    assert!(near(&changed(&fisheye), &p));
+    assert!(near(&changed(&barrel), &[0.02, -0.01, 0.0, 0.0, 0.003]));
+    let from_pinhole = bent(scene::pinhole([64, 48], 40.0));
+    assert!(matches!(from_pinhole.distortion, Distortion::Opencv(_)));
+    assert!(near(&from_pinhole.distortion.parameters(), &[0.02, -0.01, 0.0, 0.0, 0.003]));
+    let longer = known("focal_length").lens(&[0.1], fisheye.clone()).unwrap();
+    assert!(near(&[longer.fx, longer.fy, longer.cx], &[1.1 * fisheye.fx, 1.1 * fisheye.fy, fisheye.cx]));
+    let beside = known("principal_point").lens(&[2.0, -3.0], fisheye.clone()).unwrap();
+    assert!(near(&[beside.cx, beside.cy, beside.fx], &[fisheye.cx + 2.0, fisheye.cy - 3.0, fisheye.fx]));
+}
+
+#[test]
+fn a_camera_keeps_the_limit_that_it_was_given_and_no_other() {
+    let limited = scene::fisheye([64, 48], 22.0).with_max_angle_rad(1.2).unwrap();
+    for (id, p) in [("radial_distortion", [0.01]), ("focal_length", [0.1]), ("principal_point", [1.0])] {
+        assert_eq!(known(id).lens(&p, limited.clone()).unwrap().max_angle_rad(), 1.2);
+    }
+    // A lens that bends back at its rim sees farther when it bends less.
+    let bent = |k1: f64, camera: &Camera| known("radial_distortion").lens(&[k1], camera.clone()).unwrap();
+    let barrel = bent(-0.2, &scene::barrel([64, 48], 40.0));
+    assert!(bent(0.1, &barrel).max_angle_rad() > barrel.max_angle_rad());
+    assert!(bent(-0.1, &barrel).max_angle_rad() < barrel.max_angle_rad());
+}
+
+#[test]
+fn times_are_those_of_rows_and_clock() {
+    let rolling = known("rolling_shutter");
+    for (row, delay_s) in [(0.0, -0.01), (0.5, 0.005), (1.0, 0.02)] {
+        assert!((rolling.delay_s(&[0.03, 0.005], row) - delay_s).abs() < 1e-15);
+    }
+    assert_eq!(known("time_offset").clock_s(&[0.04]), 0.04);
+    assert_eq!(known("motion_blur").exposure_s(&[0.02]), 0.02);
+}
+
+#[test]
+fn light_and_gain_follow_their_formulas() {
+    let vignetting = known("vignetting");
+    assert!((vignetting.falloff(&[0.4, 0.0], 1.0) - 0.6).abs() < 1e-15);
+    assert!((vignetting.falloff(&[0.4, 0.3], 0.5) - (1.0 - 0.1 + 0.3 * 0.25 * 0.75)).abs() < 1e-15);
+    assert_eq!(vignetting.falloff(&[0.95, 0.0], 1.2), 0.02);
+    assert_eq!(known("white_balance").gain(&[0.2, -0.1], 3.0), [1.2, 1.0, 0.9]);
+    assert_eq!(known("chromatic_aberration").magnification(&[0.002, -0.001]), [1.002, 1.0, 0.999]);
+    assert_eq!(known("defocus").blur_variance_px2(&[1.5], 0.3), 2.25);
+    let field = scene::field();
+    let corner = DVec2::new(field.length_m, field.width_m) / 2.0;
+    let uneven = known("uneven_illumination");
+    let p = [0.1, 0.2, -0.3, 0.05, 0.1, 0.2, 0.1, -0.2, 0.15];
+    assert!((uneven.light(&p, corner, &field).ln() - p.iter().sum::<f64>()).abs() < 1e-12);
+    let mirrored = -0.1 - 0.2 - 0.3 + 0.05 + 0.1 - 0.2 - 0.1 + 0.2 - 0.15;
+    assert!((uneven.light(&p, -corner, &field).ln() - mirrored).abs() < 1e-12);
+    assert!((uneven.light(&[1.5; 9], 5.0 * corner, &field).ln() - 3.0).abs() < 1e-12);
+}
+
+#[test]
+fn exposure_runs_in_straight_lines_between_its_knots() {
+    let drift = known("exposure_drift");
+    let ev = |knot: usize| (knot as f64 * 0.7).sin();
+    let p: Vec<f64> = [10.0, 21.0].into_iter().chain((0..12).map(ev)).collect();
+    let ev_at = |time_s: f64| drift.gain(&p, time_s)[1].log2();
+    for knot in 0..11 {
+        let time_s = 10.0 + knot as f64;
+        assert!((ev_at(time_s) - ev(knot)).abs() < 1e-12);
+        assert!((ev_at(time_s + 0.25) - (0.75 * ev(knot) + 0.25 * ev(knot + 1))).abs() < 1e-12);
+    }
+    assert!((ev_at(-5.0) - ev(0)).abs() < 1e-12 && (ev_at(50.0) - ev(11)).abs() < 1e-12);
+    assert!(drift.gain(&[0.0, 0.0, 1.0], 7.0) == [2.0; 3]);
+}
+
+#[test]
+fn sensor_and_encoding_follow_their_formulas() {
+    let respond = |v: f64| known("black_level").respond(&[0.1], v);
+    assert!((respond(0.0) - 0.1).abs() < 1e-15 && (respond(1.0) - 1.0).abs() < 1e-15);
+    let nominal = Noise { shot: 0.002, read_variance: 1e-5 };
+    let noisier = known("sensor_noise").noise(&[0.003, 2e-5], nominal);
+    assert!((noisier.variance(0.5) - (0.005 * 0.5 + 3e-5)).abs() < 1e-15);
+    let quieter = known("sensor_noise").noise(&[-0.01, -1e-4], nominal);
+    assert_eq!(quieter, Noise { shot: 0.0, read_variance: 0.0 });
+    let tone = known("tone_curve").tone(&[-0.2, 0.4], Tone { gamma: 2.2, contrast: 0.0 });
+    assert!((tone.gamma - 2.0).abs() < 1e-15);
+    assert!((tone.encode(0.0625) - (0.25 - 0.4 * 0.25 * 0.75 * 0.5)).abs() < 1e-12);
+    assert_eq!([tone.encode(-1.0), tone.encode(0.25), tone.encode(7.0)], [0.0, 0.5, 1.0]);
+}
+
+#[test]
+fn odometry_reports_what_its_effects_make_of_a_motion() {
+    let motion = Motion2 { forward_m: 0.2, left_m: -0.1, turn_rad: 0.3 };
+    let near = |a: Motion2, [forward_m, left_m, turn_rad]: [f64; 3]| {
+        (a.forward_m - forward_m).abs().max((a.left_m - left_m).abs()).max((a.turn_rad - turn_rad).abs())
+            < 1e-12
+    };
+    assert!(near(known("odometry_scale").odometry(&[0.1], motion, 0.2), [0.22, -0.11, 0.3]));
+    assert!(near(known("odometry_yaw_drift").odometry(&[0.05], motion, 0.2), [0.2, -0.1, 0.31]));
+    assert!(near(known("odometry_lateral_slip").odometry(&[0.2], motion, 0.2), [0.2, -0.06, 0.3]));
+}
+
+proptest! {
+    #[test]
+    fn a_changed_field_can_always_be_drawn(
+        p in proptest::array::uniform5(-300.0..300.0),
+        preset in proptest::sample::select(vec!["humanoid-kidsize-2010", "humanoid-adultsize", "spl", "msl"]),
+    ) {
+        let nominal = reality_sim_core::field::FieldDimensions::preset(preset).unwrap();
+        let changed = known("field_dimensions").field(&p, nominal.clone());
+        prop_assert!(changed.validate().is_ok(), "{:?}", changed.validate());
+        let small = p.map(|value| value / 3000.0);
+        let changed = known("field_dimensions").field(&small, nominal.clone());
+        prop_assert!((changed.length_m - nominal.length_m - small[0]).abs() < 1e-12);
+        prop_assert!((changed.width_m - nominal.width_m - small[1]).abs() < 1e-12);
+        prop_assert!((changed.goal_area_length_m - nominal.goal_area_length_m - small[2]).abs() < 1e-12);
+        prop_assert!((changed.goal_area_width_m - nominal.goal_area_width_m - small[3]).abs() < 1e-12);
+        prop_assert!(
+            (changed.center_circle_diameter_m - nominal.center_circle_diameter_m - small[4]).abs() < 1e-12
+        );
+    }
+}

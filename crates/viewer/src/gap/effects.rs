@@ -1,0 +1,79 @@
+//! The effects that were found, one a row, and all that is known of the one that was chosen.
+
+use eframe::egui::{Button, Label, ProgressBar, RichText, Ui};
+use reality_sim_gap::report::EffectReport;
+
+use super::{
+    table::Table,
+    words::{estimate, p_value},
+};
+
+/// Draws them; a click chooses one.
+pub fn ui(ui: &mut Ui, name: &str, effects: &[EffectReport], chosen: &mut Option<String>) {
+    if effects.is_empty() {
+        return;
+    }
+    let table = Table(&[("effect", 0.44), ("p", 0.18), ("held-out gain", 0.38)]);
+    ui.push_id(name, |ui| {
+        table.heads_ui(ui);
+        for effect in effects {
+            table.row_ui(ui, |ui, column| match column {
+                0 => name_ui(ui, effect, chosen),
+                1 => {
+                    ui.label(p_value(effect.p_value)).on_hover_text(
+                        "How unlikely it is chance, corrected for the number of effects tested",
+                    );
+                }
+                _ => {
+                    ui.label(estimate(&effect.held_out_gain))
+                        .on_hover_text("Gain in log-likelihood on frames that the fit has not seen");
+                }
+            });
+        }
+        if let Some(effect) = effects.iter().find(|effect| chosen.as_ref() == Some(&effect.id)) {
+            details_ui(ui, effect);
+        }
+    });
+}
+
+fn name_ui(ui: &mut Ui, effect: &EffectReport, chosen: &mut Option<String>) {
+    let is_chosen = chosen.as_ref() == Some(&effect.id);
+    let button = Button::selectable(is_chosen, RichText::new(&effect.name).strong()).wrap();
+    if ui.add(button).on_hover_text(format!("{}: what it does, and why it was named", effect.id)).clicked() {
+        *chosen = Some(effect.id.clone());
+    }
+}
+
+/// All that is known of one.
+fn details_ui(ui: &mut Ui, effect: &EffectReport) {
+    ui.group(|ui| {
+        ui.set_width(ui.available_width());
+        ui.add(Label::new(RichText::new(&effect.size).strong()).wrap());
+        ui.add(Label::new(format!("Because {}.", effect.because.trim_end_matches('.'))).wrap());
+        for (name, value) in &effect.parameters {
+            ui.add(Label::new(format!("{name} = {}", estimate(value))).wrap());
+        }
+        closes_ui(ui, effect);
+        if effect.confusable_with.is_empty() {
+            ui.weak("Nothing else explains these frames as well.");
+        } else {
+            let others = effect.confusable_with.join(", ");
+            ui.add(Label::new(format!("These frames cannot tell it from: {others}")).wrap());
+        }
+        for recording in &effect.recording_that_would_decide {
+            ui.add(Label::new(format!("To decide, record: {recording}")).wrap());
+        }
+    });
+}
+
+/// How much of the distance to the noise floor it closes.
+fn closes_ui(ui: &mut Ui, effect: &EffectReport) {
+    if effect.closes.is_empty() {
+        return;
+    }
+    ui.weak("Of the distance to the noise floor it alone closes:");
+    for (channel, share) in &effect.closes {
+        let text = format!("{channel} {:.0} %", 100.0 * share);
+        ui.add(ProgressBar::new(share.clamp(0.0, 1.0) as f32).desired_height(16.0).text(text));
+    }
+}

@@ -1,0 +1,151 @@
+//! A report with its pictures, as the thread that opens it reads them.
+
+use std::{fs::File, io::BufReader, path::Path, sync::Arc};
+
+use eframe::egui::ColorImage;
+use image::{ImageReader, RgbImage};
+use reality_sim_core::field::{FieldDimensions, preset_names};
+use reality_sim_gap::{
+    ChannelGap,
+    report::{EffectReport, Report},
+};
+
+use super::ramp::Ramp;
+use crate::picture_view::color_image;
+
+/// Graphics devices take pictures of this side, pixels.
+const LARGEST_SIDE: u32 = 8192;
+/// Two lengths are the same, metres.
+const SAME_M: f64 = 1e-6;
+
+/// Everything that is shown of a report.
+pub struct Loaded {
+    pub report: Report,
+    /// The frame as it was recorded.
+    pub measured: Option<Arc<ColorImage>>,
+    /// As the given model draws it, and as the extended one does.
+    pub simulated: [Option<Arc<ColorImage>>; 2],
+    /// Measured minus simulated, in the ramp's colours.
+    pub differences: [Option<Arc<ColorImage>>; 2],
+    /// Those colours, for brightness in grey levels of 255; where there is a difference.
+    pub difference_ramp: Option<Ramp>,
+    /// The league's field whose carpet is as large as the report's, where there is just one.
+    pub field: Option<FieldDimensions>,
+    /// What is missing, in words.
+    pub problems: Vec<String>,
+}
+
+impl Loaded {
+    /// Reads a report's folder. Without pictures the rest is there; without a report nothing is.
+    pub fn read(folder: &Path) -> Result<Self, String> {
+        let report = Report::read(folder).map_err(|error| error.to_string())?;
+        let mut problems = Vec::new();
+        let mut read = |name: &str| {
+            let picture = picture(&folder.join("pictures").join(name));
+            picture.map_err(|problem| problems.push(problem)).ok()
+        };
+        let measured = read("measured.png");
+        let simulated = ["before.png", "after.png"].map(&mut read);
+        let simulated =
+            simulated.map(|picture| same_size(measured.as_ref(), picture?, folder, &mut problems));
+        let differences = simulated.each_ref().map(|simulated| {
+            measured
+                .as_ref()
+                .zip(simulated.as_ref())
+                .map(|(measured, simulated)| difference(measured, simulated))
+        });
+        let ramp = Ramp::of(differences.iter().flatten().flatten().copied());
+        let colored = |values: Vec<f64>| Some(colored(measured.as_ref()?, &values, ramp?));
+        Ok(Self {
+            field: field(&report),
+            measured: measured.as_ref().map(color_image),
+            simulated: simulated.each_ref().map(|picture| picture.as_ref().map(color_image)),
+            differences: differences.map(|values| colored(values?)),
+            difference_ramp: ramp,
+            problems,
+            report,
+        })
+    }
+
+    /// The effects found, the surest first, then those that the model had before.
+    pub fn effects(&self) -> impl Iterator<Item = &EffectReport> {
+        self.report.effects.iter().chain(&self.report.in_model)
+    }
+
+    /// The channel with a map whose gap is the largest against its floor.
+    pub fn widest_channel(&self) -> Option<&str> {
+        let width = |gap: &ChannelGap| gap.before / gap.floor.max(f64::MIN_POSITIVE);
+        let widths = self
+            .report
+            .maps
+            .keys()
+            .map(|channel| (channel.as_str(), self.report.gap.channels.get(channel).map_or(0.0, width)));
+        widths.max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(channel, _)| channel)
+    }
+}
+
+/// Decodes a picture. The error names the file, the fault and the remedy.
+fn picture(path: &Path) -> Result<RgbImage, String> {
+    let problem =
+        |fault: &str| format!("{}: {fault}: write the report again with `reality-sim gap`", path.display());
+    if !path.exists() {
+        return Err(problem("there is no such picture"));
+    }
+    if !path.is_file() {
+        return Err(problem("is no regular file"));
+    }
+    let file = File::open(path).map_err(|error| problem(&format!("cannot be read ({error})")))?;
+    let reader = ImageReader::new(BufReader::new(file)).with_guessed_format();
+    let reader = reader.map_err(|error| problem(&format!("cannot be read ({error})")))?;
+    let decoded = reader.decode().map_err(|error| problem(&format!("is no whole picture ({error})")))?;
+    let sides = [decoded.width(), decoded.height()];
+    if sides.iter().any(|side| !(1..=LARGEST_SIDE).contains(side)) {
+        return Err(problem(&format!("has a side of 0 or more than {LARGEST_SIDE} pixels")));
+    }
+    Ok(decoded.into_rgb8())
+}
+
+/// The picture, where it can be laid over the measured one.
+fn same_size(
+    measured: Option<&RgbImage>,
+    picture: RgbImage,
+    folder: &Path,
+    problems: &mut Vec<String>,
+) -> Option<RgbImage> {
+    let is_same = measured.is_none_or(|measured| measured.dimensions() == picture.dimensions());
+    if !is_same {
+        let folder = folder.join("pictures");
+        problems.push(format!(
+            "{}: its pictures differ in size: write the report again with `reality-sim gap`",
+            folder.display()
+        ));
+    }
+    is_same.then_some(picture)
+}
+
+/// Measured minus simulated luma, pixel by pixel.
+fn difference(measured: &RgbImage, simulated: &RgbImage) -> Vec<f64> {
+    // Rec. 601, as in JPEG files.
+    let luma = |[r, g, b]: [u8; 3]| 0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b);
+    let pairs = measured.pixels().zip(simulated.pixels());
+    pairs.map(|(measured, simulated)| luma(measured.0) - luma(simulated.0)).collect()
+}
+
+/// The values of a picture's pixels in colours.
+fn colored(picture: &RgbImage, values: &[f64], ramp: Ramp) -> Arc<ColorImage> {
+    let size = [picture.width() as usize, picture.height() as usize];
+    Arc::new(ColorImage::new(size, values.iter().map(|value| ramp.color(*value)).collect()))
+}
+
+/// The only league field whose carpet has the extent of the report's maps.
+fn field(report: &Report) -> Option<FieldDimensions> {
+    let [left, top, right, bottom] = report.maps.values().next()?.field.extent;
+    let is_it = |field: &FieldDimensions| {
+        let half = field.carpet_half_extent_m();
+        let differences = [left + half.x, top - half.y, right - half.x, bottom + half.y];
+        differences.iter().all(|difference| difference.abs() < SAME_M)
+    };
+    let mut fields = preset_names().filter_map(FieldDimensions::preset).filter(is_it);
+    let field = fields.next()?;
+    fields.next().is_none().then_some(field)
+}

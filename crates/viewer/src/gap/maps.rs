@@ -1,0 +1,160 @@
+//! Where residuals sit: in the picture, and on the field from above.
+
+use eframe::egui::{Color32, Rect, Response, Stroke, StrokeKind, Ui, Vec2};
+use glam::DVec2;
+use reality_sim_gap::report::{Map, Maps};
+
+use super::{
+    loaded::Loaded,
+    ramp::Ramp,
+    side::Side,
+    table::words,
+    views::head,
+    words::{number, unit_after},
+};
+use crate::{
+    colors,
+    field_view::FieldView,
+    picture_view::{PictureCanvas, Uploaded},
+};
+
+/// How much of what is below a cell is hidden.
+const COVER: f32 = 0.82;
+/// How bright the picture below the cells is, 0 to 255.
+const BACKGROUND: u8 = 110;
+/// The grey of the field's lines, seen on carpet and on pale cells alike.
+const LINES: u8 = 125;
+
+/// What the maps keep from frame to frame.
+#[derive(Default)]
+pub struct MapViews {
+    background: Uploaded,
+    field: FieldView,
+}
+
+impl MapViews {
+    /// Residuals over the picture's shape.
+    pub fn picture_ui(
+        &mut self,
+        ui: &mut Ui,
+        loaded: &Loaded,
+        maps: &Maps,
+        side: Side,
+        ramp: Option<Ramp>,
+        room: Vec2,
+    ) {
+        head(ui, &format!("In the picture, {}", side.name()), "Medians of measured minus simulated");
+        let map = &maps.picture;
+        let Some(ramp) = ramp.filter(|_| has_values(map, side)) else { return nowhere(ui, room) };
+        let [left, top, right, bottom] = map.extent;
+        let corner = DVec2::new(left, top);
+        let size = [right - left, bottom - top].map(|side| side.abs() as usize);
+        let name = format!("residuals in the picture {}", side.name());
+        let canvas = PictureCanvas::allocate(ui, size, room, &name);
+        if let Some(measured) = &loaded.measured {
+            let texture = self.background.texture(ui.ctx(), measured);
+            canvas.draw(texture, Color32::from_gray(BACKGROUND));
+        }
+        // A pixel's middle has integer coordinates; the extent is that of its edges.
+        let at = |place: DVec2| canvas.at(place - corner - 0.5);
+        for cell in cells(map, side) {
+            let rect = Rect::from_two_pos(at(cell.corners[0]), at(cell.corners[1]));
+            canvas.painter.rect_filled(rect, 0.0, ramp.color(cell.value).gamma_multiply(COVER));
+        }
+        hover(&canvas.response, map, side, &maps.unit, |cell| Rect::from_two_pos(at(cell[0]), at(cell[1])));
+    }
+
+    /// Residuals over the field from above.
+    pub fn field_ui(
+        &mut self,
+        ui: &mut Ui,
+        loaded: &Loaded,
+        maps: &Maps,
+        side: Side,
+        ramp: Option<Ramp>,
+        room: Vec2,
+    ) {
+        let lines = match &loaded.field {
+            Some(field) => {
+                format!("The lines are those of the field “{}”, whose carpet is as large", field.name)
+            }
+            None => "The report's field is as large as no league's: its lines are not drawn".to_owned(),
+        };
+        let more =
+            format!("Medians of measured minus simulated. {lines}. Wheel: zoom · secondary button: move");
+        head(ui, &format!("On the field, {}", side.name()), &more);
+        let map = &maps.field;
+        let Some(ramp) = ramp.filter(|_| has_values(map, side)) else { return nowhere(ui, room) };
+        let [left, top, right, bottom] = map.extent;
+        let half = DVec2::new(left.abs().max(right.abs()), top.abs().max(bottom.abs()));
+        let name = format!("residuals on the field {}", side.name());
+        let canvas = self.field.show_carpet(ui, half, room, &name);
+        for cell in cells(map, side) {
+            let rect = Rect::from_two_pos(canvas.at(cell.corners[0]), canvas.at(cell.corners[1]));
+            canvas.painter.rect_filled(rect, 0.0, ramp.color(cell.value).gamma_multiply(COVER));
+        }
+        match &loaded.field {
+            Some(field) => canvas.draw_lines(field, Color32::from_gray(LINES)),
+            None => {
+                let carpet = Rect::from_two_pos(canvas.at(-half), canvas.at(half));
+                canvas.painter.rect_stroke(carpet, 0.0, Stroke::new(1.0, colors::LINE), StrokeKind::Inside);
+            }
+        }
+        canvas.draw_scale();
+        hover(&canvas.response, map, side, &maps.unit, |cell| {
+            Rect::from_two_pos(canvas.at(cell[0]), canvas.at(cell[1]))
+        });
+    }
+}
+
+/// A place with a value: two opposite corners in the map's own axes.
+struct Cell {
+    corners: [DVec2; 2],
+    value: f64,
+}
+
+fn has_values(map: &Map, side: Side) -> bool {
+    side.of_map(map).iter().any(Option::is_some)
+}
+
+/// The cells in which something was measured.
+fn cells(map: &Map, side: Side) -> impl Iterator<Item = Cell> {
+    let [left, top, right, bottom] = map.extent;
+    let step = DVec2::new((right - left) / map.columns as f64, (bottom - top) / map.rows as f64);
+    let values = side.of_map(map).iter().enumerate();
+    values.filter_map(move |(place, value)| {
+        let corner = DVec2::new((place % map.columns) as f64, (place / map.columns) as f64);
+        let at = |corner: DVec2| DVec2::new(left, top) + corner * step;
+        Some(Cell { corners: [at(corner), at(corner + 1.0)], value: (*value)? })
+    })
+}
+
+/// The value below the pointer.
+fn hover(response: &Response, map: &Map, side: Side, unit: &str, on_screen: impl Fn([DVec2; 2]) -> Rect) {
+    let Some(pointer) = response.hover_pos() else { return };
+    let below = cells(map, side).find(|cell| on_screen(cell.corners).contains(pointer));
+    if let Some(Cell { value, .. }) = below {
+        response.clone().on_hover_text_at_pointer(format!("{}{}", number(value), unit_after(unit)));
+    }
+}
+
+fn nowhere(ui: &mut Ui, room: Vec2) {
+    words(ui, room, "too few measurements in any place for a map");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_fill_the_extent_row_by_row_from_its_first_corner() {
+        let values: Vec<Option<f64>> = (0..6).map(|value| (value != 4).then_some(f64::from(value))).collect();
+        let map =
+            Map { columns: 3, rows: 2, extent: [-3.0, 1.0, 3.0, -1.0], before: values, after: vec![None; 6] };
+        let cells: Vec<Cell> = cells(&map, Side::Without).collect();
+        assert_eq!(cells.iter().map(|cell| cell.value).collect::<Vec<_>>(), [0.0, 1.0, 2.0, 3.0, 5.0]);
+        assert_eq!(cells[0].corners, [DVec2::new(-3.0, 1.0), DVec2::new(-1.0, 0.0)]);
+        assert_eq!(cells[4].corners, [DVec2::new(1.0, 0.0), DVec2::new(3.0, -1.0)]);
+        assert!(!has_values(&map, Side::With));
+    }
+}

@@ -1,0 +1,109 @@
+//! Gap: where a camera's simulation and its pictures disagree, which effect is missing, and how much of it that explains.
+//!
+//! A report is [`loaded`] once, by the thread that opens it; everything else only draws. [`pictures`], [`maps`] and
+//! [`course`] are the views, [`evidence`], [`channels`] and [`effects`] what stands beside them.
+
+mod channels;
+mod course;
+mod effects;
+mod evidence;
+mod header;
+mod loaded;
+mod maps;
+mod pictures;
+mod ramp;
+mod side;
+mod table;
+mod views;
+mod words;
+
+use eframe::egui::{self, Ui};
+use serde::{Deserialize, Serialize};
+
+pub use self::loaded::Loaded;
+use self::{side::Side, views::Views};
+use crate::shortcuts::{self, Action, Place};
+
+/// Share of the width that the evidence has, within these widths, points.
+const EVIDENCE_SHARE: f32 = 0.36;
+const EVIDENCE_WIDTHS: std::ops::RangeInclusive<f32> = 270.0..=520.0;
+
+/// What is remembered of the panel.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct GapSettings {
+    /// Which model's pictures and residuals are shown.
+    pub side: Side,
+    /// The difference between the pictures in place of the wipe.
+    pub is_difference: bool,
+    /// Where the line of the wipe is, 0 to 1 from the left.
+    pub wipe_share: f32,
+    /// The comparison whose residuals are shown; where the report has none of this name, the one with the most to see.
+    pub channel: String,
+}
+
+impl Default for GapSettings {
+    fn default() -> Self {
+        Self { side: Side::default(), is_difference: false, wipe_share: 0.5, channel: String::new() }
+    }
+}
+
+/// A report, and what is looked at in it.
+pub struct GapPanel {
+    loaded: Loaded,
+    views: Views,
+    /// The id of the effect whose details are shown.
+    effect: Option<String>,
+}
+
+impl GapPanel {
+    /// Shows the surest effect first.
+    pub fn new(loaded: Loaded) -> Self {
+        let effect = loaded.effects().next().map(|effect| effect.id.clone());
+        Self { loaded, views: Views::default(), effect }
+    }
+
+    /// Shows the panel.
+    pub fn ui(&mut self, ui: &mut Ui, settings: &mut GapSettings) {
+        if !self.loaded.report.maps.contains_key(&settings.channel) {
+            settings.channel = self.loaded.widest_channel().unwrap_or_default().to_owned();
+        }
+        for action in shortcuts::pressed(ui, Place::Gap) {
+            self.act(action, settings);
+        }
+        egui::Panel::top("gap verdict").show(ui, |ui| header::ui(ui, &self.loaded.report));
+        let width = ui.available_width();
+        let evidence_width = (EVIDENCE_SHARE * width).clamp(*EVIDENCE_WIDTHS.start(), *EVIDENCE_WIDTHS.end());
+        egui::Panel::right("gap evidence").resizable(false).exact_size(evidence_width).show(ui, |ui| {
+            egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                evidence::ui(ui, &self.loaded.report, &mut settings.channel, &mut self.effect);
+            });
+        });
+        egui::CentralPanel::default().show(ui, |ui| self.views.ui(ui, &self.loaded, settings));
+    }
+
+    fn act(&mut self, action: Action, settings: &mut GapSettings) {
+        let channels = || self.loaded.report.maps.keys().map(String::as_str);
+        let effects = || self.loaded.effects().map(|effect| effect.id.as_str());
+        match action {
+            Action::OtherModel => settings.side = settings.side.other(),
+            Action::Difference => settings.is_difference = !settings.is_difference,
+            Action::ChannelBefore => settings.channel = neighbour(channels(), &settings.channel, false),
+            Action::ChannelAfter => settings.channel = neighbour(channels(), &settings.channel, true),
+            Action::EffectAbove | Action::EffectBelow => {
+                let is_below = action == Action::EffectBelow;
+                let next = self.effect.as_deref().map(|effect| neighbour(effects(), effect, is_below));
+                self.effect = next;
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The name after or before one in a list that has it; at the ends, the name itself.
+fn neighbour<'a>(names: impl Iterator<Item = &'a str>, name: &str, is_after: bool) -> String {
+    let names: Vec<&str> = names.collect();
+    let place = names.iter().position(|other| *other == name).unwrap_or(0);
+    let wanted = if is_after { place + 1 } else { place.saturating_sub(1) };
+    names.get(wanted).map_or(name, |found| found).to_owned()
+}

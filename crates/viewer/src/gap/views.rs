@@ -1,0 +1,140 @@
+//! Pictures, maps and course on one page, two beside two.
+
+use eframe::egui::{ComboBox, Layout as Flow, RichText, Ui, Vec2, vec2};
+
+use super::{
+    GapSettings, channels::meaning, course, loaded::Loaded, maps::MapViews, pictures::Pictures, ramp::Ramp,
+    side::Side, words::unit_after,
+};
+use crate::shortcuts::{self, Action};
+
+/// A view's title, points.
+const HEAD: f32 = 20.0;
+/// Width of the legend, points.
+const LEGEND: f32 = 190.0;
+
+/// What the views keep from frame to frame.
+#[derive(Default)]
+pub struct Views {
+    pictures: Pictures,
+    maps: MapViews,
+}
+
+impl Views {
+    /// Draws them.
+    pub fn ui(&mut self, ui: &mut Ui, loaded: &Loaded, settings: &mut GapSettings) {
+        pictures_choice_ui(ui, loaded, settings);
+        let maps = loaded.report.maps.get(&settings.channel);
+        let ramp = maps.and_then(|maps| {
+            let values = [&maps.picture, &maps.field].map(|map| map.before.iter().chain(&map.after));
+            Ramp::of(values.into_iter().flatten().flatten().copied())
+        });
+        let unit = maps.map(|maps| unit_after(&maps.unit)).unwrap_or_default();
+        channel_choice_ui(ui, loaded, settings, ramp, &unit);
+        let gap = ui.spacing().item_spacing;
+        let room = ui.available_size();
+        let view = vec2(0.5 * (room.x - gap.x), 0.5 * (room.y - gap.y) - HEAD - gap.y).max(Vec2::splat(60.0));
+        let side = settings.side;
+        row(
+            ui,
+            view,
+            |ui| self.pictures.ui(ui, loaded, settings, view),
+            |ui| match maps {
+                Some(maps) => self.maps.picture_ui(ui, loaded, maps, side, ramp, view),
+                None => nothing(ui, "no maps in this report"),
+            },
+        );
+        row(
+            ui,
+            view,
+            |ui| match maps {
+                Some(maps) => self.maps.field_ui(ui, loaded, maps, side, ramp, view),
+                None => nothing(ui, ""),
+            },
+            |ui| match maps {
+                Some(maps) => course::ui(ui, &maps.time, &unit, view),
+                None => nothing(ui, ""),
+            },
+        );
+    }
+}
+
+/// Two views beside each other.
+fn row(ui: &mut Ui, view: Vec2, left: impl FnOnce(&mut Ui), right: impl FnOnce(&mut Ui)) {
+    let size = view + vec2(0.0, HEAD + ui.spacing().item_spacing.y);
+    ui.horizontal_top(|ui| {
+        let flow = Flow::top_down(eframe::egui::Align::Min);
+        ui.allocate_ui_with_layout(size, flow, |ui| {
+            ui.set_min_size(size);
+            left(ui);
+        });
+        ui.allocate_ui_with_layout(size, flow, |ui| {
+            ui.set_min_size(size);
+            right(ui);
+        });
+    });
+}
+
+/// A view's title.
+pub fn head(ui: &mut Ui, text: &str, more: &str) {
+    ui.allocate_ui_with_layout(
+        vec2(ui.available_width(), HEAD),
+        Flow::left_to_right(eframe::egui::Align::Center),
+        |ui| {
+            ui.add(eframe::egui::Label::new(RichText::new(text).strong()).truncate()).on_hover_text(more);
+        },
+    );
+}
+
+fn nothing(ui: &mut Ui, text: &str) {
+    ui.weak(text);
+}
+
+/// Without or with what was found; wipe or difference.
+fn pictures_choice_ui(ui: &mut Ui, loaded: &Loaded, settings: &mut GapSettings) {
+    ui.horizontal_wrapped(|ui| {
+        let key = shortcuts::name(ui, Action::OtherModel);
+        for side in Side::ALL {
+            let hover = format!("{} ({key} for the other)", side.meaning());
+            ui.selectable_value(&mut settings.side, side, side.name()).on_hover_text(hover);
+        }
+        if loaded.report.effects.is_empty() {
+            ui.weak("(none was found)").on_hover_text("No effect was found: both are the given model");
+        }
+        ui.separator();
+        let key = shortcuts::name(ui, Action::Difference);
+        for (is_difference, name, meaning) in [
+            (false, "Wipe", "The measured picture left of a line to drag, the simulated one right of it"),
+            (true, "Difference", "Measured minus simulated brightness, pixel by pixel"),
+        ] {
+            let hover = format!("{meaning} ({key} for the other)");
+            ui.selectable_value(&mut settings.is_difference, is_difference, name).on_hover_text(hover);
+        }
+    });
+}
+
+/// Which comparison's residuals, and their colours.
+fn channel_choice_ui(
+    ui: &mut Ui,
+    loaded: &Loaded,
+    settings: &mut GapSettings,
+    ramp: Option<Ramp>,
+    unit: &str,
+) {
+    ui.horizontal_wrapped(|ui| {
+        let label = ui.label("Residuals of");
+        let list = ComboBox::from_id_salt("channel").width(110.0).selected_text(&settings.channel);
+        let meaning_now = meaning(&settings.channel);
+        let list = list.show_ui(ui, |ui| {
+            for channel in loaded.report.maps.keys() {
+                ui.selectable_value(&mut settings.channel, channel.clone(), channel)
+                    .on_hover_text(meaning(channel));
+            }
+        });
+        list.response.labelled_by(label.id).on_hover_text(meaning_now);
+        match ramp {
+            Some(ramp) => ramp.legend_ui(ui, unit, LEGEND),
+            None => drop(ui.weak("too few measurements in any place for a map")),
+        }
+    });
+}

@@ -1,0 +1,72 @@
+//! The hidden-effect study of `docs/gap.md`: recordings by a ray caster that shares no code with what is fitted, an effect
+//! or none hidden in each by seed, the workflow's verdict compared with the truth only afterwards.
+//!
+//! `cargo run --release --example gap_study -- --out FOLDER` adds its runs to `FOLDER/runs.jsonl` (a run that is there is
+//! not repeated) and writes `FOLDER/study.md`. `--part nulls|singles|pairs|removed|foreign|full` and `--runs N` make a part of it.
+
+mod plan;
+mod run;
+mod summary;
+mod truth;
+
+use std::{
+    collections::BTreeSet,
+    error::Error,
+    fs::{self, OpenOptions},
+    io::Write,
+    path::PathBuf,
+};
+
+use clap::Parser;
+
+use plan::{Part, Task};
+use run::Outcome;
+
+/// Makes recordings with hidden effects and lets the workflow find them.
+#[derive(Debug, Parser)]
+struct Args {
+    /// Folder for runs.jsonl and study.md
+    #[arg(long)]
+    out: PathBuf,
+    /// Only these parts
+    #[arg(long, value_enum)]
+    part: Vec<Part>,
+    /// At most so many runs of each part
+    #[arg(long)]
+    runs: Option<usize>,
+    /// Only write study.md from the runs that are there
+    #[arg(long)]
+    summary: bool,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let args = Args::parse();
+    fs::create_dir_all(&args.out)?;
+    let file = args.out.join("runs.jsonl");
+    let mut outcomes = read(&file)?;
+    if !args.summary {
+        let parts = if args.part.is_empty() { Part::ALL.to_vec() } else { args.part.clone() };
+        let limits = run::limits()?;
+        let done: BTreeSet<String> = outcomes.iter().map(|outcome| outcome.task.key()).collect();
+        let mut log = OpenOptions::new().create(true).append(true).open(&file)?;
+        for part in parts {
+            let tasks: Vec<Task> = plan::tasks(part, &limits)?;
+            let tasks = tasks.into_iter().take(args.runs.unwrap_or(usize::MAX));
+            for task in tasks.filter(|task| !done.contains(&task.key())) {
+                let outcome = run::run(&task)?;
+                eprintln!("{}", outcome.line());
+                writeln!(log, "{}", serde_json::to_string(&outcome)?)?;
+                outcomes.push(outcome);
+            }
+        }
+    }
+    fs::write(args.out.join("study.md"), summary::text(&outcomes))?;
+    Ok(())
+}
+
+fn read(file: &PathBuf) -> Result<Vec<Outcome>, Box<dyn Error>> {
+    if !file.exists() {
+        return Ok(Vec::new());
+    }
+    Ok(fs::read_to_string(file)?.lines().map(serde_json::from_str).collect::<Result<_, _>>()?)
+}

@@ -1,0 +1,180 @@
+//! One run: a recording, the workflow, and what came out.
+
+use std::{collections::BTreeMap, error::Error, time::Instant};
+
+use reality_sim::{
+    Sequence,
+    gap::{
+        Options, PoseSource, Recording, analyse,
+        report::{Report, Verdict},
+    },
+    sensor::{Model, effect},
+};
+use reality_sim_hidden::{Hidden, Recipe};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    plan::Task,
+    truth::{main_size, parameters},
+};
+
+/// What came out.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Outcome {
+    pub task: Task,
+    /// Numbers of what was hidden.
+    pub hidden_sizes: Vec<f64>,
+    pub verdict: Verdict,
+    /// Named effects, each with those that it cannot be told from.
+    pub named: Vec<(String, Vec<String>)>,
+    pub unexplained: Vec<String>,
+    /// True value, estimate and its standard deviation, of parameters with a known true value.
+    pub estimates: Vec<Compared>,
+    /// Of the whole: before, after, and with the true effects added, where the library can express them.
+    pub gap: [f64; 2],
+    pub oracle: Option<f64>,
+    pub seconds: f64,
+    /// Detection limits by effect.
+    pub limits: BTreeMap<String, f64>,
+}
+
+/// A parameter against its true value.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Compared {
+    pub effect: String,
+    pub parameter: String,
+    pub truth: f64,
+    pub value: f64,
+    pub sigma: f64,
+}
+
+impl Outcome {
+    pub fn line(&self) -> String {
+        let hidden: Vec<String> = self
+            .task
+            .hidden
+            .iter()
+            .zip(&self.hidden_sizes)
+            .map(|((id, _), size)| format!("{id} {size:.3e}"))
+            .collect();
+        format!(
+            "{:?} {} {:?} x{} -> {:?} {:?} {:?} {:.1}s",
+            self.task.part,
+            self.task.seed,
+            hidden,
+            self.task.size,
+            self.verdict,
+            self.named,
+            self.unexplained,
+            self.seconds
+        )
+    }
+}
+
+/// Runs a task.
+pub fn run(task: &Task) -> Result<Outcome, Box<dyn Error>> {
+    let folder = tempfile::tempdir()?;
+    let effects = task.effects()?;
+    let mut recipe = Recipe::new(task.seed);
+    recipe.frames = task.frames;
+    recipe.size = task.picture;
+    recipe.effects.clone_from(&effects);
+    let sequence = recipe.record(folder.path())?;
+    let start = Instant::now();
+    let options = Options { seed: task.seed, without: task.without.iter().cloned().collect() };
+    let report = examine(&sequence, &Model::default(), &options)?;
+    let seconds = start.elapsed().as_secs_f64();
+    Ok(Outcome {
+        task: task.clone(),
+        hidden_sizes: effects.iter().map(main_size).collect(),
+        verdict: report.verdict,
+        named: report
+            .effects
+            .iter()
+            .map(|effect| (effect.id.clone(), effect.confusable_with.clone()))
+            .collect(),
+        unexplained: report.unexplained.iter().map(|u| format!("{} {}", u.channel, u.r#where)).collect(),
+        estimates: effects.iter().flat_map(|hidden| compared(hidden, &report)).collect(),
+        gap: [report.gap.before, report.gap.after],
+        oracle: oracle(&sequence, &effects, &options)?,
+        seconds,
+        limits: report
+            .not_found
+            .iter()
+            .map(|effect| (effect.id.clone(), effect.detection_limit.value))
+            .collect(),
+    })
+}
+
+fn examine(sequence: &Sequence, model: &Model, options: &Options) -> Result<Report, Box<dyn Error>> {
+    let recording = Recording::new(sequence, &sequence.groundtruth, PoseSource::Measured, None)?;
+    Ok(analyse(&recording, model, options, &|_| ())?.report)
+}
+
+fn compared(hidden: &Hidden, report: &Report) -> Vec<Compared> {
+    let Some(found) = report.effects.iter().find(|effect| effect.id == hidden.id()) else {
+        return Vec::new();
+    };
+    let one = |(name, truth): (&'static str, f64)| {
+        let estimate = found.parameters.get(name)?;
+        Some(Compared {
+            effect: found.id.clone(),
+            parameter: name.to_owned(),
+            truth,
+            value: estimate.value,
+            sigma: estimate.sigma,
+        })
+    };
+    parameters(hidden).into_iter().filter_map(one).collect()
+}
+
+/// The gap with the true effects in the model, where all of them have the library's parameters.
+fn oracle(sequence: &Sequence, effects: &[Hidden], options: &Options) -> Result<Option<f64>, Box<dyn Error>> {
+    let mut model = Model::default();
+    for hidden in effects {
+        let Some(known) = effect(hidden.id()).filter(|_| !parameters(hidden).is_empty()) else {
+            return Ok(None);
+        };
+        let truth = parameters(hidden);
+        let value = |name: &str| truth.iter().find(|(of, _)| *of == name).map_or(0.0, |(_, value)| *value);
+        let values: Vec<f64> = known.parameters().iter().map(|parameter| value(parameter.name)).collect();
+        model = model.with(known, values);
+    }
+    if effects.is_empty() {
+        return Ok(None);
+    }
+    let recording = Recording::new(sequence, &sequence.groundtruth, PoseSource::Measured, None)?;
+    Ok(Some(reality_sim::gap::gap_of(&recording, &model, options)?.before))
+}
+
+/// Detection limits by effect in its main size, from recordings in which nothing is hidden: the median of five.
+pub fn limits() -> Result<BTreeMap<String, f64>, Box<dyn Error>> {
+    let mut all: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for seed in 0..5 {
+        let task = Task {
+            part: crate::plan::Part::Nulls,
+            seed: 90_000 + seed,
+            hidden: Vec::new(),
+            size: 0.0,
+            without: None,
+            frames: 40,
+            picture: [320, 240],
+        };
+        for (id, limit) in run(&task)?.limits {
+            all.entry(id).or_default().push(limit);
+        }
+    }
+    let median = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
+    };
+    let mut limits: BTreeMap<String, f64> =
+        all.into_iter().map(|(id, values)| (id, median(values))).collect();
+    // The library's numbers are variances, the hidden one is a factor of the standard deviation: shot noise is nominally
+    // 0.0015 for each unit.
+    if let Some(limit) = limits.get_mut("sensor_noise") {
+        *limit = (1.0 + *limit / 0.0015).sqrt() - 1.0;
+    }
+    eprintln!("limits {limits:?}");
+    Ok(limits)
+}

@@ -1,0 +1,232 @@
+//! The study as tables.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt::Write,
+};
+
+use reality_sim::gap::report::Verdict;
+
+use crate::{
+    plan::{Part, SIZES},
+    run::{Compared, Outcome},
+};
+
+/// The tables of `docs/gap.md`.
+pub fn text(outcomes: &[Outcome]) -> String {
+    let of = |part: Part| -> Vec<&Outcome> {
+        outcomes.iter().filter(|outcome| outcome.task.part == part).collect()
+    };
+    let mut text = format!("{} runs.\n", outcomes.len());
+    nulls(&mut text, &of(Part::Nulls));
+    singles(&mut text, &of(Part::Singles));
+    confusion(&mut text, &of(Part::Singles));
+    pairs(&mut text, &of(Part::Pairs));
+    unknowns(&mut text, "An effect taken out of the library", &of(Part::Removed));
+    unknowns(&mut text, "Effects that no library has", &of(Part::Foreign));
+    full(&mut text, &of(Part::Full));
+    let all: Vec<&Outcome> = outcomes.iter().collect();
+    sizes(&mut text, &all);
+    closing(&mut text, &all);
+    text
+}
+
+/// A rate with Wilson's 95 % interval.
+fn rate(hits: usize, runs: usize) -> String {
+    if runs == 0 {
+        return "–".to_owned();
+    }
+    let (n, p, z) = (runs as f64, hits as f64 / runs as f64, 1.96_f64);
+    let middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
+    let reach = z / (1.0 + z * z / n) * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
+    let percent = |value: f64| (100.0 * value).clamp(0.0, 100.0);
+    format!(
+        "{:.0} % ({hits} of {runs}; {:.0}–{:.0} %)",
+        percent(p),
+        percent(middle - reach),
+        percent(middle + reach)
+    )
+}
+
+// Writing into a string cannot fail.
+fn line(text: &mut String, line: &str) {
+    let _ = writeln!(text, "{line}");
+}
+
+fn hidden(outcome: &Outcome) -> BTreeSet<&str> {
+    outcome.task.hidden.iter().map(|(id, _)| id.as_str()).collect()
+}
+
+fn named(outcome: &Outcome) -> BTreeSet<&str> {
+    outcome.named.iter().map(|(id, _)| id.as_str()).collect()
+}
+
+/// Named, or among those that a named one cannot be told from.
+fn in_set(outcome: &Outcome, id: &str) -> bool {
+    outcome.named.iter().any(|(named, rivals)| named == id || rivals.iter().any(|rival| rival == id))
+}
+
+fn nulls(text: &mut String, runs: &[&Outcome]) {
+    line(text, "\n## Nothing is hidden\n");
+    let false_names = runs.iter().filter(|run| !run.named.is_empty()).count();
+    let unknown = runs.iter().filter(|run| run.verdict == Verdict::Unknown).count();
+    line(text, "| | runs |\n|---|---|");
+    line(text, &format!("| a name is given | {} |", rate(false_names, runs.len())));
+    line(text, &format!("| unknown is said | {} |", rate(unknown, runs.len())));
+    let mut wrong: BTreeMap<&str, usize> = BTreeMap::new();
+    for id in runs.iter().flat_map(|run| named(run)) {
+        *wrong.entry(id).or_default() += 1;
+    }
+    line(text, &format!("\nNames given: {wrong:?}"));
+}
+
+fn singles(text: &mut String, runs: &[&Outcome]) {
+    line(
+        text,
+        "\n## One effect\n\n| size, detection limits | named exactly | in the reported set | verdict unknown |\n|---|---|---|---|",
+    );
+    let mut sizes = SIZES;
+    sizes.sort_by(f64::total_cmp);
+    for size in sizes {
+        let runs: Vec<_> = runs.iter().filter(|run| run.task.size == size).collect();
+        let exactly = runs.iter().filter(|run| named(run) == hidden(run)).count();
+        let in_set = runs.iter().filter(|run| hidden(run).iter().all(|id| in_set(run, id))).count();
+        let unknown = runs.iter().filter(|run| run.verdict == Verdict::Unknown).count();
+        let count = runs.len();
+        line(
+            text,
+            &format!(
+                "| {size} | {} | {} | {} |",
+                rate(exactly, count),
+                rate(in_set, count),
+                rate(unknown, count)
+            ),
+        );
+    }
+}
+
+fn confusion(text: &mut String, runs: &[&Outcome]) {
+    line(
+        text,
+        "\n### What was named, by what was hidden, at three limits and more\n\n| hidden | named |\n|---|---|",
+    );
+    let mut rows: BTreeMap<&str, BTreeMap<String, usize>> = BTreeMap::new();
+    for run in runs.iter().filter(|run| run.task.size >= 3.0) {
+        let names: Vec<&str> = named(run).into_iter().collect();
+        let answer = match (names.is_empty(), run.verdict) {
+            (true, verdict) => format!("{verdict:?}").to_lowercase(),
+            (false, Verdict::Unknown) => format!("{} and unknown", names.join(" + ")),
+            (false, _) => names.join(" + "),
+        };
+        for (id, _) in &run.task.hidden {
+            *rows.entry(id).or_default().entry(answer.clone()).or_default() += 1;
+        }
+    }
+    for (id, answers) in rows {
+        let answers: Vec<String> =
+            answers.into_iter().map(|(answer, count)| format!("{answer} {count}")).collect();
+        line(text, &format!("| {id} | {} |", answers.join(", ")));
+    }
+}
+
+fn pairs(text: &mut String, runs: &[&Outcome]) {
+    line(text, "\n## Two effects\n\n| | runs |\n|---|---|");
+    let found = |run: &&&Outcome| hidden(run).intersection(&named(run)).count();
+    let count = runs.len();
+    line(
+        text,
+        &format!("| both named | {} |", rate(runs.iter().filter(|run| found(run) == 2).count(), count)),
+    );
+    line(
+        text,
+        &format!("| at least one | {} |", rate(runs.iter().filter(|run| found(run) >= 1).count(), count)),
+    );
+    let third = runs.iter().filter(|run| named(run).difference(&hidden(run)).count() > 0).count();
+    line(text, &format!("| a third, wrong one | {} |", rate(third, count)));
+}
+
+fn unknowns(text: &mut String, title: &str, runs: &[&Outcome]) {
+    line(
+        text,
+        &format!(
+            "\n## {title}\n\n| hidden | unknown or inconclusive | a wrong name for sure | nothing said |\n|---|---|---|---|"
+        ),
+    );
+    let mut groups: BTreeMap<&str, Vec<&Outcome>> = BTreeMap::new();
+    for run in runs {
+        for (id, _) in &run.task.hidden {
+            groups.entry(id).or_default().push(run);
+        }
+    }
+    let row = |name: &str, runs: &[&Outcome]| {
+        let unknown = |run: &&&Outcome| matches!(run.verdict, Verdict::Unknown | Verdict::Inconclusive);
+        let wrong = |run: &&&Outcome| matches!(run.verdict, Verdict::Named);
+        let silent = |run: &&&Outcome| matches!(run.verdict, Verdict::None);
+        let count =
+            |kind: &dyn Fn(&&&Outcome) -> bool| rate(runs.iter().filter(|run| kind(run)).count(), runs.len());
+        format!("| {name} | {} | {} | {} |", count(&unknown), count(&wrong), count(&silent))
+    };
+    for (id, runs) in &groups {
+        line(text, &row(id, runs));
+    }
+    line(text, &row("all", runs));
+}
+
+fn full(text: &mut String, runs: &[&Outcome]) {
+    line(text, "\n## At 640×480, 60 frames\n\n| hidden | verdict | named | s |\n|---|---|---|---|");
+    for run in runs {
+        let hidden: Vec<&str> = hidden(run).into_iter().collect();
+        let named: Vec<&str> = named(run).into_iter().collect();
+        let verdict = format!("{:?}", run.verdict).to_lowercase();
+        line(
+            text,
+            &format!("| {} | {verdict} | {} | {:.1} |", hidden.join(", "), named.join(", "), run.seconds),
+        );
+    }
+}
+
+fn sizes(text: &mut String, runs: &[&Outcome]) {
+    line(
+        text,
+        "\n## Sizes\n\nTrue values inside the 95 % interval, of effects that were named.\n\n| effect | inside |\n|---|---|",
+    );
+    let mut groups: BTreeMap<String, Vec<&Compared>> = BTreeMap::new();
+    for compared in runs.iter().flat_map(|run| &run.estimates) {
+        groups.entry(format!("{} {}", compared.effect, compared.parameter)).or_default().push(compared);
+    }
+    let inside =
+        |all: &[&Compared]| all.iter().filter(|c| (c.value - c.truth).abs() <= 1.96 * c.sigma).count();
+    for (name, all) in &groups {
+        line(text, &format!("| {name} | {} |", rate(inside(all), all.len())));
+    }
+    let all: Vec<&Compared> = groups.into_values().flatten().collect();
+    line(text, &format!("| all | {} |", rate(inside(&all), all.len())));
+}
+
+fn closing(text: &mut String, runs: &[&Outcome]) {
+    line(
+        text,
+        "\n## The gap\n\nPart of the distance from the gap before to that with the true effects in the model that is closed, on frames that no fit has seen.\n",
+    );
+    let mut closed: Vec<f64> = runs
+        .iter()
+        .filter_map(|run| Some((run.gap, run.oracle?)))
+        .filter(|([before, _], oracle)| before - oracle > 0.02 * oracle)
+        .map(|([before, after], oracle)| (before - after) / (before - oracle))
+        .collect();
+    closed.sort_by(f64::total_cmp);
+    if closed.is_empty() {
+        return;
+    }
+    let at = |part: f64| 100.0 * closed[((closed.len() - 1) as f64 * part) as usize];
+    let enough = closed.iter().filter(|part| **part >= 0.85).count();
+    line(
+        text,
+        &format!(
+            "median {:.0} %, a tenth below {:.0} %; at least 85 % in {}",
+            at(0.5),
+            at(0.1),
+            rate(enough, closed.len())
+        ),
+    );
+}

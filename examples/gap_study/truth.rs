@@ -1,0 +1,52 @@
+//! What is hidden, as the parameters of the library's effects.
+
+use reality_sim_hidden::Hidden;
+
+/// The one number that stands for an effect's size.
+pub fn main_size(hidden: &Hidden) -> f64 {
+    match hidden {
+        Hidden::SensorNoise { factor } => *factor,
+        Hidden::ExposureDrift { amplitude_ev, .. } => *amplitude_ev,
+        Hidden::UnevenIllumination { strength, .. } => *strength,
+        Hidden::PrincipalPoint { dx_px, dy_px } => dx_px.hypot(*dy_px),
+        Hidden::FieldDimensions { length_m, width_m } => length_m.hypot(*width_m),
+        Hidden::ChromaticAberration { red_scale, blue_scale } => red_scale.abs().max(blue_scale.abs()),
+        Hidden::WhiteBalance { red_gain, blue_gain } => red_gain.abs().max(blue_gain.abs()),
+        _ => parameters(hidden).first().map_or(1.0, |(_, value)| *value),
+    }
+}
+
+/// Parameters whose true value is known, by their names in the library.
+pub fn parameters(hidden: &Hidden) -> Vec<(&'static str, f64)> {
+    match *hidden {
+        Hidden::RadialDistortion { k } => {
+            vec![("k1", k[0]), ("k2", k[1]), ("k3", k[2]), ("k4", k[3])]
+        }
+        Hidden::PrincipalPoint { dx_px, dy_px } => vec![("x_px", dx_px), ("y_px", dy_px)],
+        Hidden::FocalLength { scale } => vec![("scale", scale)],
+        Hidden::MountPitch { angle_rad } => vec![("pitch_rad", angle_rad)],
+        Hidden::MountRoll { angle_rad } => vec![("roll_rad", angle_rad)],
+        Hidden::CameraHeight { height_m } => vec![("height_m", height_m)],
+        Hidden::RollingShutter { readout_s } => vec![("readout_s", readout_s)],
+        Hidden::TimeOffset { offset_s } => vec![("offset_s", offset_s)],
+        Hidden::MotionBlur { exposure_s } => vec![("exposure_s", exposure_s)],
+        Hidden::Defocus { sigma_px } => vec![("sigma_px", sigma_px)],
+        Hidden::ChromaticAberration { red_scale, blue_scale } => {
+            vec![("red_scale", red_scale), ("blue_scale", blue_scale)]
+        }
+        Hidden::Vignetting { strength, .. } => vec![("strength", strength)],
+        Hidden::ToneCurve { gamma_change } => vec![("gamma_change", gamma_change)],
+        Hidden::BlackLevel { offset } => vec![("offset", offset)],
+        Hidden::WhiteBalance { red_gain, blue_gain } => {
+            vec![("red_gain", red_gain), ("blue_gain", blue_gain)]
+        }
+        Hidden::FieldDimensions { length_m, width_m } => {
+            vec![("length_m", length_m), ("width_m", width_m)]
+        }
+        Hidden::OdometryScale { scale } => vec![("scale", scale)],
+        Hidden::OdometryYawDrift { rate_rad_per_s } => vec![("rad_per_s", rate_rad_per_s)],
+        Hidden::OdometryLateralSlip { slip_m_per_m } => vec![("m_per_m", slip_m_per_m)],
+        // Given by other numbers than the library's.
+        _ => Vec::new(),
+    }
+}

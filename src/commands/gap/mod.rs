@@ -1,0 +1,79 @@
+//! `reality-sim gap`: which effect a model of the camera misses, and what adding it brings.
+
+mod options;
+mod poses;
+mod text;
+
+use std::{fs, path::Path};
+
+use anyhow::Context;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{self, IsTerminal};
+
+use reality_sim::{
+    Sequence,
+    gap::{Analysis, Options, Pictures, Recording, Stage, analyse, html},
+    sensor::Model,
+    sequence::{save_image, write_atomically},
+};
+
+pub use self::options::GapArgs;
+use super::output::{create_output_folder, print, print_json};
+
+/// Runs the command.
+pub fn run(args: &GapArgs) -> anyhow::Result<()> {
+    let sequence = Sequence::open(&args.sequence)?;
+    let given = args.model.as_deref().map_or_else(|| Ok(Model::default()), Model::read)?;
+    // The model may lie where the last report was written: it is read before the folder is written to.
+    create_output_folder(&args.out, &sequence.files)?;
+    let poses = poses::reference(args, &sequence)?;
+    let recording = Recording::new(&sequence, &poses.poses, poses.source, args.frames.clone())
+        .with_context(|| args.sequence.display().to_string())?;
+    let progress = stages()?;
+    let options = Options { seed: args.seed, without: args.without.clone() };
+    let analysis = analyse(&recording, &given, &options, &|stage| progress.set_message(words(stage)));
+    progress.finish_and_clear();
+    let analysis = analysis?;
+    let pictures = Pictures::new(&recording, &given, &analysis)?;
+    write(&args.out, &analysis, &pictures)?;
+    if args.json { print_json(&analysis.report) } else { print(&text::text(&analysis.report, &args.out)) }
+}
+
+/// The report's files; `report.json`, by which others know the folder, comes last.
+fn write(folder: &Path, analysis: &Analysis, pictures: &Pictures) -> anyhow::Result<()> {
+    let shown = folder.join("pictures");
+    fs::create_dir_all(&shown).with_context(|| format!("{}: cannot be created", shown.display()))?;
+    for (name, picture) in
+        [("measured", &pictures.measured), ("before", &pictures.before), ("after", &pictures.after)]
+    {
+        save_image(&shown.join(format!("{name}.png")), picture)?;
+    }
+    let json = serde_json::to_string_pretty(&analysis.report)?;
+    let page = html::page(&analysis.report, pictures);
+    for (name, text) in
+        [("model.toml", analysis.model.to_toml()), ("report.html", page), ("report.json", json)]
+    {
+        write_atomically(&folder.join(name), text.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// What is being done, on a terminal only.
+fn stages() -> anyhow::Result<ProgressBar> {
+    if !io::stderr().is_terminal() {
+        return Ok(ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()));
+    }
+    let spinner =
+        ProgressBar::new_spinner().with_style(ProgressStyle::with_template("{spinner} {elapsed}  {msg}")?);
+    spinner.enable_steady_tick(std::time::Duration::from_millis(250));
+    Ok(spinner)
+}
+
+fn words(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Measuring => "measuring lines and carpet in the pictures",
+        Stage::Testing => "testing every effect",
+        Stage::Fitting => "fitting the extended model",
+        Stage::Judging => "judging on frames that no fit has seen",
+    }
+}

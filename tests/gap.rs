@@ -1,0 +1,283 @@
+//! The gap workflow on recordings with hidden effects, made by a ray caster that shares no code with what is fitted.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+use reality_sim::{
+    Sequence,
+    gap::{
+        Analysis, Options, PoseSource, Recording, analyse,
+        report::{Report, Verdict},
+    },
+    sensor::{Model, library},
+};
+use reality_sim_hidden::{Falloff, Hidden, Recipe, Walk};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A small recording with these effects.
+fn record(seed: u64, effects: &[Hidden]) -> (TempDir, Sequence) {
+    recorded(&Recipe { effects: effects.to_vec(), ..small(seed) })
+}
+
+fn small(seed: u64) -> Recipe {
+    Recipe { frames: 32, size: [320, 240], ..Recipe::new(seed) }
+}
+
+fn recorded(recipe: &Recipe) -> (TempDir, Sequence) {
+    let folder = tempfile::tempdir().unwrap();
+    let sequence = recipe.record(folder.path()).unwrap();
+    (folder, sequence)
+}
+
+fn analysed(sequence: &Sequence, model: &Model, options: &Options) -> Analysis {
+    let recording = Recording::new(sequence, &sequence.groundtruth, PoseSource::Measured, None).unwrap();
+    analyse(&recording, model, options, &|_| ()).unwrap()
+}
+
+fn reported(sequence: &Sequence) -> Report {
+    analysed(sequence, &Model::default(), &Options::default()).report
+}
+
+fn named(report: &Report) -> Vec<&str> {
+    report.effects.iter().map(|effect| effect.id.as_str()).collect()
+}
+
+/// The estimate of a parameter is within four of its standard deviations of the truth.
+fn assert_size(report: &Report, id: &str, parameter: &str, truth: f64) {
+    // The hidden defocus is a disc, the library's a Gaussian with the same edges: a tenth wider.
+    let form = if id == "defocus" { 0.15 * truth } else { 0.0 };
+    let effect = report.effects.iter().find(|effect| effect.id == id).unwrap();
+    let estimate = &effect.parameters[parameter];
+    let off = ((estimate.value - truth).abs() - form) / estimate.sigma;
+    assert!(off < 4.0, "{id}: {} ± {} for {truth}", estimate.value, estimate.sigma);
+}
+
+#[test]
+fn where_nothing_is_missing_no_name_is_given_and_every_effect_has_a_limit() {
+    for seed in [1, 2, 3] {
+        let (_folder, sequence) = record(seed, &[]);
+        let report = reported(&sequence);
+        assert_eq!(named(&report), Vec::<&str>::new(), "seed {seed}");
+        assert_eq!(report.unexplained, [], "seed {seed}");
+        let told = report.not_found.len() + report.unobservable.len();
+        assert_eq!(told, library().len(), "seed {seed}");
+        assert_eq!(report.gap.before, report.gap.after, "seed {seed}");
+    }
+}
+
+#[test]
+fn a_hidden_effect_is_named_with_its_size_and_the_gap_closes() {
+    let pitch = Hidden::MountPitch { angle_rad: 0.02 };
+    let cases: [(Hidden, &str, &str, f64); 6] = [
+        (pitch, "pitch_rad", "geometry", 0.02),
+        (Hidden::TimeOffset { offset_s: 0.04 }, "offset_s", "geometry", 0.04),
+        (Hidden::Defocus { sigma_px: 1.0 }, "sigma_px", "sharpness", 1.0),
+        (Hidden::Vignetting { strength: 0.35, falloff: Falloff::Quadratic }, "strength", "photometry", 0.35),
+        (Hidden::ChromaticAberration { red_scale: 0.003, blue_scale: -0.002 }, "red_scale", "color", 0.003),
+        (Hidden::OdometryScale { scale: -0.2 }, "scale", "motion", -0.2),
+    ];
+    for (hidden, parameter, channel, truth) in cases {
+        let (_folder, sequence) = record(11, &[hidden]);
+        let report = reported(&sequence);
+        assert_eq!(named(&report), [hidden.id()], "{}", report.summary);
+        assert_eq!(report.verdict, Verdict::Named, "{}", report.summary);
+        assert_size(&report, hidden.id(), parameter, truth);
+        let gap = &report.gap.channels[channel];
+        assert!(gap.after < 0.8 * gap.before, "{}: {gap:?}", hidden.id());
+    }
+}
+
+#[test]
+fn two_effects_are_both_named() {
+    let effects = [Hidden::MountRoll { angle_rad: -0.025 }, Hidden::Defocus { sigma_px: 0.9 }];
+    let (_folder, sequence) = record(21, &effects);
+    let report = reported(&sequence);
+    let found: BTreeSet<&str> = named(&report).into_iter().collect();
+    assert_eq!(found, BTreeSet::from(["mount_roll", "defocus"]), "{}", report.summary);
+    assert_size(&report, "mount_roll", "roll_rad", -0.025);
+}
+
+#[test]
+fn an_extended_model_given_again_has_nothing_further_to_find() {
+    let (_folder, sequence) = record(31, &[Hidden::CameraHeight { height_m: 0.02 }]);
+    let first = analysed(&sequence, &Model::default(), &Options::default());
+    assert_eq!(named(&first.report), ["camera_height"]);
+    let again = Model::from_toml(Path::new("model.toml"), &first.model.to_toml()).unwrap();
+    assert_eq!(again, first.model);
+    let second = analysed(&sequence, &again, &Options::default()).report;
+    assert_eq!(named(&second), Vec::<&str>::new());
+    assert_eq!(
+        second.in_model.iter().map(|effect| effect.id.as_str()).collect::<Vec<_>>(),
+        ["camera_height"]
+    );
+    assert!((second.gap.before - first.report.gap.after).abs() < 0.02 * first.report.gap.after);
+}
+
+#[test]
+fn what_no_effect_explains_is_called_unknown_and_located() {
+    let (_folder, sequence) =
+        record(45, &[Hidden::MissingLine { positive_x: true }, Hidden::MissingLine { positive_x: false }]);
+    let report = reported(&sequence);
+    assert_eq!(report.verdict, Verdict::Unknown, "{}", report.summary);
+    assert!(report.unexplained.iter().all(|pattern| pattern.channel == "geometry"));
+    assert_eq!(named(&report), Vec::<&str>::new());
+}
+
+#[test]
+fn an_effect_that_is_not_in_the_library_gets_no_other_name() {
+    let (_folder, sequence) = record(51, &[Hidden::Vignetting { strength: 0.4, falloff: Falloff::Cos4 }]);
+    let options = Options { without: vec!["vignetting".to_owned()], ..Options::default() };
+    let report = analysed(&sequence, &Model::default(), &options).report;
+    assert_eq!(report.verdict, Verdict::Unknown, "{}", report.summary);
+}
+
+#[test]
+fn a_robot_that_stands_still_cannot_show_effects_of_motion() {
+    let (_folder, sequence) = recorded(&Recipe {
+        walk: Walk::Standing,
+        effects: vec![Hidden::RollingShutter { readout_s: 0.03 }],
+        ..small(61)
+    });
+    let report = reported(&sequence);
+    assert_eq!(report.verdict, Verdict::Inconclusive, "{}", report.summary);
+    let unseen: BTreeSet<&str> = report.unobservable.iter().map(|effect| effect.id.as_str()).collect();
+    for id in ["rolling_shutter", "time_offset", "motion_blur", "odometry_scale"] {
+        assert!(unseen.contains(id), "{id} is not in {unseen:?}");
+    }
+    assert!(report.unobservable.iter().all(|effect| !effect.recording_that_would_decide.is_empty()));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_report() {
+    let (_folder, sequence) = record(71, &[Hidden::FocalLength { scale: 0.02 }]);
+    let once = analysed(&sequence, &Model::default(), &Options::default());
+    let twice = analysed(&sequence, &Model::default(), &Options::default());
+    assert_eq!(once, twice);
+    assert_eq!(named(&once.report), ["focal_length"]);
+}
+
+fn program(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_reality-sim")).args(arguments).output().unwrap()
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+/// The program fails with one line that has all these parts.
+fn assert_refused(arguments: &[&str], parts: &[&str]) {
+    let output = program(arguments);
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(message.trim_end().lines().count(), 1, "{message}");
+    for part in parts {
+        assert!(message.contains(part), "{message:?} has no {part:?}");
+    }
+}
+
+#[test]
+fn the_program_writes_a_report_a_page_pictures_and_a_model_that_it_takes_again() {
+    let (folder, _sequence) = record(81, &[Hidden::MountPitch { angle_rad: -0.02 }]);
+    let out = folder.path().join("report");
+    let output = program(&["gap", text(folder.path()), "--out", text(&out), "--json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let written: Value = serde_json::from_str(&fs::read_to_string(out.join("report.json")).unwrap()).unwrap();
+    assert_eq!(printed, written);
+    assert_eq!(written["verdict"], "named");
+    let effect = &written["effects"][0];
+    assert_eq!(effect["id"], "mount_pitch");
+    assert!(effect["parameters"]["pitch_rad"]["value"].as_f64().unwrap() < -0.015);
+    assert_eq!(effect["parameters"]["pitch_rad"]["unit"], "rad");
+    for key in ["p_value", "held_out_gain", "confusable_with", "because"] {
+        assert!(!effect[key].is_null(), "{key}");
+    }
+    for key in ["before", "after", "floor", "unit", "channels"] {
+        assert!(!written["gap"][key].is_null(), "{key}");
+    }
+    assert!(written["not_found"][0]["detection_limit"]["value"].as_f64().unwrap() > 0.0);
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("mount_pitch") && !page.contains("http"), "self-contained");
+    for name in ["measured", "before", "after"] {
+        assert_eq!(image::open(out.join(format!("pictures/{name}.png"))).unwrap().width(), 320);
+    }
+    let again = folder.path().join("again");
+    let model = out.join("model.toml");
+    let output =
+        program(&["gap", text(folder.path()), "--model", text(&model), "--out", text(&again), "--json"]);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["effects"], Value::Array(Vec::new()));
+    assert_eq!(report["in_model"][0]["id"], "mount_pitch");
+}
+
+#[test]
+fn poses_of_the_filter_will_do_and_what_they_absorb_is_said() {
+    let (folder, _sequence) = record(91, &[Hidden::MountPitch { angle_rad: 0.03 }]);
+    let out = folder.path().join("report");
+    let output =
+        program(&["gap", text(folder.path()), "--tag", "--backend", "cpu", "--out", text(&out), "--json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["poses"]["source"], "tagged");
+    assert!(report["poses"]["absorbed"].as_str().unwrap().contains("place and heading"));
+    assert_eq!(report["effects"][0]["id"], "mount_pitch", "{}", report["summary"]);
+}
+
+#[test]
+fn broken_pictures_are_left_out_and_named() {
+    let (folder, sequence) = record(101, &[]);
+    let picture = sequence.image_path(5).unwrap();
+    let bytes = fs::read(&picture).unwrap();
+    fs::write(&picture, &bytes[..bytes.len() / 2]).unwrap();
+    fs::remove_file(sequence.image_path(9).unwrap()).unwrap();
+    let out = folder.path().join("report");
+    let output = program(&["gap", text(folder.path()), "--out", text(&out), "--json"]);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["frames"], 30);
+    assert_eq!(report["left_out"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn what_the_camera_file_does_not_tell_is_not_judged() {
+    let (folder, _sequence) = record(111, &[]);
+    let camera = folder.path().join("camera.toml");
+    let without: String = fs::read_to_string(&camera)
+        .unwrap()
+        .lines()
+        .take_while(|line| !line.starts_with("[photometry]"))
+        .flat_map(|line| [line, "\n"])
+        .collect();
+    fs::write(&camera, without).unwrap();
+    let report = reported(&Sequence::open(folder.path()).unwrap());
+    let unseen: Vec<&str> = report.unobservable.iter().map(|effect| effect.id.as_str()).collect();
+    for id in ["vignetting", "white_balance", "defocus", "sensor_noise"] {
+        assert!(unseen.contains(&id), "{id} is not in {unseen:?}");
+    }
+    assert_eq!(named(&report), Vec::<&str>::new());
+}
+
+#[test]
+fn bad_input_is_one_sentence() {
+    let (folder, _sequence) = record(121, &[]);
+    let (input, out) = (text(folder.path()), folder.path().join("report"));
+    let out = text(&out);
+    assert_refused(&["gap", "no/such/folder", "--out", out], &["no/such/folder"]);
+    assert_refused(&["gap", input, "--out", "no/such/folder/report"], &["no/such/folder"]);
+    assert_refused(&["gap", input, "--out", input], &["holds the input"]);
+    assert_refused(&["gap", input, "--frames", "0..5", "--out", out], &["5 of the 5 frames", "at least 12"]);
+    assert_refused(&["gap", input, "--frames", "20..90", "--out", out], &["frames 0 to 31"]);
+    let model = folder.path().join("model.toml");
+    fs::write(&model, "[[effect]]\nid = \"gremlins\"\n").unwrap();
+    assert_refused(&["gap", input, "--model", text(&model), "--out", out], &["model.toml", "gremlins"]);
+    fs::write(&model, "[[effect]]\nid = \"vignetting\"\nstrength = nan\n").unwrap();
+    assert_refused(&["gap", input, "--model", text(&model), "--out", out], &["model.toml", "strength"]);
+    assert_eq!(program(&["gap", input, "--frames", "9..3", "--out", out]).status.code(), Some(2));
+    assert_eq!(program(&["gap", input]).status.code(), Some(2));
+}
