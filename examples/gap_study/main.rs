@@ -4,6 +4,7 @@
 //! `cargo run --release --example gap_study -- --out FOLDER` adds its runs to `FOLDER/runs.jsonl` (a run that is there is
 //! not repeated) and writes `FOLDER/study.md`. `--part nulls|singles|pairs|removed|foreign|full` and `--runs N` make a part of it.
 
+mod limits;
 mod plan;
 mod run;
 mod summary;
@@ -19,7 +20,8 @@ use std::{
 
 use clap::Parser;
 
-use plan::{Part, Task};
+use limits::Limits;
+use plan::Part;
 use run::Outcome;
 
 /// Makes recordings with hidden effects and lets the workflow find them.
@@ -46,14 +48,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut outcomes = read(&file)?;
     if !args.summary {
         let parts = if args.part.is_empty() { Part::ALL.to_vec() } else { args.part.clone() };
-        let limits = run::limits()?;
         let done: BTreeSet<String> = outcomes.iter().map(|outcome| outcome.task.key()).collect();
         let mut log = OpenOptions::new().create(true).append(true).open(&file)?;
+        let mut limits = Limits::default();
         for part in parts {
-            let tasks: Vec<Task> = plan::tasks(part, &limits)?;
-            let tasks = tasks.into_iter().take(args.runs.unwrap_or(usize::MAX));
+            let tasks = plan::tasks(part).into_iter().take(args.runs.unwrap_or(usize::MAX));
             for task in tasks.filter(|task| !done.contains(&task.key())) {
-                let outcome = run::run(&task)?;
+                let Some(chosen) = task.chosen(&mut limits)? else {
+                    eprintln!("{}: cannot be seen in this recording", task.key());
+                    continue;
+                };
+                let outcome = run::run(&task, &chosen)?;
                 eprintln!("{}", outcome.line());
                 writeln!(log, "{}", serde_json::to_string(&outcome)?)?;
                 outcomes.push(outcome);

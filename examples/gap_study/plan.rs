@@ -1,13 +1,12 @@
 //! What is run.
 
-use std::{collections::BTreeMap, error::Error};
+use std::error::Error;
 
 use clap::ValueEnum;
-use reality_sim::sensor::{Role, effect};
-use reality_sim_hidden::{FOREIGN, Hidden, LIBRARY, Random};
+use reality_sim_hidden::{FOREIGN, LIBRARY, Random};
 use serde::{Deserialize, Serialize};
 
-use crate::truth::main_size;
+use crate::limits::Limits;
 
 /// Parts of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
@@ -34,36 +33,23 @@ impl Part {
 
 /// Sizes of single effects, in detection limits.
 pub const SIZES: [f64; 4] = [3.0, 6.0, 12.0, 1.0];
+/// From here on an effect has to be named.
+pub const CLEAR: f64 = 3.0;
 const NULLS: u64 = 220;
 const SEEDS: u64 = 4;
-const PAIRS: u64 = 60;
+const PAIRS: u64 = 72;
 const FOREIGN_SEEDS: u64 = 6;
-/// Effects of a pair are so large, in detection limits.
-const PAIR_SIZE: f64 = 6.0;
-const REMOVED_SIZE: f64 = 6.0;
-
-/// No effect is larger than this part of its plausible range.
-const LARGEST: f64 = 0.8;
-
-/// The plausible range of an effect's first parameter.
-fn reach(id: &str) -> f64 {
-    let first = effect(id)
-        .and_then(|effect| effect.parameters().iter().find(|parameter| parameter.role == Role::Size));
-    match id {
-        // A factor of the standard deviation, not the library's variance.
-        "sensor_noise" => 4.0,
-        _ => first.map_or(f64::INFINITY, |parameter| parameter.range[1]),
-    }
-}
+/// Effects of a pair, and those taken out of the library, are so large, in detection limits.
+const LARGE: f64 = 6.0;
 
 /// One recording and what is asked of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Task {
     pub part: Part,
     pub seed: u64,
-    /// Ids of what is hidden, each with its multiple of [`Hidden::of`]'s reference size.
-    pub hidden: Vec<(String, f64)>,
-    /// Of the detection limit; 0 where it means nothing.
+    /// Ids of what is hidden.
+    pub effects: Vec<String>,
+    /// How large each is, in detection limits.
     pub size: f64,
     /// Left out of the library.
     pub without: Option<String>,
@@ -71,91 +57,105 @@ pub struct Task {
     pub picture: [u32; 2],
 }
 
+/// An effect to hide.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Chosen {
+    pub id: String,
+    /// Of [`reality_sim_hidden::Hidden::of`]'s size.
+    pub multiple: f64,
+    /// In the recording's detection limits; 0 where it has none.
+    pub in_limits: f64,
+}
+
 impl Task {
     pub fn key(&self) -> String {
         format!(
             "{:?} {} {:?} {} {:?} {:?}",
-            self.part, self.seed, self.hidden, self.size, self.without, self.picture
+            self.part, self.seed, self.effects, self.size, self.without, self.picture
         )
     }
 
-    /// What is hidden, drawn by the seed.
-    pub fn effects(&self) -> Result<Vec<Hidden>, Box<dyn Error>> {
-        let mut random = Random::new(self.seed.wrapping_mul(77));
-        Ok(self
-            .hidden
-            .iter()
-            .map(|(id, multiple)| Hidden::of(id, *multiple, &mut random))
-            .collect::<Result<_, _>>()?)
+    /// What is hidden, and how large. None where one of the effects cannot be seen in the recording, or could not be as
+    /// large as wanted and plausible.
+    pub fn chosen(&self, limits: &mut Limits) -> Result<Option<Vec<Chosen>>, Box<dyn Error>> {
+        let mut all = Vec::with_capacity(self.effects.len());
+        for id in &self.effects {
+            let size = if self.part == Part::Foreign {
+                Some((foreign_multiple(id), 0.0))
+            } else {
+                let enough = 0.99 * self.size.min(CLEAR);
+                limits.size(self, id, self.size)?.filter(|(_, in_limits)| *in_limits > enough)
+            };
+            let Some((multiple, in_limits)) = size else { return Ok(None) };
+            all.push(Chosen { id: id.clone(), multiple, in_limits });
+        }
+        Ok(Some(all))
     }
 
     fn small(part: Part, seed: u64) -> Self {
-        Self { part, seed, hidden: Vec::new(), size: 0.0, without: None, frames: 40, picture: [320, 240] }
+        Self { part, seed, effects: Vec::new(), size: 0.0, without: None, frames: 40, picture: [320, 240] }
+    }
+
+    fn single(part: Part, seed: u64, id: &str, size: f64) -> Self {
+        Self { effects: vec![id.to_owned()], size, ..Self::small(part, seed) }
+    }
+
+    fn full(self) -> Self {
+        Self { part: Part::Full, frames: 60, picture: [640, 480], ..self }
     }
 }
 
-/// All runs of a part. `limits` are the detection limits by effect, in its main size.
-pub fn tasks(part: Part, limits: &BTreeMap<String, f64>) -> Result<Vec<Task>, Box<dyn Error>> {
-    let multiple = |id: &str, size: f64| -> Result<f64, Box<dyn Error>> {
-        let unit = main_size(&Hidden::of(id, 1.0, &mut Random::new(1))?).abs();
-        let wanted = size * limits.get(id).copied().unwrap_or(unit);
-        Ok(wanted.min(LARGEST * reach(id)) / unit)
-    };
-    let single = |part: Part, id: &str, size: f64, seed: u64| -> Result<Task, Box<dyn Error>> {
-        let hidden = vec![(id.to_owned(), multiple(id, size)?)];
-        Ok(Task { hidden, size, ..Task::small(part, seed) })
-    };
-    let mut tasks = Vec::new();
+/// Sizes of the effects that no library has, in [`reality_sim_hidden::Hidden::of`]'s: dirt that takes 40 % of the light,
+/// bands of 10 %, a line 7.5 cm off, fog of 0.04 per metre, waves of ±15 mm, a dent of half a percent of the picture's
+/// width. A missing line and people have none.
+fn foreign_multiple(id: &str) -> f64 {
+    match id {
+        "lens_dirt" | "fog" => 4.0,
+        _ => 5.0,
+    }
+}
+
+/// All runs of a part.
+pub fn tasks(part: Part) -> Vec<Task> {
     match part {
-        Part::Nulls => tasks.extend((0..NULLS).map(|seed| Task::small(part, 10_000 + seed))),
-        Part::Singles => {
-            // All effects at one size before the next: a part of the runs is a study, too.
-            for seed in 0..SEEDS {
-                for size in SIZES {
-                    for id in LIBRARY {
-                        tasks.push(single(part, id, size, 20_000 + seed)?);
-                    }
-                }
-            }
-        }
-        Part::Pairs => {
-            let mut random = Random::new(7);
-            for seed in 0..PAIRS {
-                let count = LIBRARY.len() as u64;
-                let first = random.below(count);
-                let second = (first + 1 + random.below(count - 1)) % count;
-                let hidden = [first, second].map(|index| index as usize).map(|index| {
-                    Ok::<_, Box<dyn Error>>((LIBRARY[index].to_owned(), multiple(LIBRARY[index], PAIR_SIZE)?))
-                });
-                let hidden = hidden.into_iter().collect::<Result<_, _>>()?;
-                tasks.push(Task { hidden, size: PAIR_SIZE, ..Task::small(part, 30_000 + seed) });
-            }
-        }
+        Part::Nulls => (0..NULLS).map(|seed| Task::small(part, 10_000 + seed)).collect(),
+        Part::Singles => singles(part, &SIZES),
         Part::Removed => {
-            for seed in 0..SEEDS {
-                for id in LIBRARY {
-                    let task = single(part, id, REMOVED_SIZE, 20_000 + seed)?;
-                    tasks.push(Task { without: Some(id.to_owned()), ..task });
-                }
-            }
+            let without = |task: Task| Task { without: task.effects.first().cloned(), ..task };
+            singles(part, &[LARGE]).into_iter().map(without).collect()
         }
+        Part::Pairs => pairs(),
         Part::Foreign => {
-            for seed in 0..FOREIGN_SEEDS {
-                for id in FOREIGN {
-                    let hidden = vec![(id.to_owned(), 1.0)];
-                    tasks.push(Task { hidden, ..Task::small(part, 40_000 + seed) });
-                }
-            }
+            let of_seed = |seed| FOREIGN.iter().map(move |id| Task::single(part, 40_000 + seed, id, 0.0));
+            (0..FOREIGN_SEEDS).flat_map(of_seed).collect()
         }
         Part::Full => {
-            let full = |task: Task| Task { part, frames: 60, picture: [640, 480], ..task };
-            for seed in 0..4 {
-                tasks.push(full(Task::small(part, 50_000 + seed)));
-            }
-            for (index, id) in (0..).zip(LIBRARY) {
-                tasks.push(full(single(part, id, 6.0, 50_100 + index)?));
-            }
+            let nulls = (0..4).map(|seed| Task::small(part, 50_000 + seed));
+            let singles = (0..).zip(LIBRARY).map(|(index, id)| Task::single(part, 50_100 + index, id, LARGE));
+            nulls.chain(singles).map(Task::full).collect()
         }
     }
-    Ok(tasks)
+}
+
+/// All effects at one size before the next: a part of the runs is a study, too.
+fn singles(part: Part, sizes: &[f64]) -> Vec<Task> {
+    let mut tasks = Vec::new();
+    for seed in 0..SEEDS {
+        for &size in sizes {
+            tasks.extend(LIBRARY.iter().map(|id| Task::single(part, 20_000 + seed, id, size)));
+        }
+    }
+    tasks
+}
+
+fn pairs() -> Vec<Task> {
+    let mut random = Random::new(7);
+    let mut pair = |seed| {
+        let count = LIBRARY.len() as u64;
+        let first = random.below(count);
+        let second = (first + 1 + random.below(count - 1)) % count;
+        let effects = [first, second].map(|index| LIBRARY[index as usize].to_owned()).to_vec();
+        Task { effects, size: LARGE, ..Task::small(Part::Pairs, 30_000 + seed) }
+    };
+    (0..PAIRS).map(&mut pair).collect()
 }

@@ -10,11 +10,11 @@ use reality_sim::{
     },
     sensor::{Model, effect},
 };
-use reality_sim_hidden::{Hidden, Recipe};
+use reality_sim_hidden::{Hidden, Random, Recipe};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    plan::Task,
+    plan::{Chosen, Task},
     truth::{main_size, parameters},
 };
 
@@ -22,6 +22,7 @@ use crate::{
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Outcome {
     pub task: Task,
+    pub hidden: Vec<Chosen>,
     /// Numbers of what was hidden.
     pub hidden_sizes: Vec<f64>,
     pub verdict: Verdict,
@@ -34,8 +35,8 @@ pub struct Outcome {
     pub gap: [f64; 2],
     pub oracle: Option<f64>,
     pub seconds: f64,
-    /// Detection limits by effect.
-    pub limits: BTreeMap<String, f64>,
+    /// Detection limits by effect: of which parameter, and its size.
+    pub limits: BTreeMap<String, (String, f64)>,
 }
 
 /// A parameter against its true value.
@@ -51,18 +52,19 @@ pub struct Compared {
 impl Outcome {
     pub fn line(&self) -> String {
         let hidden: Vec<String> = self
-            .task
             .hidden
             .iter()
             .zip(&self.hidden_sizes)
-            .map(|((id, _), size)| format!("{id} {size:.3e}"))
+            .map(|(chosen, size)| {
+                let Chosen { id, multiple, in_limits } = chosen;
+                format!("{id} {size:.3e} = {multiple:.3} × = {in_limits:.1} limits")
+            })
             .collect();
         format!(
-            "{:?} {} {:?} x{} -> {:?} {:?} {:?} {:.1}s",
+            "{:?} {} {:?} -> {:?} {:?} {:?} {:.1}s",
             self.task.part,
             self.task.seed,
             hidden,
-            self.task.size,
             self.verdict,
             self.named,
             self.unexplained,
@@ -71,10 +73,12 @@ impl Outcome {
     }
 }
 
-/// Runs a task.
-pub fn run(task: &Task) -> Result<Outcome, Box<dyn Error>> {
+/// Runs a task with these effects hidden, their signs and shapes drawn by the seed.
+pub fn run(task: &Task, hidden: &[Chosen]) -> Result<Outcome, Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
-    let effects = task.effects()?;
+    let mut random = Random::new(task.seed.wrapping_mul(77));
+    let drawn = hidden.iter().map(|chosen| Hidden::of(&chosen.id, chosen.multiple, &mut random));
+    let effects: Vec<Hidden> = drawn.collect::<Result<_, _>>()?;
     let mut recipe = Recipe::new(task.seed);
     recipe.frames = task.frames;
     recipe.size = task.picture;
@@ -86,6 +90,7 @@ pub fn run(task: &Task) -> Result<Outcome, Box<dyn Error>> {
     let seconds = start.elapsed().as_secs_f64();
     Ok(Outcome {
         task: task.clone(),
+        hidden: hidden.to_vec(),
         hidden_sizes: effects.iter().map(main_size).collect(),
         verdict: report.verdict,
         named: report
@@ -101,7 +106,7 @@ pub fn run(task: &Task) -> Result<Outcome, Box<dyn Error>> {
         limits: report
             .not_found
             .iter()
-            .map(|effect| (effect.id.clone(), effect.detection_limit.value))
+            .map(|effect| (effect.id.clone(), (effect.parameter.clone(), effect.detection_limit.value)))
             .collect(),
     })
 }
@@ -145,36 +150,4 @@ fn oracle(sequence: &Sequence, effects: &[Hidden], options: &Options) -> Result<
     }
     let recording = Recording::new(sequence, &sequence.groundtruth, PoseSource::Measured, None)?;
     Ok(Some(reality_sim::gap::gap_of(&recording, &model, options)?.before))
-}
-
-/// Detection limits by effect in its main size, from recordings in which nothing is hidden: the median of five.
-pub fn limits() -> Result<BTreeMap<String, f64>, Box<dyn Error>> {
-    let mut all: BTreeMap<String, Vec<f64>> = BTreeMap::new();
-    for seed in 0..5 {
-        let task = Task {
-            part: crate::plan::Part::Nulls,
-            seed: 90_000 + seed,
-            hidden: Vec::new(),
-            size: 0.0,
-            without: None,
-            frames: 40,
-            picture: [320, 240],
-        };
-        for (id, limit) in run(&task)?.limits {
-            all.entry(id).or_default().push(limit);
-        }
-    }
-    let median = |mut values: Vec<f64>| {
-        values.sort_by(f64::total_cmp);
-        values[values.len() / 2]
-    };
-    let mut limits: BTreeMap<String, f64> =
-        all.into_iter().map(|(id, values)| (id, median(values))).collect();
-    // The library's numbers are variances, the hidden one is a factor of the standard deviation: shot noise is nominally
-    // 0.0015 for each unit.
-    if let Some(limit) = limits.get_mut("sensor_noise") {
-        *limit = (1.0 + *limit / 0.0015).sqrt() - 1.0;
-    }
-    eprintln!("limits {limits:?}");
-    Ok(limits)
 }

@@ -54,7 +54,7 @@ fn line(text: &mut String, line: &str) {
 }
 
 fn hidden(outcome: &Outcome) -> BTreeSet<&str> {
-    outcome.task.hidden.iter().map(|(id, _)| id.as_str()).collect()
+    outcome.task.effects.iter().map(String::as_str).collect()
 }
 
 fn named(outcome: &Outcome) -> BTreeSet<&str> {
@@ -118,7 +118,7 @@ fn confusion(text: &mut String, runs: &[&Outcome]) {
             (false, Verdict::Unknown) => format!("{} and unknown", names.join(" + ")),
             (false, _) => names.join(" + "),
         };
-        for (id, _) in &run.task.hidden {
+        for id in &run.task.effects {
             *rows.entry(id).or_default().entry(answer.clone()).or_default() += 1;
         }
     }
@@ -154,7 +154,7 @@ fn unknowns(text: &mut String, title: &str, runs: &[&Outcome]) {
     );
     let mut groups: BTreeMap<&str, Vec<&Outcome>> = BTreeMap::new();
     for run in runs {
-        for (id, _) in &run.task.hidden {
+        for id in &run.task.effects {
             groups.entry(id).or_default().push(run);
         }
     }

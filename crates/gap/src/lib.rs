@@ -24,6 +24,7 @@ mod recording;
 pub mod report;
 mod report_file;
 mod rows;
+mod search;
 mod split;
 mod starting;
 mod system;

@@ -7,7 +7,6 @@ use reality_sim_core::{
     field::{Curve, FieldDimensions, LineSample, VisibleSample, sample_lines, visible_samples},
     pose::CameraPose,
     preprocess::{Texture, luma},
-    refine::{MeasureConfig, measure_offsets},
 };
 use reality_sim_sensor::{Chain, Frame, Trajectory};
 
@@ -15,14 +14,13 @@ use crate::{
     carpet::{self, Block, Spectrum},
     jpeg::{BLOCK, luma_steps},
     profile::{self, Piece, Profile},
+    search::{Coarse, search},
 };
 
 /// Between samples along a line on the ground, metres.
 const SPACING_M: f64 = 0.03;
 /// Between them in the picture, pixels.
 const SPACING_PX: f64 = 9.0;
-/// A line stands out from the carpet by at least this, grey levels.
-const MIN_CONTRAST: f64 = 25.0;
 /// Lines whose half width in the picture is outside this are too thin to be measured, or too near, pixels.
 const HALF_WIDTH_PX: std::ops::RangeInclusive<f64> = 0.5..=30.0;
 /// Blocks of carpet stay this far from lines and the carpet's edge beside what the blur takes, metres.
@@ -169,24 +167,24 @@ fn find_lines(view: &View<'_>, picture: &RgbImage, looking: Looking) -> (Vec<Lin
             Some(VisibleSample { pixel: view.project(visible.sample.point_in_world, 1)?, ..visible })
         })
         .collect();
-    let config = MeasureConfig { search_px: looking.search_px, min_contrast: MIN_CONTRAST };
-    let found = measure_offsets(&Texture::pack(&luma(picture)), &expected, config);
     // At the picture's rim a profile has no room.
     let size = DVec2::new(f64::from(picture.width()), f64::from(picture.height()));
     let has_room = |visible: &VisibleSample| {
         let room = visible.pixel.min(size - 1.0 - visible.pixel).min_element();
         room > looking.search_px + 2.0 * visible.half_width_px + ROOM_PX
     };
-    let line = |visible: &VisibleSample, offset_px: f64| {
+    let line = |found: &Coarse| {
+        let visible = &found.visible;
         let ground = visible.sample.point_in_world;
         let normal = visible.normal_in_image;
         let speed_px_s = flow.speed_px_s(ground, normal);
         let smear_px = view.chain.exposure_s() * speed_px_s;
-        let variance_px2 =
+        let expected_px2 =
             view.chain.psf_variance_px2(visible.pixel) + APERTURE_PX2 + smear_px * smear_px / 12.0;
+        let variance_px2 = expected_px2 + found.extra_px2;
         let piece =
             Piece { pixel: visible.pixel, normal, half_width_px: visible.half_width_px, variance_px2 };
-        let profile = profile::fit(picture, looking.gamma, &piece, offset_px)?;
+        let profile = profile::fit(picture, looking.gamma, &piece, found.offset_px)?;
         let curve = visible.sample.curve;
         let fraction = fraction(&view.curves[curve], ground);
         Some(Line {
@@ -201,7 +199,7 @@ fn find_lines(view: &View<'_>, picture: &RgbImage, looking: Looking) -> (Vec<Lin
             is_expected: has_room(visible),
         })
     };
-    let lines = found.iter().filter_map(|found| line(&found.visible, found.offset_px)).collect();
+    let lines = search(&Texture::pack(&luma(picture)), &expected, looking.search_px, line);
     let all = expected
         .iter()
         .filter(|visible| has_room(visible))

@@ -5,7 +5,7 @@ use reality_sim_sensor::{Covariate, library};
 
 use crate::{
     columns::Column,
-    evidence::{Evidence, Gain, HeldOut},
+    evidence::{Evidence, Gain, two_sided},
     recording::LEAST_VIEWS,
     total::Fit,
 };
@@ -37,8 +37,6 @@ pub(crate) struct Case {
     pub(crate) gain: Gain,
     /// Whether it is large enough to matter.
     pub(crate) material: bool,
-    /// The gain of the whole set of effects.
-    held_out: HeldOut,
     pub(crate) fit: Fit,
 }
 
@@ -74,24 +72,29 @@ impl Naming<'_> {
         let with: Vec<usize> = without.iter().copied().chain([effect]).collect();
         let free = self.columns_of(&with);
         let fit = self.evidence.fit(&free)?;
-        let over_time = changes_over_time(&with);
-        let held_out = self.evidence.held_out(&free, over_time)?;
-        let before = self.evidence.held_out(&self.columns_of(&without), over_time)?;
         let sizes: Vec<usize> =
             self.columns_of(&[effect]).into_iter().filter(|&column| self.columns[column].is_size()).collect();
+        let gain = self.gain(&with, &without)?;
         let p_value = if self.is_possible(&fit, &sizes) {
-            self.evidence.p_value(&fit, &sizes).min(self.alone(&without, &sizes))
+            let fitted = self.evidence.p_value(&fit, &sizes).min(self.alone(&without, &sizes));
+            if changes_over_time(&[effect]) { fitted.min(self.foretold(gain)) } else { fitted }
         } else {
             1.0
         };
         Some(Case {
             effect,
             p_value: (p_value * tested as f64).min(1.0),
-            gain: held_out.over(&before),
+            gain,
             material: self.is_material(&fit, &sizes),
-            held_out,
             fit,
         })
+    }
+
+    /// How unlikely a gain on unseen frames is chance. What is another at every time has a number for each, and each is
+    /// seen in a few frames: of so many numbers from so few frames a fit's scatter tells little, what it foretells does.
+    fn foretold(&self, gain: Gain) -> f64 {
+        let score = gain.value / gain.sigma.max(f64::MIN_POSITIVE);
+        if score > 0.0 { two_sided(score, self.evidence.degrees() as f64) } else { 1.0 }
     }
 
     /// The least p-value of one of an effect's sizes alone, corrected for their number: few of them may be at work.
@@ -154,18 +157,14 @@ impl Naming<'_> {
 
     /// An effect not named that explains clearly more than one named does, in its place: the old one, the new one.
     pub(crate) fn better(&self, all: &[usize], named: &[usize]) -> Option<(usize, usize)> {
-        let columns = self.columns_of(all);
-        let now = [false, true].map(|over_time| self.evidence.held_out(&columns, over_time));
         let others: Vec<usize> = self.effects().into_iter().filter(|effect| !all.contains(effect)).collect();
         let tries = named.iter().flat_map(|&old| others.iter().map(move |&new| (old, new)));
         let gains = tries.filter_map(|(old, new)| {
             let without: Vec<usize> = all.iter().copied().filter(|effect| *effect != old).collect();
-            let case = self.case(new, &without, others.len())?;
+            self.case(new, &without, others.len()).filter(Case::holds)?;
             let set: Vec<usize> = without.iter().copied().chain([new]).collect();
-            let now = now[usize::from(changes_over_time(&set))].as_ref()?;
-            let gain = case.held_out.over(now);
-            let replaces =
-                case.holds() && gain.score() > TELLS_APART && !self.adds(old, new, &without, others.len());
+            let gain = self.gain(&set, all)?;
+            let replaces = gain.score() > TELLS_APART && !self.adds(old, new, &without, others.len());
             replaces.then_some((gain.value, (old, new)))
         });
         gains.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, pair)| pair)
@@ -174,18 +173,22 @@ impl Naming<'_> {
     /// Other effects that explain as much as one of those named does, in its place.
     pub(crate) fn rivals(&self, effect: usize, named: &[usize]) -> Vec<usize> {
         let without: Vec<usize> = named.iter().copied().filter(|other| *other != effect).collect();
-        let columns = self.columns_of(named);
-        let best = [false, true].map(|over_time| self.evidence.held_out(&columns, over_time));
         let others: Vec<usize> = self.effects().into_iter().filter(|other| !named.contains(other)).collect();
         let rivals = |other: &usize| {
-            let Some(case) = self.case(*other, &without, others.len()) else { return false };
+            let holds = self.case(*other, &without, others.len()).is_some_and(|case| case.holds());
             let set: Vec<usize> = without.iter().copied().chain([*other]).collect();
-            let Some(best) = &best[usize::from(changes_over_time(&set))] else { return false };
-            case.holds()
-                && best.over(&case.held_out).score() < TELLS_APART
+            holds
+                && self.gain(named, &set).is_some_and(|gain| gain.score() < TELLS_APART)
                 && !self.adds(effect, *other, &without, others.len())
         };
         others.iter().copied().filter(rivals).collect()
+    }
+
+    /// What one set of effects gains over another, both judged on the same unseen frames.
+    fn gain(&self, set: &[usize], over: &[usize]) -> Option<Gain> {
+        let over_time = changes_over_time(set) || changes_over_time(over);
+        let held_out = |effects: &[usize]| self.evidence.held_out(&self.columns_of(effects), over_time);
+        Some(held_out(set)?.over(&held_out(over)?))
     }
 
     /// Whether an effect has something to add to another one: then they are two, not one in two shapes.

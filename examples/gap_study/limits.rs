@@ -1,0 +1,59 @@
+//! How large an effect is in the detection limits of the very recording that it is hidden in.
+
+use std::{collections::BTreeMap, error::Error};
+
+use reality_sim::sensor::{Role, effect};
+use reality_sim_hidden::{Hidden, Random};
+
+use crate::{
+    plan::{Part, Task},
+    run,
+    truth::{main_size, parameters},
+};
+
+/// No effect is larger than this part of its plausible range.
+const LARGEST: f64 = 0.8;
+/// The nominal shot noise: the library's numbers are variances, the hidden one is a factor of the standard deviation.
+const SHOT_NOISE: f64 = 0.0015;
+
+/// A recording's detection limits by effect: the parameter and its size.
+type OfRecording = BTreeMap<String, (String, f64)>;
+
+/// Detection limits of the recordings of some seeds, each found in that recording with nothing hidden.
+#[derive(Default)]
+pub struct Limits(BTreeMap<(u64, [u32; 2]), OfRecording>);
+
+impl Limits {
+    /// An effect's size as the multiple of [`Hidden::of`]'s, and in the recording's detection limits. None where it cannot
+    /// be seen in that recording.
+    pub fn size(
+        &mut self,
+        task: &Task,
+        id: &str,
+        in_limits: f64,
+    ) -> Result<Option<(f64, f64)>, Box<dyn Error>> {
+        let key = (task.seed, task.picture);
+        if !self.0.contains_key(&key) {
+            let nothing = Task { part: Part::Nulls, effects: Vec::new(), without: None, ..task.clone() };
+            self.0.insert(key, run::run(&nothing, &[])?.limits);
+        }
+        let Some((parameter, limit)) = self.0[&key].get(id) else { return Ok(None) };
+        let limit = if id == "sensor_noise" { (1.0 + limit / SHOT_NOISE).sqrt() - 1.0 } else { *limit };
+        let unit = Hidden::of(id, 1.0, &mut Random::new(task.seed.wrapping_mul(77)))?;
+        let known = parameters(&unit).into_iter().find(|(name, _)| name == parameter);
+        let per_multiple = known.map_or(main_size(&unit), |(_, value)| value).abs();
+        let largest = LARGEST * reach(id) / main_size(&unit).abs();
+        let multiple = (in_limits * limit / per_multiple).min(largest);
+        Ok(Some((multiple, multiple * per_multiple / limit)))
+    }
+}
+
+/// The plausible range of an effect's first parameter.
+fn reach(id: &str) -> f64 {
+    let first = effect(id)
+        .and_then(|effect| effect.parameters().iter().find(|parameter| parameter.role == Role::Size));
+    match id {
+        "sensor_noise" => 4.0,
+        _ => first.map_or(f64::INFINITY, |parameter| parameter.range[1]),
+    }
+}
