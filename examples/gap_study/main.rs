@@ -2,7 +2,7 @@
 //! or none hidden in each by seed, the workflow's verdict compared with the truth only afterwards.
 //!
 //! `cargo run --release --example gap_study -- --out FOLDER` adds its runs to `FOLDER/runs.jsonl` (a run that is there is
-//! not repeated) and writes `FOLDER/study.md`. `--part nulls|singles|pairs|removed|foreign|full` and `--runs N` make a part of it.
+//! not repeated) and writes `FOLDER/study.md`. `--part nulls|singles|pairs|removed|foreign|full` `--effect ID` and `--runs N` make a part of it.
 
 mod limits;
 mod plan;
@@ -33,6 +33,9 @@ struct Args {
     /// Only these parts
     #[arg(long, value_enum)]
     part: Vec<Part>,
+    /// Only runs in which one of these effects is hidden
+    #[arg(long)]
+    effect: Vec<String>,
     /// At most so many runs of each part
     #[arg(long)]
     runs: Option<usize>,
@@ -52,8 +55,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut log = OpenOptions::new().create(true).append(true).open(&file)?;
         let mut limits = Limits::default();
         for part in parts {
-            let tasks = plan::tasks(part).into_iter().take(args.runs.unwrap_or(usize::MAX));
-            for task in tasks.filter(|task| !done.contains(&task.key())) {
+            let mut tasks = plan::tasks(part);
+            if !args.effect.is_empty() {
+                tasks.retain(|task| task.effects.iter().any(|id| args.effect.contains(id)));
+            }
+            tasks.truncate(args.runs.unwrap_or(usize::MAX));
+            for task in tasks.into_iter().filter(|task| !done.contains(&task.key())) {
                 let Some(chosen) = task.chosen(&mut limits)? else {
                     eprintln!("{}: cannot be seen in this recording", task.key());
                     continue;

@@ -58,7 +58,7 @@ pub fn analyse(
     for case in &cases {
         let alone = without(&found.measured.model, case.effect);
         let closes = closed(&gaps(&found, &Judged::new(recording, &found, &alone)?, &after));
-        let report = effect_report(&naming, case, &all, closes);
+        let report = effect_report(&naming, case, &found, closes);
         if found.named.contains(&case.effect) { effects.push(report) } else { in_model.push(report) }
     }
     effects.sort_by(|a, b| b.held_out_gain.value.total_cmp(&a.held_out_gain.value));
@@ -157,7 +157,7 @@ fn gain(gain: Gain) -> Estimate {
 fn effect_report(
     naming: &Naming<'_>,
     case: &Case,
-    all: &[usize],
+    found: &Found,
     closes: BTreeMap<String, f64>,
 ) -> EffectReport {
     let effect = library()[case.effect];
@@ -177,7 +177,10 @@ fn effect_report(
         .collect();
     let plain: Vec<(&'static str, f64, f64)> =
         estimates.iter().map(|(name, estimate)| (*name, estimate.value, estimate.sigma)).collect();
-    let rivals = naming.rivals(case.effect, all);
+    let mut rivals = naming.rivals(case.effect, &found.all());
+    rivals.extend(found.tied(case.effect));
+    rivals.sort_unstable();
+    rivals.dedup();
     let values: Vec<f64> = plain.iter().map(|(_, value, _)| *value).collect();
     let (name, because) = words::directed(effect, &values);
     EffectReport {

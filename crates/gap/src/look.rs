@@ -23,10 +23,14 @@ const SPACING_M: f64 = 0.03;
 const SPACING_PX: f64 = 9.0;
 /// Lines whose half width in the picture is outside this are too thin to be measured, or too near, pixels.
 const HALF_WIDTH_PX: std::ops::RangeInclusive<f64> = 0.5..=30.0;
+/// And those that are narrower than this against the blur: carpet has as much contrast as is left of them.
+const THINNEST: f64 = 0.25;
 /// Blocks of carpet stay this far from lines and the carpet's edge beside what the blur takes, metres.
 const CARPET_MARGIN_M: f64 = 0.03;
 /// Sides of marks on the field, metres: lines beside them are left out.
 const MARK_M: f64 = 0.15;
+/// A goal's net is at least this far behind the line, metres.
+const NET_M: f64 = 0.3;
 /// Variance of a pixel's own square aperture, pixels squared.
 pub(crate) const APERTURE_PX2: f64 = 1.0 / 12.0;
 /// Room that a profile needs beyond a line's sides and the search, pixels.
@@ -182,6 +186,7 @@ fn find_lines(view: &View<'_>, picture: &RgbImage, looking: Looking) -> (Vec<Lin
         let expected_px2 =
             view.chain.psf_variance_px2(visible.pixel) + APERTURE_PX2 + smear_px * smear_px / 12.0;
         let variance_px2 = expected_px2 + found.extra_px2;
+        (visible.half_width_px > THINNEST * variance_px2.sqrt()).then_some(())?;
         let piece =
             Piece { pixel: visible.pixel, normal, half_width_px: visible.half_width_px, variance_px2 };
         let profile = profile::fit(picture, looking.gamma, &piece, found.offset_px)?;
@@ -207,14 +212,36 @@ fn find_lines(view: &View<'_>, picture: &RgbImage, looking: Looking) -> (Vec<Lin
     (lines, all.collect())
 }
 
-/// Whether no other line and no mark is so near that it is in the profile.
+/// Whether nothing else is so near in the picture that it is in the profile: no other line, no mark, not the carpet's
+/// end, no goal.
 fn stands_alone(field: &FieldDimensions, view: &View<'_>, visible: &VisibleSample) -> bool {
     let LineSample { point_in_world, clearance_m, .. } = visible.sample;
-    let m_per_px = 0.5 * field.line_width_m / visible.half_width_px;
     let blur_px = view.chain.psf_variance_px2(visible.pixel).sqrt();
-    let needed_m = field.line_width_m + m_per_px * (6.0 + 2.5 * blur_px);
-    let off_marks = field.marks().iter().all(|mark| mark.distance(point_in_world) > MARK_M + needed_m);
-    clearance_m > needed_m && off_marks
+    // What is fitted, and the blur of what is beyond.
+    let needed_px = visible.half_width_px + 5.0 + 4.5 * blur_px;
+    let to_marks = field.marks().into_iter().map(|mark| mark.distance(point_in_world) - MARK_M);
+    let to_edge_m = (field.carpet_half_extent_m() - point_in_world.abs()).min_element();
+    let nearest_m = to_marks.fold(clearance_m.min(to_edge_m), f64::min).min(to_nets_m(field, point_in_world));
+    let free_m = nearest_m - 0.5 * field.line_width_m;
+    // Beyond a line a metre has fewer pixels than on its near side.
+    let is_free = |offset_m: f64| {
+        let end = point_in_world + offset_m * visible.sample.normal_in_world();
+        view.project(end, 1).is_none_or(|pixel| pixel.distance(visible.pixel) > needed_px)
+    };
+    let needed_m = needed_px * 0.5 * field.line_width_m / visible.half_width_px;
+    let ground = Ground::new(view);
+    let posts = field.goals().into_iter().flat_map(|goal| goal.posts);
+    let off_posts =
+        posts.into_iter().all(|post| !ground.hides(post.center, post.radius_m + needed_m, point_in_world));
+    free_m > 0.0 && is_free(-free_m) && is_free(free_m) && off_posts
+}
+
+/// From a point to what may stand behind a goal's line between its posts: nets and bars, of which a field's file does
+/// not tell.
+fn to_nets_m(field: &FieldDimensions, point: DVec2) -> f64 {
+    let in_mouth = point.y.abs() < 0.5 * field.goal_width_m + NET_M;
+    let beyond_m = 0.5 * field.length_m + NET_M - point.x.abs();
+    if in_mouth { beyond_m } else { f64::INFINITY }
 }
 
 /// Where on a curve a point of it lies, as a fraction of the curve's length.

@@ -146,6 +146,13 @@ struct Bin {
 }
 
 impl Bin {
+    /// By their median: a thing that stands on a part of the carpet does not move it.
+    fn of_blocks(values: &mut [f64]) -> Self {
+        let rows = values.len() as f64;
+        let information = DMat2::from_diagonal(DVec2::new(rows, 0.0));
+        Self { information, score: DVec2::new(rows * median(values), 0.0), rows }
+    }
+
     fn mean(&self, shrink: f64) -> DVec2 {
         (self.information + DMat2::from_diagonal(DVec2::splat(shrink))).inverse() * self.score
     }
@@ -264,20 +271,13 @@ fn bins(
     from_s: f64,
 ) -> BTreeMap<(i32, i32), Bin> {
     let mut bins: BTreeMap<(i32, i32), Bin> = BTreeMap::new();
+    // Of what is measured in blocks of carpet the middle one of a place stands for all.
+    let mut blocks: BTreeMap<(i32, i32), Vec<f64>> = BTreeMap::new();
+    let of_blocks = matches!(channel, Channel::Photometry | Channel::Noise);
     for (row, value) in frame.rows.iter().zip(&frame.values) {
         let sigma = sigmas.get(&(row.group.channel, row.group.part));
         let Some(&sigma) = sigma.filter(|_| row.group.channel == channel && value.is_finite()) else {
             continue;
-        };
-        // Other things on the carpet are no pattern of it; what is odd about a line is.
-        let is_thing = matches!(channel, Channel::Photometry | Channel::Noise) && value.abs() > CLIP * sigma;
-        if is_thing {
-            continue;
-        }
-        let residual = (value / sigma).clamp(-CLIP, CLIP);
-        let direction = match (channel, locus) {
-            (Channel::Geometry | Channel::Color, Locus::Picture) => row.normal,
-            _ => DVec2::X,
         };
         let place = match locus {
             Locus::Picture => picture_cell(row.pixel, frame.size),
@@ -286,12 +286,26 @@ fn bins(
             }
             Locus::Time => (((frame.time_s - from_s) / 1.0).floor() as i32, 0),
         };
-        let bin = bins.entry(place).or_default();
-        *bin += Bin {
+        if of_blocks {
+            // Other things on the carpet are no pattern of it; what is odd about a line is.
+            if value.abs() <= CLIP * sigma {
+                blocks.entry(place).or_default().push(value / sigma);
+            }
+            continue;
+        }
+        let residual = (value / sigma).clamp(-CLIP, CLIP);
+        let direction = match (channel, locus) {
+            (Channel::Geometry | Channel::Color, Locus::Picture) => row.normal,
+            _ => DVec2::X,
+        };
+        *bins.entry(place).or_default() += Bin {
             information: DMat2::from_cols(direction * direction.x, direction * direction.y),
             score: residual * direction,
             rows: 1.0,
         };
+    }
+    for (place, mut values) in blocks {
+        bins.insert(place, Bin::of_blocks(&mut values));
     }
     bins
 }

@@ -1,6 +1,6 @@
 //! Detect, name, add, until nothing more is found.
 
-use std::collections::BTreeMap;
+use std::{cmp::Ordering, collections::BTreeMap};
 
 use reality_sim_sensor::{Model, library};
 
@@ -9,7 +9,7 @@ use crate::{
     evidence::Evidence,
     look::Look,
     measure::{MeasureError, linearise, look_at},
-    naming::{Naming, base},
+    naming::{Naming, TELLS_APART, base},
     recording::Recording,
     rows::Channel,
     split::Split,
@@ -29,6 +29,8 @@ const SETTLING: usize = 6;
 /// A model has settled when a step gains less than this in log-likelihood.
 const SETTLED: f64 = 1.0;
 
+/// What a model leaves is off by this part of what it explains.
+const INEXACT: f64 = 0.03;
 /// Residuals beyond this many standard deviations are no measurements.
 const CUT_OFF: f64 = 5.0;
 /// Rows of a channel in the pictures that a mean residual stands for.
@@ -77,6 +79,8 @@ pub(crate) struct Found {
     /// Indices into the library of the effects that the model had, and of those found, in the order of finding.
     pub(crate) given: Vec<usize>,
     pub(crate) named: Vec<usize>,
+    /// An effect that was taken, and another that left as little in its place.
+    ties: Vec<(usize, usize)>,
 }
 
 impl Found {
@@ -87,6 +91,13 @@ impl Found {
 
     pub(crate) fn evidence(&self) -> Evidence<'_> {
         self.measured.evidence(&self.columns)
+    }
+
+    /// Effects not in the model that stood for a named one as well when it was taken.
+    pub(crate) fn tied(&self, effect: usize) -> impl Iterator<Item = usize> {
+        let all = self.all();
+        let tied = self.ties.iter().filter(move |(taken, other)| *taken == effect && !all.contains(other));
+        tied.map(|(_, other)| *other)
     }
 }
 
@@ -135,15 +146,21 @@ pub(crate) fn find(
     }
     // Sets that were tried: swapping must not go round in circles.
     let mut tried: Vec<Vec<usize>> = vec![Vec::new()];
+    let mut ties = Vec::new();
     while named.len() < MOST_EFFECTS {
         progress(Stage::Testing);
         let mut sets = finder.next_sets(&measured, &given, &named);
         sets.retain(|set| !tried.contains(&sorted(set)));
-        let Some((set, settled)) = finder.closest(&measured, &given, sets)? else { break };
+        let mut closest = finder.closest(&measured, &given, sets)?.into_iter();
+        let Some((set, settled)) = closest.next() else { break };
         tried.push(sorted(&set));
+        for (other, _) in closest {
+            tried.push(sorted(&other));
+            ties.extend(differing(&set, &other));
+        }
         (named, measured) = (set, settled);
     }
-    Ok(Found { columns, split, measured, given, named })
+    Ok(Found { columns, split, measured, given, named, ties })
 }
 
 /// A recording measured with a model as it is.
@@ -155,7 +172,20 @@ pub(crate) fn as_given(
     let columns = columns(&options.without);
     let split = Split::new(recording.frames.len(), options.seed);
     let measured = Measured::new(recording, model.clone(), &columns, &split, SEARCH[1])?;
-    Ok(Found { columns, split, measured, given: Vec::new(), named: Vec::new() })
+    Ok(Found { columns, split, measured, given: Vec::new(), named: Vec::new(), ties: Vec::new() })
+}
+
+/// Models whose settled fits differ by less, in log-likelihood, leave as little as each other. No model is exact, and what
+/// it is off by grows with what it explains.
+fn apart(explained: f64) -> f64 {
+    (0.5 * TELLS_APART * TELLS_APART).max(INEXACT * explained)
+}
+
+/// The one effect of a set that another set has something else for.
+fn differing(set: &[usize], other: &[usize]) -> Option<(usize, usize)> {
+    let of = set.iter().find(|effect| !other.contains(effect))?;
+    let instead = other.iter().find(|effect| !set.contains(effect))?;
+    Some((*of, *instead))
 }
 
 fn sorted(effects: &[usize]) -> Vec<usize> {
@@ -190,24 +220,30 @@ impl Finder<'_> {
         naming.next(&all).into_iter().map(|next| named.iter().copied().chain([next]).collect()).collect()
     }
 
-    /// Of several sets the one whose settled model leaves least, with that model.
+    /// Settles each of several sets: first the one to take, then those that leave as little. The set to take is the one
+    /// of fewest numbers among those that cannot be told apart, then the one that leaves least.
     fn closest(
         &self,
         measured: &Measured,
         given: &[usize],
         sets: Vec<Vec<usize>>,
-    ) -> Result<Option<(Vec<usize>, Measured)>, MeasureError> {
+    ) -> Result<Vec<(Vec<usize>, Measured)>, MeasureError> {
         let only = sets.len() == 1;
-        let mut best: Option<(f64, Vec<usize>, Measured)> = None;
+        let mut settled = Vec::with_capacity(sets.len());
         for set in sets {
             let all: Vec<usize> = given.iter().chain(&set).copied().collect();
-            let settled = self.settle(measured.clone(), &all)?;
-            let left = if only { 0.0 } else { self.left(&settled, &measured.system) };
-            if best.as_ref().is_none_or(|(least, ..)| left < *least) {
-                best = Some((left, set, settled));
-            }
+            let model = self.settle(measured.clone(), &all)?;
+            let left = if only { 0.0 } else { self.left(&model, &measured.system) };
+            settled.push((left, set, model));
         }
-        Ok(best.map(|(_, set, settled)| (set, settled)))
+        let least = settled.iter().map(|(left, ..)| *left).fold(f64::INFINITY, f64::min);
+        let apart = if only { 0.0 } else { apart(self.left(measured, &measured.system) - least) };
+        settled.retain(|(left, ..)| *left <= least + apart);
+        let sizes = |set: &[usize]| {
+            self.columns.iter().filter(|column| column.is_size() && set.contains(&column.effect)).count()
+        };
+        settled.sort_by(|a, b| (sizes(&a.1), a.0).partial_cmp(&(sizes(&b.1), b.0)).unwrap_or(Ordering::Equal));
+        Ok(settled.into_iter().map(|(_, set, measured)| (set, measured)).collect())
     }
 
     /// What a settled model leaves, minus log-likelihood: residuals in the standard deviations of one system, cut off
