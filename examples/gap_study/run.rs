@@ -62,13 +62,7 @@ impl Outcome {
             .collect();
         format!(
             "{:?} {} {:?} -> {:?} {:?} {:?} {:.1}s",
-            self.task.part,
-            self.task.seed,
-            hidden,
-            self.verdict,
-            self.named,
-            self.unexplained,
-            self.seconds
+            self.task.part, self.task.seed, hidden, self.verdict, self.named, self.unexplained, self.seconds
         )
     }
 }

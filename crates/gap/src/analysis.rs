@@ -291,6 +291,7 @@ fn unexplained(
     unexplained.extend(passing::bands(&residuals));
     let carpet = system.sigmas.get(&(Channel::Photometry, 4)).copied().unwrap_or(f64::INFINITY);
     unexplained.extend(passing::things(&residuals, carpet));
+    unexplained.extend(crate::moving::moving(&residuals, carpet));
     unexplained.extend(crate::presence::missing(&looks, &recording.sequence.field));
     unexplained
 }
@@ -301,7 +302,7 @@ fn unexplained_pattern(pattern: &Pattern) -> Unexplained {
         r#where: pattern.place(),
         size: pattern.reported_size(),
         unit: pattern.channel.unit().to_owned(),
-        p_value: pattern.p_value,
+        p_value: Some(pattern.p_value),
     }
 }
 

@@ -41,10 +41,21 @@ pub(crate) struct HeldOut {
 impl HeldOut {
     /// By how much this is better than another.
     pub(crate) fn over(&self, other: &Self) -> Gain {
-        let differences: Vec<f64> =
-            self.frames.iter().zip(&other.frames).map(|(of, over)| of - over).collect();
-        let gain = sum_of(&differences);
+        let gain = sum_of(&self.differences(other));
         Gain { value: gain.value + other.strain - self.strain, ..gain }
+    }
+
+    /// How surely this is better than another, in standard deviations. Gains go with the square of what an effect is at
+    /// the time: their roots scatter less.
+    pub(crate) fn surely_over(&self, other: &Self) -> f64 {
+        let roots: Vec<f64> =
+            self.differences(other).iter().map(|gain| gain.signum() * gain.abs().sqrt()).collect();
+        let sum = sum_of(&roots);
+        if sum.sigma > 0.0 { sum.value / sum.sigma } else { 0.0 }
+    }
+
+    fn differences(&self, other: &Self) -> Vec<f64> {
+        self.frames.iter().zip(&other.frames).map(|(of, over)| of - over).collect()
     }
 }
 

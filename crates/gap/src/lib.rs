@@ -14,6 +14,7 @@ mod limits;
 mod look;
 mod maps;
 mod measure;
+mod moving;
 mod naming;
 mod passing;
 mod pictures;

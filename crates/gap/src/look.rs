@@ -232,7 +232,7 @@ fn stands_alone(field: &FieldDimensions, view: &View<'_>, visible: &VisibleSampl
     let ground = Ground::new(view);
     let posts = field.goals().into_iter().flat_map(|goal| goal.posts);
     let off_posts =
-        posts.into_iter().all(|post| !ground.hides(post.center, post.radius_m + needed_m, point_in_world));
+        posts.into_iter().all(|post| !ground.hides(post.center, post.radius_m, needed_m, point_in_world));
     free_m > 0.0 && is_free(-free_m) && is_free(free_m) && off_posts
 }
 
@@ -307,15 +307,17 @@ impl<'a> Ground<'a> {
         let off_lines = self.view.curves.iter().all(|curve| curve.distance_m(center) > free_m);
         let off_marks = field.marks().iter().all(|mark| mark.distance(center) > radius_m + MARK_M);
         let posts = field.goals().into_iter().flat_map(|goal| goal.posts);
-        let off_posts = posts.into_iter().all(|post| !self.hides(post.center, post.radius_m + 0.05, center));
+        let off_posts =
+            posts.into_iter().all(|post| !self.hides(post.center, post.radius_m + 0.05, 0.0, center));
         (inside && off_lines && off_marks && off_posts).then_some(center)
     }
 
-    /// Whether something upright of some radius stands between the camera and a point of the ground, or near the point.
-    fn hides(&self, foot: DVec2, radius_m: f64, ground: DVec2) -> bool {
+    /// Whether something upright of some radius stands between the camera and a point of the ground, or so near beside
+    /// that in the picture that it would be `beside_m` away from the point.
+    fn hides(&self, foot: DVec2, radius_m: f64, beside_m: f64, ground: DVec2) -> bool {
         let camera: DVec3 = self.view.pose.position_in_world();
         let way = ground - camera.truncate();
         let fraction = ((foot - camera.truncate()).dot(way) / way.length_squared().max(1e-9)).clamp(0.0, 1.0);
-        (camera.truncate() + fraction * way).distance(foot) < radius_m
+        (camera.truncate() + fraction * way).distance(foot) < radius_m + fraction * beside_m
     }
 }

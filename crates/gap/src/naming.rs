@@ -77,7 +77,7 @@ impl Naming<'_> {
         let gain = self.gain(&with, &without)?;
         let p_value = if self.is_possible(&fit, &sizes) {
             let fitted = self.evidence.p_value(&fit, &sizes).min(self.alone(&without, &sizes));
-            if changes_over_time(&[effect]) { fitted.min(self.foretold(gain)) } else { fitted }
+            if changes_over_time(&[effect]) { fitted.min(self.foretold(&with, &without)) } else { fitted }
         } else {
             1.0
         };
@@ -90,10 +90,13 @@ impl Naming<'_> {
         })
     }
 
-    /// How unlikely a gain on unseen frames is chance. What is another at every time has a number for each, and each is
-    /// seen in a few frames: of so many numbers from so few frames a fit's scatter tells little, what it foretells does.
-    fn foretold(&self, gain: Gain) -> f64 {
-        let score = gain.value / gain.sigma.max(f64::MIN_POSITIVE);
+    /// How unlikely what an effect gains on unseen frames is chance. What is another at every time has a number for each,
+    /// and each is seen in a few frames: of so many numbers from so few frames a fit's scatter tells little, what it
+    /// foretells does.
+    fn foretold(&self, with: &[usize], without: &[usize]) -> f64 {
+        let held_out = |effects: &[usize]| self.evidence.held_out(&self.columns_of(effects), true);
+        let (Some(with), Some(without)) = (held_out(with), held_out(without)) else { return 1.0 };
+        let score = with.surely_over(&without);
         if score > 0.0 { two_sided(score, self.evidence.degrees() as f64) } else { 1.0 }
     }
 

@@ -46,7 +46,7 @@ pub(crate) fn bands(frames: &[Residuals<'_>]) -> Option<Unexplained> {
             .to_owned(),
         size,
         unit: Channel::Photometry.unit().to_owned(),
-        p_value,
+        p_value: Some(p_value),
     })
 }
 
@@ -58,7 +58,7 @@ pub(crate) fn things(frames: &[Residuals<'_>], sigma: f64) -> Option<Unexplained
             .iter()
             .zip(&frame.values)
             .filter(|(row, value)| is_green_carpet(row) && value.is_finite());
-        let outlying: Vec<bool> = carpet.map(|(_, value)| value.abs() > OUTLYING * sigma).collect();
+        let outlying: Vec<bool> = carpet.map(|(_, value)| is_outlying(*value, sigma)).collect();
         (!outlying.is_empty())
             .then(|| outlying.iter().filter(|outlying| **outlying).count() as f64 / outlying.len() as f64)
     };
@@ -71,11 +71,16 @@ pub(crate) fn things(frames: &[Residuals<'_>], sigma: f64) -> Option<Unexplained
         ),
         size: part,
         unit: "1".to_owned(),
-        p_value: 0.0,
+        p_value: None,
     })
 }
 
-fn is_green_carpet(row: &Row) -> bool {
+/// Whether a block shows something else than carpet.
+pub(crate) fn is_outlying(value: f64, sigma: f64) -> bool {
+    value.abs() > OUTLYING * sigma
+}
+
+pub(crate) fn is_green_carpet(row: &Row) -> bool {
     row.group.channel == Channel::Photometry && row.group.part == 4
 }
 

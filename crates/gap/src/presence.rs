@@ -55,7 +55,7 @@ pub(crate) fn missing(looks: &[&Look], field: &FieldDimensions) -> Vec<Unexplain
             ),
             size: 1.0 - part / usual,
             unit: "1".to_owned(),
-            p_value: 0.0,
+            p_value: None,
         })
         .collect()
 }

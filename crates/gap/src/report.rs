@@ -71,8 +71,9 @@ pub struct Unexplained {
     pub size: f64,
     /// The channel's.
     pub unit: String,
-    /// How unlikely it is chance.
-    pub p_value: f64,
+    /// How unlikely it is chance. None for what is counted and not tested: lines that are not there, things in the way.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub p_value: Option<f64>,
 }
 
 /// The whole gap.

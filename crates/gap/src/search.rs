@@ -61,10 +61,7 @@ fn widened(visible: &VisibleSample, extra_px: f64) -> VisibleSample {
 
 /// What a blur leaves of a line's contrast.
 fn min_contrast(visible: &VisibleSample, extra_px: f64) -> f64 {
-    let left = if extra_px > 0.0 {
-        erf(visible.half_width_px / (extra_px * std::f64::consts::SQRT_2))
-    } else {
-        1.0
-    };
+    let left =
+        if extra_px > 0.0 { erf(visible.half_width_px / (extra_px * std::f64::consts::SQRT_2)) } else { 1.0 };
     (left * MIN_CONTRAST).max(LEAST_CONTRAST)
 }

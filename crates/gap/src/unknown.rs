@@ -271,9 +271,8 @@ fn bins(
     from_s: f64,
 ) -> BTreeMap<(i32, i32), Bin> {
     let mut bins: BTreeMap<(i32, i32), Bin> = BTreeMap::new();
-    // Of what is measured in blocks of carpet the middle one of a place stands for all.
+    // Of the carpet's brightness the middle one of a place stands for all.
     let mut blocks: BTreeMap<(i32, i32), Vec<f64>> = BTreeMap::new();
-    let of_blocks = matches!(channel, Channel::Photometry | Channel::Noise);
     for (row, value) in frame.rows.iter().zip(&frame.values) {
         let sigma = sigmas.get(&(row.group.channel, row.group.part));
         let Some(&sigma) = sigma.filter(|_| row.group.channel == channel && value.is_finite()) else {
@@ -286,11 +285,12 @@ fn bins(
             }
             Locus::Time => (((frame.time_s - from_s) / 1.0).floor() as i32, 0),
         };
-        if of_blocks {
-            // Other things on the carpet are no pattern of it; what is odd about a line is.
-            if value.abs() <= CLIP * sigma {
-                blocks.entry(place).or_default().push(value / sigma);
-            }
+        // Other things on the carpet are no pattern of it; what is odd about a line is.
+        if matches!(channel, Channel::Photometry | Channel::Noise) && value.abs() > CLIP * sigma {
+            continue;
+        }
+        if channel == Channel::Photometry {
+            blocks.entry(place).or_default().push(value / sigma);
             continue;
         }
         let residual = (value / sigma).clamp(-CLIP, CLIP);

@@ -242,7 +242,8 @@ impl Finder<'_> {
         let sizes = |set: &[usize]| {
             self.columns.iter().filter(|column| column.is_size() && set.contains(&column.effect)).count()
         };
-        settled.sort_by(|a, b| (sizes(&a.1), a.0).partial_cmp(&(sizes(&b.1), b.0)).unwrap_or(Ordering::Equal));
+        settled
+            .sort_by(|a, b| (sizes(&a.1), a.0).partial_cmp(&(sizes(&b.1), b.0)).unwrap_or(Ordering::Equal));
         Ok(settled.into_iter().map(|(_, set, measured)| (set, measured)).collect())
     }
 

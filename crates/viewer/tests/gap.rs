@@ -98,7 +98,7 @@ fn report() -> Report {
             r#where: "in the left third of the picture".to_owned(),
             size: 0.3,
             unit: "1".to_owned(),
-            p_value: 1e-5,
+            p_value: Some(1e-5),
         }],
         gap: Gap {
             before: 3.1,

@@ -148,7 +148,7 @@ pub(super) fn unexplained(patterns: &[Unexplained]) -> String {
             cell(&capital(&pattern.channel)),
             cell(&pattern.r#where),
             number(format!("{} {unit}", digits(factor * pattern.size, 2)).trim_end()),
-            number(&probability(pattern.p_value))
+            number(&pattern.p_value.map_or_else(String::new, probability))
         )
     };
     let rows: Vec<String> = patterns.iter().map(row).collect();

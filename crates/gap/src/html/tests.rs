@@ -103,7 +103,7 @@ fn report() -> Report {
             r#where: "left of the middle, low".to_owned(),
             size: 0.131,
             unit: "px2".to_owned(),
-            p_value: 2e-5,
+            p_value: Some(2e-5),
         }],
         gap: Gap {
             before: 4.2,

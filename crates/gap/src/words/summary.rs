@@ -315,7 +315,7 @@ mod tests {
             r#where: "in the picture left of the middle, low".to_owned(),
             size: 0.131,
             unit: "px2".to_owned(),
-            p_value: 1e-6,
+            p_value: Some(1e-6),
         };
         let sentence = "Something is at work that no effect of the library explains. Sharpness: in the picture left of the \
                         middle, low (0.13 px²).";

@@ -42,7 +42,10 @@ fn unexplained_ui(ui: &mut Ui, unexplained: &[Unexplained]) {
     table.heads_ui(ui);
     for left in unexplained {
         let size = format!("{}{}", number(left.size), unit_after(&left.unit));
-        table.texts_ui(ui, &[&left.channel, &left.r#where, &size, &p_value(left.p_value)]);
+        table.texts_ui(
+            ui,
+            &[&left.channel, &left.r#where, &size, &left.p_value.map_or_else(String::new, p_value)],
+        );
     }
 }
 

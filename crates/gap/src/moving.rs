@@ -1,0 +1,104 @@
+//! Things that stand on the carpet and walk away: where one stood, other pictures show plain carpet.
+
+use glam::DVec2;
+
+use crate::{
+    passing::{is_green_carpet, is_outlying},
+    report::Unexplained,
+    rows::Channel,
+    unknown::Residuals,
+};
+
+/// A foot and the carpet around it are one place within this distance, metres.
+const NEAR_M: f64 = 0.25;
+/// Pictures closer in time show a walker in the same place, seconds.
+const LATER_S: f64 = 1.0;
+/// The place is seen in so many other pictures at least.
+const LEAST_SEEN: usize = 3;
+/// And is plain carpet in this part of them at least.
+const CLEAR: f64 = 0.7;
+/// Feet that are gone at other times, in this part of the pictures at least, are worth a word.
+const LEAST_PART: f64 = 0.15;
+
+/// A block of carpet, or of what hides it.
+#[derive(Debug, Clone, Copy)]
+struct Spot {
+    pixel: DVec2,
+    ground: DVec2,
+    is_hidden: bool,
+}
+
+/// What a picture shows of the carpet.
+struct Scene {
+    time_s: f64,
+    spots: Vec<Spot>,
+    /// Between neighbouring blocks, pixels.
+    pitch_px: f64,
+}
+
+/// Things that are not where they were in other pictures. `sigma` is the carpet's standard deviation.
+pub(crate) fn moving(frames: &[Residuals<'_>], sigma: f64) -> Option<Unexplained> {
+    let scenes: Vec<Scene> = frames.iter().map(|frame| Scene::new(frame, sigma)).collect();
+    let with_walker =
+        scenes.iter().filter(|scene| scene.feet().any(|foot| is_left(&scenes, scene.time_s, foot))).count();
+    let part = with_walker as f64 / scenes.len().max(1) as f64;
+    (part > LEAST_PART).then(|| Unexplained {
+        channel: Channel::Photometry.name().to_owned(),
+        r#where: format!(
+            "things that move: in {:.0} % of the pictures something stands on the carpet where others show it plain",
+            100.0 * part
+        ),
+        size: part,
+        unit: "1".to_owned(),
+        p_value: None,
+    })
+}
+
+impl Scene {
+    fn new(frame: &Residuals<'_>, sigma: f64) -> Self {
+        let rows = frame.rows.iter().zip(&frame.values);
+        let spots: Vec<Spot> = rows
+            .filter(|(row, value)| is_green_carpet(row) && value.is_finite())
+            .map(|(row, value)| Spot {
+                pixel: row.pixel,
+                ground: row.ground,
+                is_hidden: is_outlying(*value, sigma),
+            })
+            .collect();
+        let pitch_px = spots
+            .windows(2)
+            .map(|pair| pair[1].pixel.x - pair[0].pixel.x)
+            .filter(|step| *step > 0.5)
+            .fold(f64::INFINITY, f64::min);
+        Self { time_s: frame.time_s, spots, pitch_px }
+    }
+
+    /// Where things touch the carpet: hidden, with plain carpet just below in the picture.
+    fn feet(&self) -> impl Iterator<Item = DVec2> {
+        let is_plain_below = |spot: &Spot| {
+            let below = spot.pixel + DVec2::new(0.0, self.pitch_px);
+            self.spots.iter().any(|other| !other.is_hidden && other.pixel.distance(below) < 0.5)
+        };
+        let is_above_hidden = |spot: &Spot| {
+            let above = spot.pixel - DVec2::new(0.0, self.pitch_px);
+            self.spots.iter().any(|other| other.is_hidden && other.pixel.distance(above) < 0.5)
+        };
+        self.spots
+            .iter()
+            .filter(move |spot| spot.is_hidden && is_plain_below(spot) && is_above_hidden(spot))
+            .map(|spot| spot.ground)
+    }
+}
+
+/// Whether other pictures show plain carpet where a thing stood at a time.
+fn is_left(scenes: &[Scene], time_s: f64, foot: DVec2) -> bool {
+    let (mut seen, mut clear) = (0, 0);
+    for scene in scenes.iter().filter(|scene| (scene.time_s - time_s).abs() > LATER_S) {
+        let mut around = scene.spots.iter().filter(|spot| spot.ground.distance(foot) < NEAR_M).peekable();
+        if around.peek().is_some() {
+            seen += 1;
+            clear += usize::from(around.all(|spot| !spot.is_hidden));
+        }
+    }
+    seen >= LEAST_SEEN && clear as f64 >= CLEAR * seen as f64
+}
