@@ -17,8 +17,9 @@ const LATER_S: f64 = 1.0;
 const LEAST_SEEN: usize = 3;
 /// And is plain carpet in this part of them at least.
 const CLEAR: f64 = 0.7;
-/// Feet that are gone at other times, in this part of the pictures at least, are worth a word.
-const LEAST_PART: f64 = 0.15;
+/// Feet that are gone at other times, in this part of the pictures at least, are worth a word: a thing's side is taken for
+/// its foot now and then.
+const LEAST_PART: f64 = 0.2;
 
 /// A block of carpet, or of what hides it.
 #[derive(Debug, Clone, Copy)]
@@ -73,20 +74,18 @@ impl Scene {
         Self { time_s: frame.time_s, spots, pitch_px }
     }
 
-    /// Where things touch the carpet: hidden, with plain carpet just below in the picture.
+    /// Where things touch the carpet: hidden, and just below in the picture there is plain carpet and nothing of the same
+    /// thing, whose sides may slant.
     fn feet(&self) -> impl Iterator<Item = DVec2> {
-        let is_plain_below = |spot: &Spot| {
+        let is_foot = move |spot: &&Spot| {
             let below = spot.pixel + DVec2::new(0.0, self.pitch_px);
-            self.spots.iter().any(|other| !other.is_hidden && other.pixel.distance(below) < 0.5)
+            let next_row = self.spots.iter().filter(|other| {
+                (other.pixel.y - below.y).abs() < 0.5 && (other.pixel.x - below.x).abs() < 1.5 * self.pitch_px
+            });
+            let (hidden, plain): (Vec<&Spot>, Vec<&Spot>) = next_row.partition(|other| other.is_hidden);
+            spot.is_hidden && hidden.is_empty() && plain.iter().any(|other| other.pixel.distance(below) < 0.5)
         };
-        let is_above_hidden = |spot: &Spot| {
-            let above = spot.pixel - DVec2::new(0.0, self.pitch_px);
-            self.spots.iter().any(|other| other.is_hidden && other.pixel.distance(above) < 0.5)
-        };
-        self.spots
-            .iter()
-            .filter(move |spot| spot.is_hidden && is_plain_below(spot) && is_above_hidden(spot))
-            .map(|spot| spot.ground)
+        self.spots.iter().filter(is_foot).map(|spot| spot.ground)
     }
 }
 

@@ -307,13 +307,13 @@ impl Hidden {
     }
 
     /// The effect with this id at `multiple` times a small size of its own, with a random sign where both make sense
-    /// and a random shape where it has several. `missing_line` and `moving_people` have no size.
+    /// and a random shape where it has several. `missing_line` has no size.
     ///
     /// One size is: k₁ 0.002, principal point 0.5 px, focal length 0.15 %, mount 0.1°, height 4 mm, readout 8 ms,
     /// offset 4 ms, exposure 12 ms, defocus 0.3 px, red and blue ±0.0008, vignetting 0.03, gamma 0.04, black level
     /// 0.003, white balance 0.02, exposure 0.04 EV, illumination 0.04, noise 0.12, field 2.5 cm long, odometry 3 %,
-    /// 0.6°/s and 0.04 m/m; dirt 0.1, flicker 0.02, shifted line 1.5 cm, fog 0.01 per metre, waves 3 mm, dent 0.1 % of
-    /// the width.
+    /// 0.6°/s and 0.04 m/m; dirt 0.1, flicker 0.02, shifted line 1.5 cm, one person, fog 0.01 per metre, waves 3 mm,
+    /// dent 0.1 % of the width.
     pub fn of(id: &str, multiple: f64, random: &mut Random) -> Result<Self, Error> {
         let unknown = || Error::UnknownEffect { id: id.to_owned() };
         geometric(id, multiple, random)
@@ -420,7 +420,7 @@ fn foreign(id: &str, multiple: f64, random: &mut Random) -> Option<Hidden> {
         },
         "missing_line" => Hidden::MissingLine { positive_x: random.sign() > 0.0 },
         "shifted_line" => Hidden::ShiftedLine { shift_m: random.sign() * 0.015 * multiple },
-        "moving_people" => Hidden::MovingPeople { count: 2 + random.below(2) as u32 },
+        "moving_people" => Hidden::MovingPeople { count: multiple.round().clamp(1.0, 8.0) as u32 },
         "fog" => Hidden::Fog { extinction_per_m: 0.01 * multiple },
         "wavy_ground" => Hidden::WavyGround {
             amplitude_m: 0.003 * multiple,
