@@ -17,7 +17,7 @@ use reality_sim::{
     },
     sensor::{Model, library},
 };
-use reality_sim_hidden::{Falloff, Hidden, Recipe, Walk};
+use reality_sim_hidden::{Course, Falloff, Hidden, Recipe, Walk};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -102,6 +102,51 @@ fn two_effects_are_both_named() {
     let found: BTreeSet<&str> = named(&report).into_iter().collect();
     assert_eq!(found, BTreeSet::from(["mount_roll", "defocus"]), "{}", report.summary);
     assert_size(&report, "mount_roll", "roll_rad", -0.025);
+}
+
+#[test]
+fn a_lens_far_out_of_focus_is_found_by_lines_that_are_spread_over_many_pixels() {
+    let truth = 2.7;
+    let (_folder, sequence) = record(22, &[Hidden::Defocus { sigma_px: truth }]);
+    let report = reported(&sequence);
+    assert_eq!(named(&report), ["defocus"], "{}", report.summary);
+    assert_size(&report, "defocus", "sigma_px", truth);
+}
+
+#[test]
+fn exposure_that_goes_up_and_down_is_named_whichever_frames_are_kept_for_judging() {
+    let course = Course::Sine { period_s: 5.0, phase_rad: 0.4 };
+    let (_folder, sequence) = record(23, &[Hidden::ExposureDrift { amplitude_ev: 0.4, course }]);
+    for seed in [0, 1, 2] {
+        let report = analysed(&sequence, &Model::default(), &Options { seed, ..Options::default() }).report;
+        assert_eq!(named(&report), ["exposure_drift"], "seed {seed}: {}", report.summary);
+    }
+}
+
+#[test]
+fn what_two_effects_explain_as_well_is_named_by_the_simpler_one_with_the_other_beside_it() {
+    let (_folder, sequence) = record(24, &[Hidden::BlackLevel { offset: 0.06 }]);
+    let report = reported(&sequence);
+    assert_eq!(named(&report), ["black_level"], "{}", report.summary);
+    assert_size(&report, "black_level", "offset", 0.06);
+    // A tone curve of two numbers does what a black level does to two brightnesses.
+    for effect in &report.effects {
+        assert!(
+            effect.confusable_with.iter().all(|rival| rival == "tone_curve"),
+            "{:?}",
+            effect.confusable_with
+        );
+    }
+}
+
+#[test]
+fn people_who_walk_are_no_effect_of_the_camera() {
+    let (_folder, sequence) = record(47, &[Hidden::MovingPeople { count: 6 }]);
+    let report = reported(&sequence);
+    assert_eq!(report.verdict, Verdict::Unknown, "{}", report.summary);
+    assert_eq!(named(&report), Vec::<&str>::new());
+    let said = report.unexplained.iter().any(|pattern| pattern.r#where.contains("things that move"));
+    assert!(said, "{:?}", report.unexplained);
 }
 
 #[test]

@@ -1,6 +1,9 @@
 //! How large an effect is in the detection limits of the very recording that it is hidden in.
 
-use std::{collections::BTreeMap, error::Error};
+use std::{
+    collections::{BTreeMap, btree_map::Entry},
+    error::Error,
+};
 
 use reality_sim::sensor::{Role, effect};
 use reality_sim_hidden::{Hidden, Random};
@@ -32,12 +35,14 @@ impl Limits {
         id: &str,
         in_limits: f64,
     ) -> Result<Option<(f64, f64)>, Box<dyn Error>> {
-        let key = (task.seed, task.picture);
-        if !self.0.contains_key(&key) {
-            let nothing = Task { part: Part::Nulls, effects: Vec::new(), without: None, ..task.clone() };
-            self.0.insert(key, run::run(&nothing, &[])?.limits);
-        }
-        let Some((parameter, limit)) = self.0[&key].get(id) else { return Ok(None) };
+        let limits = match self.0.entry((task.seed, task.picture)) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(unknown) => {
+                let nothing = Task { part: Part::Nulls, effects: Vec::new(), without: None, ..task.clone() };
+                unknown.insert(run::run(&nothing, &[])?.limits)
+            }
+        };
+        let Some((parameter, limit)) = limits.get(id) else { return Ok(None) };
         let limit = if id == "sensor_noise" { (1.0 + limit / SHOT_NOISE).sqrt() - 1.0 } else { *limit };
         let unit = Hidden::of(id, 1.0, &mut Random::new(task.seed.wrapping_mul(77)))?;
         let known = parameters(&unit).into_iter().find(|(name, _)| name == parameter);

@@ -12,7 +12,9 @@ use crate::{
     limits::{NotFound, limit},
     maps::maps,
     measure::MeasureError,
+    moving::moving,
     naming::{Case, Naming},
+    nominal::strained,
     passing,
     recording::{LEAST_VIEWS, PoseSource, Recording},
     report::{
@@ -291,7 +293,9 @@ fn unexplained(
     unexplained.extend(passing::bands(&residuals));
     let carpet = system.sigmas.get(&(Channel::Photometry, 4)).copied().unwrap_or(f64::INFINITY);
     unexplained.extend(passing::things(&residuals, carpet));
-    unexplained.extend(crate::moving::moving(&residuals, carpet));
+    unexplained.extend(moving(&residuals, carpet));
+    let fitted = &delta.as_slice()[found.columns.len()..];
+    unexplained.extend(strained(&found.measured.tolerances, fitted));
     unexplained.extend(crate::presence::missing(&looks, &recording.sequence.field));
     unexplained
 }

@@ -335,6 +335,30 @@ mod tests {
         assert!((below(0.5) - 0.5).abs() < 0.12, "{}", below(0.5));
     }
 
+    fn held_out(frames: Vec<f64>) -> HeldOut {
+        HeldOut { frames, strain: 0.0 }
+    }
+
+    #[test]
+    fn gains_of_what_comes_and_goes_are_surer_by_their_roots() {
+        let wave = held_out((0..40).map(|i| 200.0 * (0.3 * f64::from(i)).sin().powi(2)).collect());
+        let nothing = held_out(vec![0.0; 40]);
+        let plain = wave.over(&nothing);
+        let (surely, plain) = (wave.surely_over(&nothing), plain.value / plain.sigma);
+        assert!(surely > 1.2 * plain, "{surely} {plain}");
+    }
+
+    #[test]
+    fn gains_by_chance_are_sure_as_seldom_as_they_should_be() {
+        let nothing = held_out(vec![0.0; 40]);
+        let sure = |seed: u64| {
+            let mut noise = Noise(seed);
+            held_out((0..40).map(|_| 5.0 * noise.next()).collect()).surely_over(&nothing)
+        };
+        let count = (0..400).filter(|&seed| two_sided(sure(seed), 15.0) < 0.02).count();
+        assert!(count < 24, "{count} of 400");
+    }
+
     #[test]
     fn an_effect_is_found_with_its_size_and_gains_on_unseen_frames() {
         let mut inside = 0;

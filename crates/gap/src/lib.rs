@@ -16,6 +16,7 @@ mod maps;
 mod measure;
 mod moving;
 mod naming;
+mod nominal;
 mod passing;
 mod pictures;
 mod predict;

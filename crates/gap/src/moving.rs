@@ -11,6 +11,8 @@ use crate::{
 
 /// A foot and the carpet around it are one place within this distance, metres.
 const NEAR_M: f64 = 0.25;
+/// The place is seen in so many blocks at least: from far away a thing hides a part of one.
+const LEAST_SPOTS: usize = 2;
 /// Pictures closer in time show a walker in the same place, seconds.
 const LATER_S: f64 = 1.0;
 /// The place is seen in so many other pictures at least.
@@ -93,11 +95,89 @@ impl Scene {
 fn is_left(scenes: &[Scene], time_s: f64, foot: DVec2) -> bool {
     let (mut seen, mut clear) = (0, 0);
     for scene in scenes.iter().filter(|scene| (scene.time_s - time_s).abs() > LATER_S) {
-        let mut around = scene.spots.iter().filter(|spot| spot.ground.distance(foot) < NEAR_M).peekable();
-        if around.peek().is_some() {
+        let around: Vec<&Spot> =
+            scene.spots.iter().filter(|spot| spot.ground.distance(foot) < NEAR_M).collect();
+        if around.len() >= LEAST_SPOTS {
             seen += 1;
-            clear += usize::from(around.all(|spot| !spot.is_hidden));
+            clear += usize::from(around.iter().all(|spot| !spot.is_hidden));
         }
     }
     seen >= LEAST_SEEN && clear as f64 >= CLEAR * seen as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rows::{Group, Row};
+
+    const SIGMA: f64 = 0.05;
+    const PITCH_PX: f64 = 8.0;
+    const COUNT: i32 = 20;
+
+    /// A picture from straight above, ten blocks a metre, with things of two by three blocks whose nearest left block is
+    /// given in metres.
+    fn picture(time_s: f64, things: &[DVec2]) -> (Vec<Row>, Vec<f64>, f64) {
+        let (mut rows, mut values) = (Vec::new(), Vec::new());
+        for v in 0..COUNT {
+            for u in 0..COUNT {
+                let pixel = PITCH_PX * DVec2::new(f64::from(u), f64::from(v));
+                // Up in the picture is forward.
+                let ground = DVec2::new(f64::from(u), f64::from(COUNT - v)) * 0.1;
+                let is_inside = |thing: &DVec2| {
+                    let inside = ground - *thing;
+                    (-0.01..0.15).contains(&inside.x) && (-0.01..0.25).contains(&inside.y)
+                };
+                rows.push(row(pixel, ground));
+                values.push(if things.iter().any(is_inside) { -1.0 } else { 0.3 * SIGMA });
+            }
+        }
+        (rows, values, time_s)
+    }
+
+    fn row(pixel: DVec2, ground: DVec2) -> Row {
+        Row {
+            group: Group { channel: Channel::Photometry, part: 4 },
+            measured: 0.0,
+            sigma: 0.0,
+            pixel,
+            ground,
+            normal: DVec2::ZERO,
+            half_width_px: 0.0,
+            cos_incidence: 1.0,
+        }
+    }
+
+    fn judged(things: impl Fn(f64) -> Vec<DVec2>) -> Option<Unexplained> {
+        let pictures: Vec<_> =
+            (0..20).map(|i| picture(0.2 * f64::from(i), &things(0.2 * f64::from(i)))).collect();
+        let frames: Vec<Residuals<'_>> = pictures
+            .iter()
+            .map(|(rows, values, time_s)| Residuals {
+                rows,
+                values: values.clone(),
+                time_s: *time_s,
+                size: [160, 160],
+            })
+            .collect();
+        moving(&frames, SIGMA)
+    }
+
+    #[test]
+    fn who_walks_over_the_carpet_is_seen_and_in_how_many_pictures() {
+        let found = judged(|time_s| vec![DVec2::new(0.3 + 0.3 * time_s, 0.9)]).unwrap();
+        assert!(found.size > 0.8, "{}", found.size);
+        assert!(found.r#where.contains("things that move"), "{}", found.r#where);
+    }
+
+    #[test]
+    fn what_stays_where_it_is_does_not_move() {
+        assert_eq!(judged(|_| vec![DVec2::new(0.7, 0.9), DVec2::new(1.2, 0.4)]), None);
+        assert_eq!(judged(|_| Vec::new()), None);
+    }
+
+    #[test]
+    fn a_glimpse_is_not_enough() {
+        let glimpse = |time_s: f64| if time_s < 0.5 { vec![DVec2::new(0.7, 0.9)] } else { Vec::new() };
+        assert_eq!(judged(glimpse), None);
+    }
 }

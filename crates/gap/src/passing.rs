@@ -107,3 +107,85 @@ fn variance(values: impl Iterator<Item = f64>) -> f64 {
     let middle = mean(values.iter().copied()).unwrap_or(0.0);
     mean(values.iter().map(|value| (value - middle).powi(2))).unwrap_or(0.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use glam::DVec2;
+
+    use super::*;
+    use crate::rows::Group;
+
+    const SIGMA: f64 = 0.05;
+    const SIZE: [u32; 2] = [320, 240];
+
+    /// Pictures of carpet with this residual at a picture's number and a place in fractions of its size.
+    fn with_pictures<T>(residual: impl Fn(u32, DVec2) -> f64, judge: impl Fn(&[Residuals<'_>]) -> T) -> T {
+        let size = DVec2::new(f64::from(SIZE[0]), f64::from(SIZE[1]));
+        let pixels: Vec<DVec2> =
+            (0..1200).map(|i| 8.0 * DVec2::new(f64::from(i % 40), f64::from(i / 40))).collect();
+        let rows: Vec<Row> = pixels.iter().map(|&pixel| row(pixel)).collect();
+        // A little texture, another in every block and picture.
+        let texture =
+            |frame: u32, index: usize| 0.01 * (((index * 31 + frame as usize * 17) % 7) as f64 - 3.0) / 3.0;
+        let frames: Vec<Residuals<'_>> = (0..24)
+            .map(|frame| Residuals {
+                rows: &rows,
+                values: (0..)
+                    .zip(&pixels)
+                    .map(|(index, pixel)| residual(frame, *pixel / size) + texture(frame, index))
+                    .collect(),
+                time_s: f64::from(frame),
+                size: SIZE,
+            })
+            .collect();
+        judge(&frames)
+    }
+
+    fn row(pixel: DVec2) -> Row {
+        Row {
+            group: Group { channel: Channel::Photometry, part: 4 },
+            measured: 0.0,
+            sigma: 0.0,
+            pixel,
+            ground: pixel / 100.0,
+            normal: DVec2::ZERO,
+            half_width_px: 0.0,
+            cos_incidence: 1.0,
+        }
+    }
+
+    /// A wave along a fraction, its phase another in every picture.
+    fn rolling(frame: u32, along: f64) -> f64 {
+        0.1 * (TAU * (2.0 * along + 0.37 * f64::from(frame))).sin()
+    }
+
+    #[test]
+    fn bands_that_roll_along_the_rows_are_found_with_their_size() {
+        let found = with_pictures(|frame, place| rolling(frame, place.y), bands).unwrap();
+        // A sine's root mean square.
+        assert!((found.size - 0.07).abs() < 0.015, "{}", found.size);
+        assert!(found.p_value.unwrap() < ALPHA);
+    }
+
+    #[test]
+    fn bands_that_stay_or_run_along_the_columns_and_even_carpet_are_none() {
+        assert_eq!(with_pictures(|_, place| rolling(0, place.y), bands), None);
+        assert_eq!(with_pictures(|frame, place| rolling(frame, place.x), bands), None);
+        assert_eq!(
+            with_pictures(|frame, place| rolling(frame, place.x) + rolling(frame, place.y), bands),
+            None
+        );
+        assert_eq!(with_pictures(|_, _| 0.0, bands), None);
+    }
+
+    #[test]
+    fn things_are_told_by_the_part_of_the_carpet_that_they_hide() {
+        let covered = |part: f64| move |_: u32, place: DVec2| if place.x < part { -1.0 } else { 0.0 };
+        let judge = |frames: &[Residuals<'_>]| things(frames, SIGMA);
+        let found = with_pictures(covered(0.1), judge).unwrap();
+        assert!((found.size - 0.1).abs() < 0.03, "{}", found.size);
+        assert_eq!(with_pictures(covered(0.02), judge), None);
+    }
+}

@@ -65,3 +65,77 @@ fn min_contrast(visible: &VisibleSample, extra_px: f64) -> f64 {
         if extra_px > 0.0 { erf(visible.half_width_px / (extra_px * std::f64::consts::SQRT_2)) } else { 1.0 };
     (left * MIN_CONTRAST).max(LEAST_CONTRAST)
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+    use image::{GrayImage, Luma};
+    use reality_sim_core::field::LineSample;
+
+    use super::*;
+
+    const WIDTH: f64 = 61.0;
+
+    /// A bar across the picture's rows, its middle at a column, blurred by a Gaussian, on carpet with a little texture.
+    fn bar(middle: f64, half_width_px: f64, sigma_px: f64, contrast: f64) -> Texture {
+        let edge = |distance: f64| 0.5 * (1.0 + erf(distance / (sigma_px * std::f64::consts::SQRT_2)));
+        Texture::pack(&GrayImage::from_fn(WIDTH as u32, 41, |u, v| {
+            let across = f64::from(u) - middle;
+            let covered = edge(across + half_width_px) - edge(across - half_width_px);
+            let texture = f64::from((u * 7 + v * 13) % 5) - 2.0;
+            Luma([(90.0 + texture + contrast * covered).round() as u8])
+        }))
+    }
+
+    fn expected(half_width_px: f64) -> VisibleSample {
+        VisibleSample {
+            sample: LineSample {
+                point_in_world: DVec2::ZERO,
+                tangent_in_world: DVec2::Y,
+                length_m: 0.03,
+                clearance_m: 1.0,
+                curve: 0,
+            },
+            pixel: DVec2::new(30.0, 20.0),
+            normal_in_image: DVec2::X,
+            half_width_px,
+        }
+    }
+
+    fn found(texture: &Texture, half_width_px: f64) -> Option<Coarse> {
+        search(texture, &[expected(half_width_px)], 6.0, |found| Some(*found)).first().copied()
+    }
+
+    #[test]
+    fn a_sharp_line_is_found_as_it_is() {
+        let coarse = found(&bar(32.3, 2.0, 0.6, 110.0), 2.0).unwrap();
+        assert!((coarse.offset_px - 2.3).abs() < 0.3, "{}", coarse.offset_px);
+        assert_eq!(coarse.extra_px2, 0.0);
+    }
+
+    #[test]
+    fn a_line_spread_over_four_times_its_width_is_found_as_a_wider_one() {
+        for middle in [27.0, 30.5, 33.0] {
+            let coarse = found(&bar(middle, 1.2, 3.0, 110.0), 1.2).unwrap();
+            assert!((coarse.offset_px - (middle - 30.0)).abs() < 1.0, "{} for {middle}", coarse.offset_px);
+            assert!(coarse.extra_px2 > 0.0);
+        }
+    }
+
+    #[test]
+    fn carpet_alone_is_no_line_however_wide_one_looks() {
+        assert!(found(&bar(30.0, 1.2, 3.0, 0.0), 1.2).is_none());
+    }
+
+    #[test]
+    fn what_is_turned_down_is_looked_for_wider_and_wider() {
+        let texture = bar(30.0, 1.2, 3.0, 110.0);
+        let tried = std::cell::RefCell::new(Vec::new());
+        let none = search(&texture, &[expected(1.2)], 6.0, |found| {
+            tried.borrow_mut().push(found.extra_px2);
+            None::<()>
+        });
+        assert!(none.is_empty());
+        assert!(tried.borrow().len() > 1 && tried.borrow().is_sorted());
+    }
+}

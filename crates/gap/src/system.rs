@@ -333,3 +333,115 @@ fn pose_sigmas(left: Option<&[Left]>, reference: Reference) -> [f64; 6] {
     }
     sigmas
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+
+    /// Numbers from a fixed linear congruential generator, nearly normal.
+    struct Noise(u64);
+
+    impl Noise {
+        fn next(&mut self) -> f64 {
+            let mut uniform = || {
+                self.0 =
+                    self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+            };
+            (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+        }
+    }
+
+    /// Frames of lines seen from a pose that is wrong by its own amount in each. The first column looks like a turn of the
+    /// camera in all of them; the second does not; neither is at work but for `size` of the second.
+    fn frames(seed: u64, pose_sigma: f64, size: f64) -> Vec<FrameRows> {
+        let mut noise = Noise(seed);
+        (0..30)
+            .map(|_| {
+                let wrong = Vector6::from_fn(|_, _| pose_sigma * noise.next());
+                let mut frame = FrameRows {
+                    rows: Vec::new(),
+                    residuals: Vec::new(),
+                    jacobian: Vec::new(),
+                    pose: Vec::new(),
+                };
+                for _ in 0..60 {
+                    let pose = Vector6::from_fn(|_, _| 100.0 * noise.next());
+                    let other = noise.next();
+                    frame.rows.push(line());
+                    frame.residuals.push(pose.dot(&wrong) + size * other + 0.3 * noise.next());
+                    frame.jacobian.push(vec![(0, pose[0]), (1, other)]);
+                    frame.pose.push(pose);
+                }
+                frame
+            })
+            .collect()
+    }
+
+    fn line() -> Row {
+        Row {
+            group: Group { channel: Channel::Geometry, part: 0 },
+            measured: 0.0,
+            sigma: 0.0,
+            pixel: DVec2::ZERO,
+            ground: DVec2::ZERO,
+            normal: DVec2::X,
+            half_width_px: 2.0,
+            cos_incidence: 0.5,
+        }
+    }
+
+    fn system(frames: &[FrameRows]) -> System {
+        let views: Vec<usize> = (0..frames.len()).collect();
+        System::new(&frames.iter().collect::<Vec<_>>(), 2, Reference::Whole, &views)
+    }
+
+    #[test]
+    fn what_a_pose_can_imitate_tells_little_and_what_it_cannot_tells_all() {
+        let system = system(&frames(1, 0.01, 0.0));
+        let total = |i: usize| system.frames.iter().map(|sums| sums.a[(i, i)]).sum::<f64>();
+        // Without a pose's error both columns would have 1800 rows' information, in their own units 100² and 1.
+        let kept = [total(0) / 1e4, total(1)].map(|information| information / (INDEPENDENT * 1800.0 / 0.09));
+        assert!(kept[0] < 0.05, "{kept:?}");
+        assert!(kept[1] > 0.7, "{kept:?}");
+    }
+
+    #[test]
+    fn the_poses_scatter_is_found_and_effects_are_measured_through_it() {
+        for seed in 0..8 {
+            let system = system(&frames(seed, 0.005, 0.2));
+            let mean = system.pose_sigmas.iter().sum::<f64>() / 6.0;
+            assert!((0.0035..0.006).contains(&mean), "{:?}", system.pose_sigmas);
+            let sigma = system.sigmas[&(Channel::Geometry, 0)];
+            assert!((sigma - 0.3).abs() < 0.05, "{sigma}");
+            let delta = solve(&system.frames, 2);
+            assert!((delta[1] - 0.2).abs() < 0.05, "{delta}");
+        }
+    }
+
+    #[test]
+    fn outliers_do_not_decide() {
+        let mut frames = frames(3, 0.005, 0.2);
+        for frame in &mut frames {
+            for residual in frame.residuals.iter_mut().step_by(9) {
+                *residual += 12.0;
+            }
+        }
+        let system = system(&frames);
+        let delta = solve(&system.frames, 2);
+        assert!((delta[1] - 0.2).abs() < 0.06, "{delta}");
+        let zero = system.weights[0].iter().step_by(9).filter(|weight| **weight == 0.0).count();
+        assert_eq!(zero, 7);
+    }
+
+    #[test]
+    fn sums_by_frame_view_and_cell_are_of_the_same_rows() {
+        let system = system(&frames(4, 0.005, 0.1));
+        let sum = |sums: &[Sums]| sums.iter().map(|sums| sums.g.clone()).sum::<DVector<f64>>();
+        let (of_frames, of_views, of_cells) = (sum(&system.frames), sum(&system.views), sum(&system.cells));
+        assert!((&of_frames - of_views).norm() < 1e-9 * of_frames.norm());
+        assert!((&of_frames - of_cells).norm() < 1e-9 * of_frames.norm());
+    }
+}

@@ -137,3 +137,76 @@ fn is_blur(row: &Row, expected: f64) -> bool {
 fn is_carpet(row: &Row) -> bool {
     row.group.channel == Channel::Photometry && row.group.part >= 3
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sharpness(half_width_px: f64) -> Row {
+        Row {
+            group: Group { channel: Channel::Sharpness, part: 0 },
+            measured: 0.0,
+            sigma: 0.0,
+            pixel: DVec2::ZERO,
+            ground: DVec2::ZERO,
+            normal: DVec2::X,
+            half_width_px,
+            cos_incidence: 1.0,
+        }
+    }
+
+    /// What all tolerances of a kernel's shape allow a variance to be off by, as a part of it.
+    fn allowed(half_width_px: f64, variance_px2: f64) -> f64 {
+        let squares = COMMON.iter().map(|tolerance| {
+            let is_shape = matches!(tolerance, Tolerance::Kernel { .. } | Tolerance::ThinKernel { .. });
+            let change = tolerance.change(&sharpness(half_width_px), variance_px2) / variance_px2;
+            if is_shape { change * change } else { 0.0 }
+        });
+        squares.sum::<f64>().sqrt()
+    }
+
+    #[test]
+    fn a_discs_fitted_variance_is_allowed_wherever_it_is_seen() {
+        // Half widths in the disc's standard deviations, and by which part the fitted variance is larger: a bar blurred by
+        // a uniform disc and a narrow Gaussian, fitted by least squares with a Gaussian.
+        for (half_width, off) in
+            [(0.3, 0.28), (0.6, 0.22), (1.0, 0.16), (1.5, 0.12), (3.0, 0.12), (5.0, 0.12)]
+        {
+            let allowed = allowed(half_width * 2.7, 2.7 * 2.7);
+            assert!(off < 2.5 * allowed && off > 0.5 * allowed, "{half_width}: {allowed} for {off}");
+        }
+    }
+
+    #[test]
+    fn shapes_of_kernels_have_nothing_to_do_with_other_rows() {
+        let line = Row { group: Group { channel: Channel::Geometry, part: 0 }, ..sharpness(1.0) };
+        for tolerance in [Tolerance::Kernel { sigma: KERNEL }, Tolerance::ThinKernel { sigma: THIN_KERNEL }] {
+            assert_eq!(tolerance.change(&line, 1.0), 0.0);
+        }
+    }
+
+    #[test]
+    fn a_patch_changes_the_carpet_in_its_own_square_only() {
+        let carpet = |ground: DVec2| Row {
+            group: Group { channel: Channel::Photometry, part: 4 },
+            ground,
+            ..sharpness(0.0)
+        };
+        let patch = Tolerance::Patch { cell: cell_of(DVec2::new(0.7, -0.2)), sigma: PATCH };
+        assert_eq!(patch.change(&carpet(DVec2::new(0.9, -0.4)), -2.0), PATCH);
+        assert_eq!(patch.change(&carpet(DVec2::new(1.1, -0.4)), -2.0), 0.0);
+    }
+
+    #[test]
+    fn sheen_is_nothing_from_straight_above_and_stronger_on_dark_colours() {
+        let at = |cos_incidence: f64| Row {
+            group: Group { channel: Channel::Photometry, part: 3 },
+            cos_incidence,
+            ..sharpness(0.0)
+        };
+        let sheen = Tolerance::Sheen { power: 1, sigma: SHEEN };
+        assert_eq!(sheen.change(&at(1.0), -3.0), 0.0);
+        assert!(sheen.change(&at(0.2), -3.0) > sheen.change(&at(0.2), -2.0));
+        assert!(sheen.change(&at(0.2), -3.0) > sheen.change(&at(0.6), -3.0));
+    }
+}

@@ -112,3 +112,59 @@ impl Total {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sums of a well-conditioned system: two effects and two tolerances.
+    fn sums() -> Sums {
+        let factor = DMatrix::from_row_slice(
+            5,
+            4,
+            &[
+                1.0, 0.2, 0.5, 0.0, 0.3, 2.0, 0.1, 0.4, 0.0, 0.5, 1.5, 0.2, 0.7, 0.1, 0.3, 1.0, 0.2, 0.9,
+                0.0, 0.6,
+            ],
+        );
+        let residuals = DVector::from_vec(vec![0.5, -1.0, 2.0, 0.3, 1.2]);
+        Sums { a: factor.transpose() * &factor, g: factor.transpose() * residuals }
+    }
+
+    /// All four columns solved for at once.
+    fn at_once(base: &DVector<f64>) -> DVector<f64> {
+        let Sums { a, g } = sums();
+        let held = a + DMatrix::identity(4, 4) * PRIOR;
+        let prior = DVector::from_vec(vec![base[0], base[1], 0.0, 0.0]) * PRIOR;
+        held.try_inverse().unwrap() * (g - prior)
+    }
+
+    #[test]
+    fn tolerances_solved_for_once_give_the_fit_of_all_at_once() {
+        let base = DVector::from_vec(vec![0.3, -0.2]);
+        let total = Total::of([sums()].iter(), 4, 2);
+        let fit = total.fit(&[0, 1], &base).unwrap();
+        assert!((fit.delta - at_once(&base)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn an_effect_that_is_not_free_goes_to_where_it_vanishes() {
+        let base = DVector::from_vec(vec![0.3, -0.2]);
+        let fit = Total::of([sums()].iter(), 4, 2).fit(&[1], &base).unwrap();
+        assert_eq!(fit.delta[0], -0.3);
+        assert!(fit.prior_share(1) < 1.0 && fit.prior_share(0) == 1.0);
+    }
+
+    #[test]
+    fn a_fit_gains_most() {
+        let base = DVector::zeros(2);
+        let total = Total::of([sums()].iter(), 4, 2);
+        let gain = |delta: &DVector<f64>| total.gain(delta) - 0.5 * PRIOR * delta.rows(0, 2).norm_squared();
+        let best = total.fit(&[0, 1], &base).unwrap().delta;
+        for step in [[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1], [0.0, -0.1]] {
+            let mut other = best.clone();
+            (other[0], other[1]) = (other[0] + step[0], other[1] + step[1]);
+            assert!(gain(&other) < gain(&best));
+        }
+    }
+}

@@ -317,3 +317,97 @@ pub(crate) fn picture_cell(pixel: DVec2, size: [u32; 2]) -> (i32, i32) {
     };
     (cell(pixel.x, size[0], GRID[0]), cell(pixel.y, size[1], GRID[1]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rows::Group;
+
+    const SIGMA: f64 = 0.05;
+    const SIZE: [u32; 2] = [320, 240];
+
+    /// Patterns of the carpet's brightness in 24 pictures, where a block's residual is noise and this, by the picture's
+    /// number, the place in the picture and that on the field.
+    fn found(residual: impl Fn(u32, DVec2, DVec2) -> f64) -> Vec<Pattern> {
+        let noise = |frame: u32, index: u32| {
+            let mut state = u64::from(frame * 7919 + index).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+            state ^= state >> 29;
+            state = state.wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        let rows_of = |frame: u32| -> Vec<Row> {
+            (0..1200_u32)
+                .map(|index| {
+                    let pixel = 8.0 * DVec2::new(f64::from(index % 40), f64::from(index / 40));
+                    // The robot walks along the field.
+                    row(pixel, pixel / 80.0 + DVec2::new(0.2 * f64::from(frame), 0.0))
+                })
+                .collect()
+        };
+        let all: Vec<Vec<Row>> = (0..24).map(rows_of).collect();
+        let frames: Vec<Residuals<'_>> = (0..)
+            .zip(&all)
+            .map(|(frame, rows)| Residuals {
+                rows,
+                values: (0..)
+                    .zip(rows)
+                    .map(|(index, row)| 0.1 * noise(frame, index) + residual(frame, row.pixel, row.ground))
+                    .collect(),
+                time_s: 0.2 * f64::from(frame),
+                size: SIZE,
+            })
+            .collect();
+        patterns(&frames, &BTreeMap::from([((Channel::Photometry, 4), SIGMA)]), 0.0)
+    }
+
+    fn row(pixel: DVec2, ground: DVec2) -> Row {
+        Row {
+            group: Group { channel: Channel::Photometry, part: 4 },
+            measured: 0.0,
+            sigma: 0.0,
+            pixel,
+            ground,
+            normal: DVec2::ZERO,
+            half_width_px: 0.0,
+            cos_incidence: 1.0,
+        }
+    }
+
+    #[test]
+    fn noise_has_no_pattern() {
+        assert_eq!(found(|_, _, _| 0.0), []);
+    }
+
+    #[test]
+    fn dirt_on_the_lens_is_found_where_it_is_with_its_size() {
+        let dirt = |pixel: DVec2| -0.15 * f64::from(u8::from(pixel.distance(DVec2::new(60.0, 180.0)) < 45.0));
+        let found = found(|_, pixel, _| dirt(pixel));
+        let pattern = found.iter().find(|pattern| pattern.locus == Locus::Picture).unwrap();
+        assert_eq!(pattern.strongest, picture_cell(DVec2::new(60.0, 180.0), SIZE));
+        assert!((pattern.reported_size() - 0.15).abs() < 0.03, "{}", pattern.reported_size());
+        assert!(pattern.place().contains("in the picture"), "{}", pattern.place());
+    }
+
+    #[test]
+    fn a_stain_on_the_field_is_found_on_the_field() {
+        let stain =
+            |ground: DVec2| if (ground.floor() - DVec2::new(4.0, 1.0)).length() < 0.1 { -0.15 } else { 0.0 };
+        let found = found(|_, _, ground| stain(ground));
+        let pattern = found.iter().find(|pattern| pattern.locus == Locus::Field).unwrap();
+        assert_eq!(pattern.strongest, (4, 1));
+    }
+
+    #[test]
+    fn a_thing_on_a_part_of_a_place_is_no_pattern_of_it() {
+        let thing = |ground: DVec2| {
+            let inside = ground - ground.floor();
+            if ground.floor() == DVec2::new(4.0, 1.0) && inside.x < 0.4 { -0.15 } else { 0.0 }
+        };
+        assert_eq!(found(|_, _, ground| thing(ground)), []);
+    }
+
+    #[test]
+    fn what_is_too_small_to_matter_is_not_told() {
+        assert_eq!(found(|_, pixel, _| if pixel.x < 160.0 { 0.02 } else { -0.02 }), []);
+    }
+}

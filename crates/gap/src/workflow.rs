@@ -309,3 +309,21 @@ impl Finder<'_> {
         moved
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn models_are_apart_by_more_than_what_they_explain_may_be_off_by() {
+        assert_eq!(apart(0.0), 0.5 * TELLS_APART * TELLS_APART);
+        assert!(apart(1000.0) > apart(100.0));
+        assert!(apart(1000.0) < 100.0, "a tenth of what is explained is no tie");
+    }
+
+    #[test]
+    fn sets_differ_by_one_effect_in_the_place_of_another() {
+        assert_eq!(differing(&[1, 2], &[1, 3]), Some((2, 3)));
+        assert_eq!(differing(&[1, 2], &[2, 1]), None);
+    }
+}
