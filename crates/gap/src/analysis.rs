@@ -169,8 +169,9 @@ fn effect_report(
         .map(|index| {
             let column: &Column = &naming.columns[index];
             let sigma = naming.evidence.sigma(&case.fit, index);
-            let coordinate = naming.coordinate(&case.fit, index);
-            let (value, sigma) = (naming.value(&case.fit, index), column.value_sigma(coordinate, sigma));
+            // As in the model's file: the last fit's step from there is less than matters.
+            let coordinate = naming.evidence.base[index];
+            let (value, sigma) = (column.value(coordinate), column.value_sigma(coordinate, sigma));
             (
                 column.parameter().name,
                 Estimate { value, sigma, unit: Some(column.parameter().unit.to_owned()) },

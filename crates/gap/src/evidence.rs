@@ -279,20 +279,7 @@ fn independent(scores: &[DVector<f64>], size: usize) -> DMatrix<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Numbers from a fixed linear congruential generator, summed to be nearly normal.
-    struct Noise(u64);
-
-    impl Noise {
-        fn next(&mut self) -> f64 {
-            let mut uniform = || {
-                self.0 =
-                    self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-            };
-            (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-        }
-    }
+    use crate::testing::Noise;
 
     /// Frames with 20 rows each of two columns; all rows of a frame share an error of their own besides.
     fn system(seed: u64, truth: [f64; 2], shared: f64) -> System {

@@ -30,6 +30,8 @@ mod search;
 mod split;
 mod starting;
 mod system;
+#[cfg(test)]
+mod testing;
 mod tolerance;
 mod total;
 mod unknown;

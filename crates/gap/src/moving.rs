@@ -108,7 +108,7 @@ fn is_left(scenes: &[Scene], time_s: f64, foot: DVec2) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::{Group, Row};
+    use crate::{rows::Row, testing::carpet_row};
 
     const SIGMA: f64 = 0.05;
     const PITCH_PX: f64 = 8.0;
@@ -127,24 +127,11 @@ mod tests {
                     let inside = ground - *thing;
                     (-0.01..0.15).contains(&inside.x) && (-0.01..0.25).contains(&inside.y)
                 };
-                rows.push(row(pixel, ground));
+                rows.push(carpet_row(pixel, ground));
                 values.push(if things.iter().any(is_inside) { -1.0 } else { 0.3 * SIGMA });
             }
         }
         (rows, values, time_s)
-    }
-
-    fn row(pixel: DVec2, ground: DVec2) -> Row {
-        Row {
-            group: Group { channel: Channel::Photometry, part: 4 },
-            measured: 0.0,
-            sigma: 0.0,
-            pixel,
-            ground,
-            normal: DVec2::ZERO,
-            half_width_px: 0.0,
-            cos_incidence: 1.0,
-        }
     }
 
     fn judged(things: impl Fn(f64) -> Vec<DVec2>) -> Option<Unexplained> {

@@ -115,7 +115,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::rows::Group;
+    use crate::testing::carpet_row;
 
     const SIGMA: f64 = 0.05;
     const SIZE: [u32; 2] = [320, 240];
@@ -125,7 +125,7 @@ mod tests {
         let size = DVec2::new(f64::from(SIZE[0]), f64::from(SIZE[1]));
         let pixels: Vec<DVec2> =
             (0..1200).map(|i| 8.0 * DVec2::new(f64::from(i % 40), f64::from(i / 40))).collect();
-        let rows: Vec<Row> = pixels.iter().map(|&pixel| row(pixel)).collect();
+        let rows: Vec<Row> = pixels.iter().map(|&pixel| carpet_row(pixel, pixel / 100.0)).collect();
         // A little texture, another in every block and picture.
         let texture =
             |frame: u32, index: usize| 0.01 * (((index * 31 + frame as usize * 17) % 7) as f64 - 3.0) / 3.0;
@@ -141,19 +141,6 @@ mod tests {
             })
             .collect();
         judge(&frames)
-    }
-
-    fn row(pixel: DVec2) -> Row {
-        Row {
-            group: Group { channel: Channel::Photometry, part: 4 },
-            measured: 0.0,
-            sigma: 0.0,
-            pixel,
-            ground: pixel / 100.0,
-            normal: DVec2::ZERO,
-            half_width_px: 0.0,
-            cos_incidence: 1.0,
-        }
     }
 
     /// A wave along a fraction, its phase another in every picture.

@@ -336,23 +336,8 @@ fn pose_sigmas(left: Option<&[Left]>, reference: Reference) -> [f64; 6] {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec2;
-
     use super::*;
-
-    /// Numbers from a fixed linear congruential generator, nearly normal.
-    struct Noise(u64);
-
-    impl Noise {
-        fn next(&mut self) -> f64 {
-            let mut uniform = || {
-                self.0 =
-                    self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-            };
-            (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-        }
-    }
+    use crate::testing::{Noise, row};
 
     /// Frames of lines seen from a pose that is wrong by its own amount in each. The first column looks like a turn of the
     /// camera in all of them; the second does not; neither is at work but for `size` of the second.
@@ -370,7 +355,7 @@ mod tests {
                 for _ in 0..60 {
                     let pose = Vector6::from_fn(|_, _| 100.0 * noise.next());
                     let other = noise.next();
-                    frame.rows.push(line());
+                    frame.rows.push(row(Channel::Geometry, 0));
                     frame.residuals.push(pose.dot(&wrong) + size * other + 0.3 * noise.next());
                     frame.jacobian.push(vec![(0, pose[0]), (1, other)]);
                     frame.pose.push(pose);
@@ -378,19 +363,6 @@ mod tests {
                 frame
             })
             .collect()
-    }
-
-    fn line() -> Row {
-        Row {
-            group: Group { channel: Channel::Geometry, part: 0 },
-            measured: 0.0,
-            sigma: 0.0,
-            pixel: DVec2::ZERO,
-            ground: DVec2::ZERO,
-            normal: DVec2::X,
-            half_width_px: 2.0,
-            cos_incidence: 0.5,
-        }
     }
 
     fn system(frames: &[FrameRows]) -> System {

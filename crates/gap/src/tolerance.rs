@@ -141,18 +141,10 @@ fn is_carpet(row: &Row) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::{carpet_row, row};
 
     fn sharpness(half_width_px: f64) -> Row {
-        Row {
-            group: Group { channel: Channel::Sharpness, part: 0 },
-            measured: 0.0,
-            sigma: 0.0,
-            pixel: DVec2::ZERO,
-            ground: DVec2::ZERO,
-            normal: DVec2::X,
-            half_width_px,
-            cos_incidence: 1.0,
-        }
+        Row { half_width_px, ..row(Channel::Sharpness, 0) }
     }
 
     /// What all tolerances of a kernel's shape allow a variance to be off by, as a part of it.
@@ -179,7 +171,7 @@ mod tests {
 
     #[test]
     fn shapes_of_kernels_have_nothing_to_do_with_other_rows() {
-        let line = Row { group: Group { channel: Channel::Geometry, part: 0 }, ..sharpness(1.0) };
+        let line = row(Channel::Geometry, 0);
         for tolerance in [Tolerance::Kernel { sigma: KERNEL }, Tolerance::ThinKernel { sigma: THIN_KERNEL }] {
             assert_eq!(tolerance.change(&line, 1.0), 0.0);
         }
@@ -187,11 +179,7 @@ mod tests {
 
     #[test]
     fn a_patch_changes_the_carpet_in_its_own_square_only() {
-        let carpet = |ground: DVec2| Row {
-            group: Group { channel: Channel::Photometry, part: 4 },
-            ground,
-            ..sharpness(0.0)
-        };
+        let carpet = |ground: DVec2| carpet_row(DVec2::ZERO, ground);
         let patch = Tolerance::Patch { cell: cell_of(DVec2::new(0.7, -0.2)), sigma: PATCH };
         assert_eq!(patch.change(&carpet(DVec2::new(0.9, -0.4)), -2.0), PATCH);
         assert_eq!(patch.change(&carpet(DVec2::new(1.1, -0.4)), -2.0), 0.0);
@@ -199,11 +187,7 @@ mod tests {
 
     #[test]
     fn sheen_is_nothing_from_straight_above_and_stronger_on_dark_colours() {
-        let at = |cos_incidence: f64| Row {
-            group: Group { channel: Channel::Photometry, part: 3 },
-            cos_incidence,
-            ..sharpness(0.0)
-        };
+        let at = |cos_incidence: f64| Row { cos_incidence, ..row(Channel::Photometry, 3) };
         let sheen = Tolerance::Sheen { power: 1, sigma: SHEEN };
         assert_eq!(sheen.change(&at(1.0), -3.0), 0.0);
         assert!(sheen.change(&at(0.2), -3.0) > sheen.change(&at(0.2), -2.0));

@@ -321,7 +321,7 @@ pub(crate) fn picture_cell(pixel: DVec2, size: [u32; 2]) -> (i32, i32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::Group;
+    use crate::testing::carpet_row;
 
     const SIGMA: f64 = 0.05;
     const SIZE: [u32; 2] = [320, 240];
@@ -340,7 +340,7 @@ mod tests {
                 .map(|index| {
                     let pixel = 8.0 * DVec2::new(f64::from(index % 40), f64::from(index / 40));
                     // The robot walks along the field.
-                    row(pixel, pixel / 80.0 + DVec2::new(0.2 * f64::from(frame), 0.0))
+                    carpet_row(pixel, pixel / 80.0 + DVec2::new(0.2 * f64::from(frame), 0.0))
                 })
                 .collect()
         };
@@ -358,19 +358,6 @@ mod tests {
             })
             .collect();
         patterns(&frames, &BTreeMap::from([((Channel::Photometry, 4), SIGMA)]), 0.0)
-    }
-
-    fn row(pixel: DVec2, ground: DVec2) -> Row {
-        Row {
-            group: Group { channel: Channel::Photometry, part: 4 },
-            measured: 0.0,
-            sigma: 0.0,
-            pixel,
-            ground,
-            normal: DVec2::ZERO,
-            half_width_px: 0.0,
-            cos_incidence: 1.0,
-        }
     }
 
     #[test]
