@@ -5,14 +5,14 @@
 mod common;
 
 use std::{
-    collections::{BTreeMap, HashMap},
+    collections::BTreeMap,
     fs,
     path::{Path, PathBuf},
     time::Duration,
 };
 
 use eframe::{
-    App, Storage,
+    App,
     egui::{Color32, Key, Modifiers, Shape, ViewportId, accesskit::Role, vec2},
 };
 use egui_kittest::kittest::Queryable;
@@ -28,8 +28,8 @@ use reality_sim_gap::{
 use tempfile::TempDir;
 
 use common::{
-    SIZE, click, demonstration, drag, press, rect_of, shows, texts, until, until_label, until_part, viewer,
-    viewer_with, walk,
+    Memory, SIZE, click, demonstration, drag, press, rect_of, shows, texts, until, until_label, until_part,
+    viewer, viewer_with, walk,
 };
 
 type Window = common::Viewer<'static>;
@@ -473,25 +473,6 @@ fn in_the_smallest_window_every_view_is_on_the_screen() {
         let rect = rect_of(&window, view);
         assert!(rect.width() > 30.0 && rect.right() <= 640.0 && rect.bottom() <= 420.0, "{view}: {rect}");
     }
-}
-
-#[derive(Default)]
-struct Memory(HashMap<String, String>);
-
-impl Storage for Memory {
-    fn get_string(&self, key: &str) -> Option<String> {
-        self.0.get(key).cloned()
-    }
-
-    fn set_string(&mut self, key: &str, value: String) {
-        self.0.insert(key.to_owned(), value);
-    }
-
-    fn remove_string(&mut self, key: &str) {
-        self.0.remove(key);
-    }
-
-    fn flush(&mut self) {}
 }
 
 #[test]

@@ -5,14 +5,13 @@
 mod common;
 
 use std::{
-    collections::HashMap,
     fs,
     path::{Path, PathBuf},
     sync::Arc,
 };
 
 use eframe::{
-    App, Storage,
+    App,
     egui::{DroppedFile, Event, HoveredFile, Key, Modifiers, ViewportCommand, accesskit::Role},
 };
 use egui_kittest::kittest::Queryable;
@@ -21,7 +20,7 @@ use reality_sim_db::{Database, PoseEstimate, PoseSource};
 use tempfile::{TempDir, tempdir};
 
 use common::{
-    SIZE, Viewer, click, demonstration, press, shows, texts, type_text, until, until_label, viewer,
+    Memory, SIZE, Viewer, click, demonstration, press, shows, texts, type_text, until, until_label, viewer,
     viewer_with, walk,
 };
 
@@ -358,25 +357,6 @@ fn ctrl_q_closes_the_window() {
     viewer.event(Event::Key { key, pressed: true, modifiers, repeat: false, physical_key: None });
     viewer.step();
     assert!(closes(&viewer));
-}
-
-#[derive(Default)]
-struct Memory(HashMap<String, String>);
-
-impl Storage for Memory {
-    fn get_string(&self, key: &str) -> Option<String> {
-        self.0.get(key).cloned()
-    }
-
-    fn set_string(&mut self, key: &str, value: String) {
-        self.0.insert(key.to_owned(), value);
-    }
-
-    fn remove_string(&mut self, key: &str) {
-        self.0.remove(key);
-    }
-
-    fn flush(&mut self) {}
 }
 
 #[test]

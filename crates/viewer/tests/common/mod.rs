@@ -4,6 +4,7 @@
 #![allow(dead_code, reason = "each test program uses some of them")]
 
 use std::{
+    collections::HashMap,
     path::{Path, PathBuf},
     sync::Arc,
     thread,
@@ -25,6 +26,26 @@ use reality_sim_viewer::{Device, ViewerApp, ViewerOptions};
 pub const PATIENCE: Duration = Duration::from_secs(120);
 /// The size of a window, points.
 pub const SIZE: Vec2 = vec2(1280.0, 820.0);
+
+/// Settings that last as long as the test.
+#[derive(Default)]
+pub struct Memory(pub HashMap<String, String>);
+
+impl Storage for Memory {
+    fn get_string(&self, key: &str) -> Option<String> {
+        self.0.get(key).cloned()
+    }
+
+    fn set_string(&mut self, key: &str, value: String) {
+        self.0.insert(key.to_owned(), value);
+    }
+
+    fn remove_string(&mut self, key: &str) {
+        self.0.remove(key);
+    }
+
+    fn flush(&mut self) {}
+}
 
 /// The window's content.
 pub type Viewer<'a> = Harness<'a, ViewerApp>;
