@@ -140,6 +140,18 @@ fn what_two_effects_explain_as_well_is_named_by_the_simpler_one_with_the_other_b
 }
 
 #[test]
+fn lines_far_from_where_the_model_has_them_are_found_and_the_effect_named() {
+    // 22 pixels in a picture of 320: farther than lines are looked for.
+    let (dx_px, dy_px) = (-15.0, 16.0);
+    let (_folder, sequence) = record(23, &[Hidden::PrincipalPoint { dx_px, dy_px }]);
+    let report = reported(&sequence);
+    assert_eq!(named(&report), ["principal_point"], "{}", report.summary);
+    assert_eq!(report.verdict, Verdict::Named, "{}", report.summary);
+    assert_size(&report, "principal_point", "x_px", dx_px);
+    assert_size(&report, "principal_point", "y_px", dy_px);
+}
+
+#[test]
 fn people_who_walk_are_no_effect_of_the_camera() {
     let (_folder, sequence) = record(47, &[Hidden::MovingPeople { count: 6 }]);
     let report = reported(&sequence);
@@ -177,10 +189,20 @@ fn what_no_effect_explains_is_called_unknown_and_located() {
 
 #[test]
 fn an_effect_that_is_not_in_the_library_gets_no_other_name() {
-    let (_folder, sequence) = record(51, &[Hidden::Vignetting { strength: 0.4, falloff: Falloff::Cos4 }]);
-    let options = Options { without: vec!["vignetting".to_owned()], ..Options::default() };
-    let report = analysed(&sequence, &Model::default(), &options).report;
-    assert_eq!(report.verdict, Verdict::Unknown, "{}", report.summary);
+    let cases = [
+        (Hidden::Vignetting { strength: 0.4, falloff: Falloff::Cos4 }, "photometry"),
+        (Hidden::OdometryScale { scale: -0.3 }, "motion"),
+        (Hidden::TimeOffset { offset_s: 0.08 }, "geometry"),
+        (Hidden::SensorNoise { factor: 1.5 }, "noise"),
+    ];
+    for (hidden, channel) in cases {
+        let (_folder, sequence) = record(51, &[hidden]);
+        let options = Options { without: vec![hidden.id().to_owned()], ..Options::default() };
+        let report = analysed(&sequence, &Model::default(), &options).report;
+        assert_eq!(report.verdict, Verdict::Unknown, "{}: {}", hidden.id(), report.summary);
+        let seen = report.unexplained.iter().any(|pattern| pattern.channel == channel);
+        assert!(seen, "{}: {:?}", hidden.id(), report.unexplained);
+    }
 }
 
 #[test]

@@ -7,6 +7,7 @@
 mod limits;
 mod plan;
 mod run;
+mod sight;
 mod summary;
 mod truth;
 

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use reality_sim_hidden::{FOREIGN, LIBRARY, Random};
 use serde::{Deserialize, Serialize};
 
-use crate::limits::Limits;
+use crate::{limits::Limits, sight::is_in_sight};
 
 /// Parts of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
@@ -87,7 +87,11 @@ impl Task {
                 limits.size(self, id, self.size)?.filter(|(_, in_limits)| *in_limits > enough)
             };
             let Some((multiple, in_limits)) = size else { return Ok(None) };
-            all.push(Chosen { id: id.clone(), multiple, in_limits });
+            let chosen = Chosen { id: id.clone(), multiple, in_limits };
+            if self.part == Part::Foreign && !is_in_sight(self, &chosen)? {
+                return Ok(None);
+            }
+            all.push(chosen);
         }
         Ok(Some(all))
     }

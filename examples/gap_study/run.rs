@@ -1,6 +1,6 @@
 //! One run: a recording, the workflow, and what came out.
 
-use std::{collections::BTreeMap, error::Error, time::Instant};
+use std::{collections::BTreeMap, error::Error, path::Path, time::Instant};
 
 use reality_sim::{
     Sequence,
@@ -67,9 +67,12 @@ impl Outcome {
     }
 }
 
-/// Runs a task with these effects hidden, their signs and shapes drawn by the seed.
-pub fn run(task: &Task, hidden: &[Chosen]) -> Result<Outcome, Box<dyn Error>> {
-    let folder = tempfile::tempdir()?;
+/// Records a task's sequence with these effects hidden, their signs and shapes drawn by the seed.
+pub fn record(
+    task: &Task,
+    hidden: &[Chosen],
+    folder: &Path,
+) -> Result<(Sequence, Vec<Hidden>), Box<dyn Error>> {
     let mut random = Random::new(task.seed.wrapping_mul(77));
     let drawn = hidden.iter().map(|chosen| Hidden::of(&chosen.id, chosen.multiple, &mut random));
     let effects: Vec<Hidden> = drawn.collect::<Result<_, _>>()?;
@@ -77,7 +80,13 @@ pub fn run(task: &Task, hidden: &[Chosen]) -> Result<Outcome, Box<dyn Error>> {
     recipe.frames = task.frames;
     recipe.size = task.picture;
     recipe.effects.clone_from(&effects);
-    let sequence = recipe.record(folder.path())?;
+    Ok((recipe.record(folder)?, effects))
+}
+
+/// Runs a task with these effects hidden.
+pub fn run(task: &Task, hidden: &[Chosen]) -> Result<Outcome, Box<dyn Error>> {
+    let folder = tempfile::tempdir()?;
+    let (sequence, effects) = record(task, hidden, folder.path())?;
     let start = Instant::now();
     let options = Options { seed: task.seed, without: task.without.iter().cloned().collect() };
     let report = examine(&sequence, &Model::default(), &options)?;

@@ -61,6 +61,11 @@ fn named(outcome: &Outcome) -> BTreeSet<&str> {
     outcome.named.iter().map(|(id, _)| id.as_str()).collect()
 }
 
+/// Named with nothing besides, and nothing that it cannot be told from.
+fn is_exact(outcome: &Outcome) -> bool {
+    named(outcome) == hidden(outcome) && outcome.named.iter().all(|(_, rivals)| rivals.is_empty())
+}
+
 /// Named, or among those that a named one cannot be told from.
 fn in_set(outcome: &Outcome, id: &str) -> bool {
     outcome.named.iter().any(|(named, rivals)| named == id || rivals.iter().any(|rival| rival == id))
@@ -89,7 +94,7 @@ fn singles(text: &mut String, runs: &[&Outcome]) {
     sizes.sort_by(f64::total_cmp);
     for size in sizes {
         let runs: Vec<_> = runs.iter().filter(|run| run.task.size == size).collect();
-        let exactly = runs.iter().filter(|run| named(run) == hidden(run)).count();
+        let exactly = runs.iter().filter(|run| is_exact(run)).count();
         let in_set = runs.iter().filter(|run| hidden(run).iter().all(|id| in_set(run, id))).count();
         let unknown = runs.iter().filter(|run| run.verdict == Verdict::Unknown).count();
         let count = runs.len();

@@ -8,7 +8,8 @@ use reality_sim_sensor::{Model, library};
 use crate::{
     columns::Column,
     evidence::Gain,
-    judge::{ChannelGap, Judged, gaps},
+    following::following,
+    judge::{ChannelGap, Judged, gaps, restless},
     limits::{NotFound, limit},
     maps::maps,
     measure::MeasureError,
@@ -16,7 +17,7 @@ use crate::{
     naming::{Case, Naming},
     nominal::strained,
     passing,
-    recording::{LEAST_VIEWS, PoseSource, Recording},
+    recording::{Frame, LEAST_VIEWS, PoseSource, Recording},
     report::{
         EffectReport, Estimate, Gap, Limit, NotFoundReport, PosesReport, Report, Unexplained, Unobservable,
         Verdict,
@@ -52,7 +53,8 @@ pub fn analyse(
     let all = found.all();
     let before = Judged::new(recording, &found, model)?;
     let after = Judged::new(recording, &found, &found.measured.model)?;
-    let gap = whole_gap(&gaps(&found, &before, &after));
+    let channels = gaps(&found, &before, &after);
+    let gap = whole_gap(&channels);
     let cases: Vec<Case> =
         all.iter().filter_map(|&effect| naming.case(effect, &all, naming.effects().len())).collect();
     let mut effects = Vec::new();
@@ -68,7 +70,11 @@ pub fn analyse(
     let unexplained = if evidence.views() < LEAST_VIEWS {
         Vec::new()
     } else {
-        unexplained(recording, &found, &naming, &all)
+        let mut unexplained = unexplained(recording, &found, &naming, &all);
+        if recording.source == PoseSource::Measured {
+            unexplained.extend(restless(&channels));
+        }
+        unexplained
     };
     let (not_found, unobservable) = others(recording, &naming, &all);
     let verdict = verdict(&effects, &unexplained, &unobservable);
@@ -180,10 +186,7 @@ fn effect_report(
         .collect();
     let plain: Vec<(&'static str, f64, f64)> =
         estimates.iter().map(|(name, estimate)| (*name, estimate.value, estimate.sigma)).collect();
-    let mut rivals = naming.rivals(case.effect, &found.all());
-    rivals.extend(found.tied(case.effect));
-    rivals.sort_unstable();
-    rivals.dedup();
+    let rivals = found.rivals(case.effect);
     let values: Vec<f64> = plain.iter().map(|(_, value, _)| *value).collect();
     let (name, because) = words::directed(effect, &values);
     EffectReport {
@@ -274,6 +277,7 @@ fn unexplained(
     }
     let system = &found.measured.system;
     let camera = &recording.sequence.setup.camera;
+    let frames: Vec<&Frame> = found.split.fitted().map(|frame| &recording.frames[frame]).collect();
     let residuals: Vec<Residuals<'_>> = found
         .split
         .fitted()
@@ -295,6 +299,8 @@ fn unexplained(
     let carpet = system.sigmas.get(&(Channel::Photometry, 4)).copied().unwrap_or(f64::INFINITY);
     unexplained.extend(passing::things(&residuals, carpet));
     unexplained.extend(moving(&residuals, carpet));
+    let motion = |part: u8| system.sigmas.get(&(Channel::Motion, part)).copied();
+    unexplained.extend(following(recording, &frames, &residuals, motion));
     let fitted = &delta.as_slice()[found.columns.len()..];
     unexplained.extend(strained(&found.measured.tolerances, fitted));
     unexplained.extend(crate::presence::missing(&looks, &recording.sequence.field));

@@ -6,6 +6,7 @@ use image::RgbImage;
 use crate::{
     jpeg::{BLOCK, cosines},
     profile::LUMA,
+    system::median,
 };
 
 /// Frequencies of noise that are looked at, as the sum of row and column: texture of carpet is in the lower ones, a
@@ -13,6 +14,13 @@ use crate::{
 pub(crate) const FREQUENCIES: std::ops::RangeInclusive<usize> = 3..=6;
 /// Coefficients that a file rounds to more than this many grey levels tell little of noise.
 const MAX_STEP: f64 = 12.0;
+
+/// A place is carpet where red and blue against green are those of the carpet within this factor,
+const SAME_HUE: f64 = 1.3;
+/// and green is within this one: the lens darkens corners, lamps are not the same everywhere.
+const SAME_BRIGHTNESS: f64 = 2.0;
+/// Half the side of the square of pixels that is looked at.
+const AROUND_PX: i64 = 1;
 
 /// What was measured of a square of plain carpet.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,5 +104,76 @@ pub(crate) fn measure(
         level: sum.map(|sum| sum / (255.0 * pixels)),
         energy,
         coefficients: (parts * parts) as usize * spectrum.chosen.len(),
+    }
+}
+
+/// What most of a picture's carpet looks like: medians of encoded values. None where no carpet was measured.
+pub(crate) fn usual(blocks: &[Block]) -> Option<[f64; 3]> {
+    (!blocks.is_empty()).then(|| {
+        [0, 1, 2]
+            .map(|channel| median(&mut blocks.iter().map(|block| block.level[channel]).collect::<Vec<f64>>()))
+    })
+}
+
+/// Whether a place in the picture looks like the carpet.
+pub(crate) fn is_carpet(picture: &RgbImage, pixel: DVec2, usual: [f64; 3]) -> bool {
+    let mut sums = [0.0; 3];
+    for dv in -AROUND_PX..=AROUND_PX {
+        for du in -AROUND_PX..=AROUND_PX {
+            let (u, v) = (pixel.x.round() as i64 + du, pixel.y.round() as i64 + dv);
+            let at = u32::try_from(u).ok().zip(u32::try_from(v).ok());
+            let Some(color) = at.and_then(|(u, v)| picture.get_pixel_checked(u, v)) else { return false };
+            color.0.iter().zip(&mut sums).for_each(|(value, sum)| *sum += f64::from(*value));
+        }
+    }
+    let within = |ratio: f64, factor: f64| (1.0 / factor..=factor).contains(&ratio);
+    let [red, green, blue] = [0, 1, 2].map(|channel| sums[channel] / usual[channel].max(1e-3));
+    let pixels = 255.0 * ((2 * AROUND_PX + 1) * (2 * AROUND_PX + 1)) as f64;
+    within(red / green, SAME_HUE) && within(blue / green, SAME_HUE) && within(green / pixels, SAME_BRIGHTNESS)
+}
+
+#[cfg(test)]
+mod tests {
+    use image::Rgb;
+
+    use super::*;
+
+    const CARPET: [u8; 3] = [52, 120, 60];
+
+    fn is_carpet_of(color: [u8; 3]) -> bool {
+        let picture = RgbImage::from_pixel(20, 20, Rgb(color));
+        is_carpet(&picture, DVec2::splat(9.0), CARPET.map(|value| f64::from(value) / 255.0))
+    }
+
+    #[test]
+    fn carpet_in_a_dark_corner_is_carpet_and_what_stands_on_it_is_not() {
+        assert!(is_carpet_of(CARPET) && is_carpet_of([33, 78, 37]));
+        for (what, color) in [
+            ("line", [205, 210, 204]),
+            ("robot", [25, 26, 28]),
+            ("ball", [230, 110, 30]),
+            ("blurred line", [95, 148, 100]),
+        ] {
+            assert!(!is_carpet_of(color), "{what}");
+        }
+    }
+
+    #[test]
+    fn beyond_the_picture_is_no_carpet() {
+        let picture = RgbImage::from_pixel(20, 20, Rgb(CARPET));
+        assert!(!is_carpet(&picture, DVec2::new(-3.0, 5.0), [0.2, 0.47, 0.23]));
+    }
+
+    #[test]
+    fn most_of_the_carpet_decides_what_it_looks_like() {
+        let block = |green: f64| Block {
+            pixel: DVec2::ZERO,
+            ground: DVec2::ZERO,
+            level: [0.2, green, 0.23],
+            energy: 0.0,
+            coefficients: 0,
+        };
+        assert_eq!(usual(&[block(0.5), block(0.48), block(0.05)]).unwrap()[1], 0.48);
+        assert!(usual(&[]).is_none());
     }
 }

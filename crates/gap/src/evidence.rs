@@ -133,6 +133,11 @@ impl<'a> Evidence<'a> {
         self.total.fit(free, &self.base)
     }
 
+    /// The others changed by what is held.
+    pub(crate) fn fit_beside(&self, free: &[usize], held: &DVector<f64>) -> Option<Fit> {
+        self.total.fit_beside(free, &self.base, held)
+    }
+
     /// The model as it is: nothing moves but the tolerances.
     pub(crate) fn as_it_is(&self) -> Option<Fit> {
         // From a base of zero, effects that are not free stay where they are.
@@ -142,6 +147,11 @@ impl<'a> Evidence<'a> {
     /// What moving the model to a fit gains on the frames that were fitted, whatever the tolerances are.
     pub(crate) fn improvement(&self, fit: &Fit) -> f64 {
         self.total.gain(&fit.delta)
+    }
+
+    /// What the model as it is explains of what it would leave with only these columns free.
+    pub(crate) fn loss(&self, free: &[usize]) -> f64 {
+        self.fit(free).map_or(0.0, |fit| -self.total.gain(&fit.delta))
     }
 
     /// What a set of free columns gains over the model as it is; in short runs where an effect changes over time.

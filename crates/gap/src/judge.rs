@@ -8,6 +8,7 @@ use reality_sim_sensor::Model;
 use crate::{
     measure::{MeasureError, linearise},
     recording::Recording,
+    report::Unexplained,
     rows::{Channel, Row},
     system::{FrameRows, Left},
     workflow::Found,
@@ -91,6 +92,8 @@ pub(crate) fn gaps(found: &Found, before: &Judged, after: &Judged) -> BTreeMap<C
     sums.into_iter().map(|(channel, sums)| (channel, sums.gap(channel))).collect()
 }
 
+/// What is left is this many times as large as its floor where something is at work in it.
+const RESTLESS: f64 = 1.7;
 /// A row this many standard deviations off is something else.
 const OUTLYING: f64 = 5.0;
 
@@ -118,6 +121,44 @@ impl Squares {
     }
 }
 
+/// Lines that are off by far more than noise and the poses' errors make, although on the whole in no pattern: each picture
+/// in its own way.
+pub(crate) fn restless(gaps: &BTreeMap<Channel, ChannelGap>) -> Option<Unexplained> {
+    let gap = gaps.get(&Channel::Geometry)?;
+    (gap.after > RESTLESS * gap.floor).then(|| Unexplained {
+        channel: Channel::Geometry.name().to_owned(),
+        r#where: "in each picture in its own way: by more than noise and the poses' errors make".to_owned(),
+        size: gap.after,
+        unit: gap.unit.clone(),
+        p_value: None,
+    })
+}
+
 fn pose_variance(gradient: &Vector6<f64>, sigmas: &[f64; 6]) -> f64 {
     gradient.iter().zip(sigmas).map(|(gradient, sigma)| (gradient * sigma).powi(2)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn restless_at(after: f64) -> Option<Unexplained> {
+        let gap = ChannelGap { before: after, after, floor: 0.5, unit: "px".to_owned() };
+        restless(&BTreeMap::from([(Channel::Geometry, gap)]))
+    }
+
+    #[test]
+    fn what_is_far_above_the_floor_is_told_with_its_size() {
+        assert!(restless_at(0.6).is_none());
+        assert_eq!(restless_at(1.4).unwrap().size, 1.4);
+    }
+
+    #[test]
+    fn the_floor_is_the_scatter_of_neighbours_and_what_poses_errors_make() {
+        let squares = Squares { before: 40.0, after: 36.0, count: 4.0, poses: 16.0, steps: 10.0, pairs: 2.0 };
+        let gap = squares.gap(Channel::Geometry);
+        assert_eq!((gap.before, gap.after, gap.floor), (10.0_f64.sqrt(), 3.0, 3.0));
+        let quiet = Squares { steps: 2.0, poses: 0.0, ..squares }.gap(Channel::Geometry);
+        assert_eq!(quiet.floor, 1.0);
+    }
 }

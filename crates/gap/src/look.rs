@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 use image::RgbImage;
 use reality_sim_core::{
-    field::{Curve, FieldDimensions, LineSample, VisibleSample, sample_lines, visible_samples},
+    field::{Curve, VisibleSample, sample_lines, visible_samples},
     pose::CameraPose,
     preprocess::{Texture, luma},
 };
@@ -15,6 +15,7 @@ use crate::{
     jpeg::{BLOCK, luma_steps},
     profile::{self, Piece, Profile},
     search::{Coarse, search},
+    surroundings::Surroundings,
 };
 
 /// Between samples along a line on the ground, metres.
@@ -25,12 +26,6 @@ const SPACING_PX: f64 = 9.0;
 const HALF_WIDTH_PX: std::ops::RangeInclusive<f64> = 0.5..=30.0;
 /// And those that are narrower than this against the blur: carpet has as much contrast as is left of them.
 const THINNEST: f64 = 0.25;
-/// Blocks of carpet stay this far from lines and the carpet's edge beside what the blur takes, metres.
-const CARPET_MARGIN_M: f64 = 0.03;
-/// Sides of marks on the field, metres: lines beside them are left out.
-const MARK_M: f64 = 0.15;
-/// A goal's net is at least this far behind the line, metres.
-const NET_M: f64 = 0.3;
 /// Variance of a pixel's own square aperture, pixels squared.
 pub(crate) const APERTURE_PX2: f64 = 1.0 / 12.0;
 /// Room that a profile needs beyond a line's sides and the search, pixels.
@@ -45,6 +40,8 @@ pub(crate) struct Expected {
     pub(crate) curve: usize,
     /// Half its width in the picture, pixels.
     pub(crate) half_width_px: f64,
+    /// Whether something stands before it: neither a line is there nor carpet.
+    pub(crate) is_hidden: bool,
 }
 
 /// A piece of line that was found.
@@ -147,30 +144,35 @@ pub(crate) struct Looking {
 /// Measures a picture, given also as the bytes of its file.
 pub(crate) fn look(view: &View<'_>, picture: &RgbImage, bytes: &[u8], looking: Looking) -> Look {
     let spectrum = Spectrum::new(&luma_steps(bytes));
-    let (lines, expected_lines) = find_lines(view, picture, looking);
-    Look {
-        camera: view.pose.position_in_world(),
-        lines,
-        expected_lines,
-        blocks: find_carpet(view, picture, &spectrum),
-        noise_steps: spectrum.steps,
-    }
+    let blocks = find_carpet(view, picture, &spectrum);
+    let (lines, expected_lines) = find_lines(view, picture, &blocks, looking);
+    let camera = view.pose.position_in_world();
+    Look { camera, lines, expected_lines, blocks, noise_steps: spectrum.steps }
 }
 
-fn find_lines(view: &View<'_>, picture: &RgbImage, looking: Looking) -> (Vec<Line>, Vec<Expected>) {
+/// The pieces of line that the model expects in the picture and that stand alone there.
+pub(crate) fn expected_lines(view: &View<'_>) -> Vec<VisibleSample> {
     let field = view.chain.field();
-    let flow = Flow::new(view);
+    let surroundings = Surroundings::new(view);
     let samples = sample_lines(field, SPACING_M);
     let visible = visible_samples(field, &samples, view.chain.camera(), view.pose, SPACING_PX);
-    let expected: Vec<VisibleSample> = visible
-        .into_iter()
-        .filter(|visible| {
-            HALF_WIDTH_PX.contains(&visible.half_width_px) && stands_alone(field, view, visible)
-        })
-        .filter_map(|visible| {
-            Some(VisibleSample { pixel: view.project(visible.sample.point_in_world, 1)?, ..visible })
-        })
-        .collect();
+    let alone = visible.into_iter().filter(|visible| {
+        HALF_WIDTH_PX.contains(&visible.half_width_px) && surroundings.stands_alone(visible)
+    });
+    let placed = alone.filter_map(|visible| {
+        Some(VisibleSample { pixel: view.project(visible.sample.point_in_world, 1)?, ..visible })
+    });
+    placed.collect()
+}
+
+fn find_lines(
+    view: &View<'_>,
+    picture: &RgbImage,
+    blocks: &[Block],
+    looking: Looking,
+) -> (Vec<Line>, Vec<Expected>) {
+    let flow = Flow::new(view);
+    let expected = expected_lines(view);
     // At the picture's rim a profile has no room.
     let size = DVec2::new(f64::from(picture.width()), f64::from(picture.height()));
     let has_room = |visible: &VisibleSample| {
@@ -205,43 +207,16 @@ fn find_lines(view: &View<'_>, picture: &RgbImage, looking: Looking) -> (Vec<Lin
         })
     };
     let lines = search(&Texture::pack(&luma(picture)), &expected, looking.search_px, line);
-    let all = expected
-        .iter()
-        .filter(|visible| has_room(visible))
-        .map(|visible| Expected { curve: visible.sample.curve, half_width_px: visible.half_width_px });
-    (lines, all.collect())
-}
-
-/// Whether nothing else is so near in the picture that it is in the profile: no other line, no mark, not the carpet's
-/// end, no goal.
-fn stands_alone(field: &FieldDimensions, view: &View<'_>, visible: &VisibleSample) -> bool {
-    let LineSample { point_in_world, clearance_m, .. } = visible.sample;
-    let blur_px = view.chain.psf_variance_px2(visible.pixel).sqrt();
-    // What is fitted, and the blur of what is beyond.
-    let needed_px = visible.half_width_px + 5.0 + 4.5 * blur_px;
-    let to_marks = field.marks().into_iter().map(|mark| mark.distance(point_in_world) - MARK_M);
-    let to_edge_m = (field.carpet_half_extent_m() - point_in_world.abs()).min_element();
-    let nearest_m = to_marks.fold(clearance_m.min(to_edge_m), f64::min).min(to_nets_m(field, point_in_world));
-    let free_m = nearest_m - 0.5 * field.line_width_m;
-    // Beyond a line a metre has fewer pixels than on its near side.
-    let is_free = |offset_m: f64| {
-        let end = point_in_world + offset_m * visible.sample.normal_in_world();
-        view.project(end, 1).is_none_or(|pixel| pixel.distance(visible.pixel) > needed_px)
+    let usual = carpet::usual(blocks);
+    let is_carpet = |pixel: DVec2| usual.is_some_and(|usual| carpet::is_carpet(picture, pixel, usual));
+    let is_found = |visible: &VisibleSample| lines.iter().any(|line| line.pixel == visible.pixel);
+    let piece = |visible: &VisibleSample| Expected {
+        curve: visible.sample.curve,
+        half_width_px: visible.half_width_px,
+        is_hidden: !is_found(visible) && !is_carpet(visible.pixel),
     };
-    let needed_m = needed_px * 0.5 * field.line_width_m / visible.half_width_px;
-    let ground = Ground::new(view);
-    let posts = field.goals().into_iter().flat_map(|goal| goal.posts);
-    let off_posts =
-        posts.into_iter().all(|post| !ground.hides(post.center, post.radius_m, needed_m, point_in_world));
-    free_m > 0.0 && is_free(-free_m) && is_free(free_m) && off_posts
-}
-
-/// From a point to what may stand behind a goal's line between its posts: nets and bars, of which a field's file does
-/// not tell.
-fn to_nets_m(field: &FieldDimensions, point: DVec2) -> f64 {
-    let in_mouth = point.y.abs() < 0.5 * field.goal_width_m + NET_M;
-    let beyond_m = 0.5 * field.length_m + NET_M - point.x.abs();
-    if in_mouth { beyond_m } else { f64::INFINITY }
+    let all = expected.iter().filter(|visible| has_room(visible)).map(piece).collect();
+    (lines, all)
 }
 
 /// Where on a curve a point of it lies, as a fraction of the curve's length.
@@ -261,63 +236,15 @@ fn block_side(picture: &RgbImage) -> u32 {
 
 fn find_carpet(view: &View<'_>, picture: &RgbImage, spectrum: &Spectrum) -> Vec<Block> {
     let side = block_side(picture);
-    let ground = Ground::new(view);
+    let surroundings = Surroundings::new(view);
     let mut blocks = Vec::new();
     for row in 0..picture.height() / side {
         for column in 0..picture.width() / side {
             let corner = [column * side, row * side];
-            if let Some(point) = ground.plain_carpet(corner, side) {
+            if let Some(point) = surroundings.plain_carpet(corner, side) {
                 blocks.push(carpet::measure(picture, spectrum, corner, side, point));
             }
         }
     }
     blocks
-}
-
-/// What of the ground is plain carpet, from a view.
-struct Ground<'a> {
-    view: &'a View<'a>,
-    half_extent_m: DVec2,
-}
-
-impl<'a> Ground<'a> {
-    fn new(view: &'a View<'a>) -> Self {
-        Self { view, half_extent_m: view.chain.field().carpet_half_extent_m() }
-    }
-
-    /// The ground's point in the middle of a square of pixels, where all of the square shows plain carpet.
-    fn plain_carpet(&self, corner: [u32; 2], side: u32) -> Option<DVec2> {
-        let middle = DVec2::new(f64::from(corner[0]), f64::from(corner[1])) + 0.5 * f64::from(side - 1);
-        let camera = self.view.chain.camera();
-        camera.check_inside(middle).ok()?;
-        let at = |pixel: DVec2| camera.unproject_to_ground(self.view.pose, pixel).ok();
-        let center = at(middle)?;
-        let field = self.view.chain.field();
-        // No line is nearer than the square's farthest corner.
-        let blur_px = self.view.chain.psf_variance_px2(middle).sqrt();
-        let reach_px = 0.5 * f64::from(side) + 2.0 + 2.0 * blur_px;
-        let mut radius_m: f64 = 0.0;
-        for offset in
-            [DVec2::new(-1.0, -1.0), DVec2::new(1.0, -1.0), DVec2::new(-1.0, 1.0), DVec2::new(1.0, 1.0)]
-        {
-            radius_m = radius_m.max(at(middle + reach_px * offset)?.distance(center));
-        }
-        let free_m = radius_m + CARPET_MARGIN_M + 0.5 * field.line_width_m;
-        let inside = (center.abs() + radius_m + CARPET_MARGIN_M).cmple(self.half_extent_m).all();
-        let off_lines = self.view.curves.iter().all(|curve| curve.distance_m(center) > free_m);
-        let off_marks = field.marks().iter().all(|mark| mark.distance(center) > radius_m + MARK_M);
-        let posts = field.goals().into_iter().flat_map(|goal| goal.posts);
-        let off_posts =
-            posts.into_iter().all(|post| !self.hides(post.center, post.radius_m + 0.05, 0.0, center));
-        (inside && off_lines && off_marks && off_posts).then_some(center)
-    }
-
-    /// Whether something upright of some radius stands between the camera and a point of the ground, or so near beside
-    /// that in the picture that it would be `beside_m` away from the point.
-    fn hides(&self, foot: DVec2, radius_m: f64, beside_m: f64, ground: DVec2) -> bool {
-        let camera: DVec3 = self.view.pose.position_in_world();
-        let way = ground - camera.truncate();
-        let fraction = ((foot - camera.truncate()).dot(way) / way.length_squared().max(1e-9)).clamp(0.0, 1.0);
-        (camera.truncate() + fraction * way).distance(foot) < radius_m + fraction * beside_m
-    }
 }

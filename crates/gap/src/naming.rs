@@ -90,6 +90,31 @@ impl Naming<'_> {
         })
     }
 
+    /// Fits effects, no parameter outside its range: one that would be is held at the range's end, and the others are
+    /// fitted with it there.
+    pub(crate) fn fit_in_range(&self, effects: &[usize]) -> Option<Fit> {
+        let mut free = self.columns_of(effects);
+        let mut held = -&self.evidence.base;
+        loop {
+            let fit = self.evidence.fit_beside(&free, &held)?;
+            let farthest = free.iter().copied().map(|column| (column, self.outside(&fit, column)));
+            match farthest.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) {
+                Some((column, outside)) if outside != 0.0 => {
+                    held[column] = fit.delta[column] - outside;
+                    free.retain(|&other| other != column);
+                }
+                _ => return Some(fit),
+            }
+        }
+    }
+
+    /// How far beyond its range a fitted column is.
+    fn outside(&self, fit: &Fit, column: usize) -> f64 {
+        let coordinate = self.coordinate(fit, column);
+        let inside = self.columns[column].coordinate(self.columns[column].value(coordinate));
+        if (coordinate - inside).abs() > 1e-9 { coordinate - inside } else { 0.0 }
+    }
+
     /// How unlikely what an effect gains on unseen frames is chance. What is another at every time has a number for each,
     /// and each is seen in a few frames: of so many numbers from so few frames a fit's scatter tells little, what it
     /// foretells does.

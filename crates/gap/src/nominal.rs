@@ -1,4 +1,4 @@
-//! Nominal brightness that would have to be farther off than it is trusted: no effect explains it, tolerances do not, either.
+//! Nominal values that would have to be farther off than they are trusted: no effect explains it, tolerances do not, either.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -6,44 +6,79 @@ use crate::{naming::ALPHA, report::Unexplained, rows::Channel, tolerance::Tolera
 
 /// Colours in the order of a picture's channels.
 const COLORS: [&str; 3] = ["red", "green", "blue"];
+/// Channels whose nominal values are in the camera's file.
+const CHANNELS: [Channel; 3] = [Channel::Photometry, Channel::Sharpness, Channel::Noise];
 
-/// What a fit makes of the tolerances of brightness, in their standard deviations: too much of all together is told, with
+/// What a fit makes of the tolerances, in their standard deviations: too much of all of a channel together is told, with
 /// the one that is farthest off.
-pub(crate) fn strained(tolerances: &[Tolerance], fitted: &[f64]) -> Option<Unexplained> {
-    let of_brightness: Vec<(&Tolerance, f64)> = tolerances
+pub(crate) fn strained(tolerances: &[Tolerance], fitted: &[f64]) -> Vec<Unexplained> {
+    CHANNELS.into_iter().filter_map(|channel| of_channel(channel, tolerances, fitted)).collect()
+}
+
+fn of_channel(channel: Channel, tolerances: &[Tolerance], fitted: &[f64]) -> Option<Unexplained> {
+    let nominal: Vec<(Nominal, f64)> = tolerances
         .iter()
-        .zip(fitted.iter().copied())
-        .filter(|(tolerance, _)| is_nominal(tolerance))
+        .zip(fitted)
+        .filter_map(|(tolerance, value)| {
+            Some((Nominal::of(tolerance).filter(|nominal| nominal.channel == channel)?, *value))
+        })
         .collect();
-    let squares: f64 = of_brightness.iter().map(|(_, value)| value * value).sum();
-    let chi_squared = ChiSquared::new(of_brightness.len().max(1) as f64).ok()?;
-    let p_value = chi_squared.sf(squares);
-    let (farthest, value) = of_brightness.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
-    let (name, sigma) = named(farthest)?;
+    let squares: f64 = nominal.iter().map(|(_, value)| value * value).sum();
+    let p_value = ChiSquared::new(nominal.len().max(1) as f64).ok()?.sf(squares);
+    let (farthest, value) = nominal.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
     (p_value < ALPHA).then(|| Unexplained {
-        channel: Channel::Photometry.name().to_owned(),
+        channel: channel.name().to_owned(),
         r#where: format!(
-            "in all pictures, most of all {name}: farther from what camera.toml says than that is trusted"
+            "in all pictures, most of all {}: farther from what camera.toml says than that is trusted",
+            farthest.name
         ),
-        size: (value * sigma).abs(),
-        unit: "1".to_owned(),
+        size: farthest.off_by(value),
+        unit: farthest.unit.to_owned(),
         p_value: Some(p_value),
     })
 }
 
-fn is_nominal(tolerance: &Tolerance) -> bool {
-    named(tolerance).is_some()
+/// A nominal value of the camera's file.
+struct Nominal {
+    channel: Channel,
+    name: String,
+    /// How far it is trusted.
+    sigma: f64,
+    unit: &'static str,
 }
 
-/// What is off, in words, and one standard deviation of it.
-fn named(tolerance: &Tolerance) -> Option<(String, f64)> {
-    match *tolerance {
-        Tolerance::Offset { group, sigma } if group.channel == Channel::Photometry => {
-            let surface = if group.part < 3 { "lines" } else { "carpet" };
-            Some((format!("{} of {surface}", COLORS[usize::from(group.part % 3)]), sigma))
-        }
-        Tolerance::Sheen { sigma, .. } => Some(("carpet seen at a grazing angle".to_owned(), sigma)),
-        _ => None,
+impl Nominal {
+    /// The part that it is off by where it is compared by its logarithm; else the difference. In standard deviations.
+    fn off_by(&self, value: f64) -> f64 {
+        let difference = value * self.sigma;
+        if self.channel == Channel::Sharpness { difference.abs() } else { difference.exp_m1().abs() }
+    }
+
+    /// What a tolerance is of; patches of carpet are in no file.
+    fn of(tolerance: &Tolerance) -> Option<Self> {
+        let (channel, name, sigma, unit) = match *tolerance {
+            Tolerance::Offset { group, sigma } => match group.channel {
+                Channel::Photometry => {
+                    let surface = if group.part < 3 { "lines" } else { "carpet" };
+                    let color = COLORS[usize::from(group.part % 3)];
+                    (group.channel, format!("{color} of {surface}"), sigma, "1")
+                }
+                Channel::Sharpness => (group.channel, "the blur".to_owned(), sigma, "px2"),
+                Channel::Noise => (group.channel, "its variance".to_owned(), sigma, "1"),
+                _ => return None,
+            },
+            Tolerance::Sheen { sigma, .. } => {
+                (Channel::Photometry, "carpet seen at a grazing angle".to_owned(), sigma, "1")
+            }
+            Tolerance::Width { sigma } => {
+                (Channel::Sharpness, "the blur of broad lines against thin ones".to_owned(), sigma, "px2")
+            }
+            Tolerance::Kernel { sigma } | Tolerance::ThinKernel { sigma } => {
+                (Channel::Sharpness, "the shape of the blur".to_owned(), sigma, "1")
+            }
+            Tolerance::Patch { .. } => return None,
+        };
+        Some(Self { channel, name, sigma, unit })
     }
 }
 
@@ -52,23 +87,27 @@ mod tests {
     use super::*;
     use crate::tolerance::tolerances;
 
-    #[test]
-    fn what_is_within_its_tolerance_is_not_told_and_what_is_far_beyond_is_named() {
+    /// What is told where the tolerances that are picked are so many standard deviations off, the others half a one.
+    fn told(value: f64, picked: impl Fn(&Nominal) -> bool) -> Vec<Unexplained> {
         let tolerances = tolerances(&[]);
-        let mut fitted = vec![0.5; tolerances.len()];
-        assert_eq!(strained(&tolerances, &fitted), None);
-        // The carpet's red, see the order of the common tolerances.
-        fitted[3] = 5.0;
-        let told = strained(&tolerances, &fitted).unwrap();
-        assert!(told.r#where.contains("red of carpet"), "{}", told.r#where);
-        assert!((told.size - 0.35).abs() < 1e-9 && told.p_value.unwrap() < ALPHA);
+        let off = |tolerance| if Nominal::of(tolerance).is_some_and(|n| picked(&n)) { value } else { 0.5 };
+        strained(&tolerances, &tolerances.iter().map(off).collect::<Vec<_>>())
     }
 
     #[test]
-    fn strain_on_sharpness_is_not_brightness() {
-        let tolerances = tolerances(&[]);
-        let fitted: Vec<f64> =
-            tolerances.iter().map(|tolerance| if is_nominal(tolerance) { 0.0 } else { 9.0 }).collect();
-        assert_eq!(strained(&tolerances, &fitted), None);
+    fn what_is_within_its_tolerance_is_not_told_and_what_is_far_beyond_is_named() {
+        assert_eq!(told(0.5, |_| true), []);
+        let [told] = &told(5.0, |nominal| nominal.name == "red of carpet")[..] else { panic!() };
+        assert!(told.r#where.contains("red of carpet"), "{}", told.r#where);
+        assert!((told.size - 0.35_f64.exp_m1()).abs() < 1e-9 && told.p_value.unwrap() < ALPHA);
+    }
+
+    #[test]
+    fn every_channel_is_judged_by_itself() {
+        for channel in CHANNELS {
+            let told = told(6.0, |nominal| nominal.channel == channel);
+            assert_eq!(told.len(), 1, "{told:?}");
+            assert_eq!(told[0].channel, channel.name());
+        }
     }
 }

@@ -47,6 +47,9 @@ pub(crate) fn line(view: &View<'_>, line: &Line, scene: Option<&Scene>) -> Optio
     let share = line.profile.contrast_share;
     let luma = share[0] * red + share[1] * green + share[2] * blue;
     let smear_px = chain.exposure_s() * line.speed_px_s;
+    // Colours that are apart make luma broader.
+    let apart_px2: f64 =
+        share.iter().zip([red, green, blue]).map(|(share, offset)| share * (offset - luma).powi(2)).sum();
     let level = scene.filter(|_| line.profile.level.is_some()).map(|scene| {
         let light = chain.light(view.time_s, line.pixel, Some(ground));
         [0, 1, 2].map(|channel| mean_encoded(chain, scene.line_linear_rgb[channel] * light[channel]))
@@ -54,7 +57,10 @@ pub(crate) fn line(view: &View<'_>, line: &Line, scene: Option<&Scene>) -> Optio
     Some(LineExpectation {
         offset_px: luma,
         color_offset_px: [red - luma, blue - luma],
-        variance_px2: chain.psf_variance_px2(line.pixel) + APERTURE_PX2 + smear_px * smear_px / 12.0,
+        variance_px2: chain.psf_variance_px2(line.pixel)
+            + APERTURE_PX2
+            + apart_px2
+            + smear_px * smear_px / 12.0,
         level,
     })
 }
@@ -74,16 +80,16 @@ pub(crate) fn block(view: &View<'_>, block: &Block, scene: &Scene, rounding: &Ro
 
 /// The mean of encoded values over the noise: three points of Gauss and Hermite.
 fn mean_encoded(chain: &Chain, linear: f64) -> f64 {
-    let value = chain.respond(linear);
-    let spread = (3.0 * chain.noise().variance(value)).sqrt();
-    (4.0 * chain.encode(value) + chain.encode(value - spread) + chain.encode(value + spread)) / 6.0
+    let encoded = |linear: f64| chain.encode(chain.respond(linear));
+    let spread = (3.0 * chain.noise().variance(linear)).sqrt();
+    (4.0 * encoded(linear) + encoded(linear - spread) + encoded(linear + spread)) / 6.0
 }
 
 /// Standard deviation of encoded values, grey levels: the chord over one standard deviation to either side.
 fn noise_sigma(chain: &Chain, linear: f64) -> f64 {
-    let value = chain.respond(linear);
-    let sigma = chain.noise().variance(value).sqrt();
-    127.5 * (chain.encode(value + sigma) - chain.encode(value - sigma))
+    let encoded = |linear: f64| chain.encode(chain.respond(linear));
+    let sigma = chain.noise().variance(linear).sqrt();
+    127.5 * (encoded(linear + sigma) - encoded(linear - sigma))
 }
 
 /// What a file's rounding makes of noise, tabulated.

@@ -29,7 +29,8 @@ pub(crate) fn missing(looks: &[&Look], field: &FieldDimensions) -> Vec<Unexplain
     let mut counts: BTreeMap<(usize, usize), Count> = BTreeMap::new();
     let mut frames: BTreeMap<usize, usize> = BTreeMap::new();
     for look in looks {
-        for piece in &look.expected_lines {
+        // What stands before a line says nothing of it.
+        for piece in look.expected_lines.iter().filter(|piece| !piece.is_hidden) {
             counts.entry((piece.curve, width(piece.half_width_px))).or_default().expected += 1.0;
         }
         for line in
@@ -37,7 +38,8 @@ pub(crate) fn missing(looks: &[&Look], field: &FieldDimensions) -> Vec<Unexplain
         {
             counts.entry((line.curve, width(line.half_width_px))).or_default().found += 1.0;
         }
-        let seen: BTreeSet<usize> = look.expected_lines.iter().map(|piece| piece.curve).collect();
+        let in_sight = look.expected_lines.iter().filter(|piece| !piece.is_hidden);
+        let seen: BTreeSet<usize> = in_sight.map(|piece| piece.curve).collect();
         seen.into_iter().for_each(|curve| *frames.entry(curve).or_default() += 1);
     }
     let curves = field.curves();
@@ -91,5 +93,88 @@ fn name(curve: &Curve) -> String {
             format!("the line from ({:.1}, {:.1}) m to ({:.1}, {:.1}) m", from.x, from.y, to.x, to.y)
         }
         Curve::Circle { radius_m, .. } => format!("the circle of {:.1} m", 2.0 * radius_m),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec2, DVec3};
+    use reality_sim_core::field::preset_names;
+
+    use super::*;
+    use crate::{
+        look::{Expected, Line},
+        profile::Profile,
+    };
+
+    const HALF_WIDTH_PX: f64 = 2.0;
+
+    fn field() -> FieldDimensions {
+        preset_names().find_map(FieldDimensions::preset).unwrap()
+    }
+
+    fn found(curve: usize) -> Line {
+        Line {
+            curve,
+            fraction: 0.5,
+            ground: DVec2::ZERO,
+            pixel: DVec2::ZERO,
+            normal: DVec2::X,
+            speed_px_s: 0.0,
+            profile: Profile {
+                offset_px: 0.2,
+                offset_sigma_px: 0.1,
+                variance_px2: 1.0,
+                variance_sigma_px2: 0.1,
+                color_offset_px: None,
+                contrast_share: [0.3, 0.4, 0.3],
+                level: None,
+            },
+            half_width_px: HALF_WIDTH_PX,
+            is_expected: true,
+        }
+    }
+
+    /// A picture in which eight pieces of each of three lines are expected, and so many are found of each. What is not
+    /// found of the first line is hidden, or shows carpet.
+    fn look(pieces: [usize; 3], is_hidden: bool) -> Look {
+        let expected = |curve: usize, piece: usize| Expected {
+            curve,
+            half_width_px: HALF_WIDTH_PX,
+            is_hidden: is_hidden && curve == 0 && piece >= pieces[0],
+        };
+        Look {
+            camera: DVec3::Z,
+            lines: (0..3).flat_map(|curve| vec![found(curve); pieces[curve]]).collect(),
+            expected_lines: (0..24).map(|index| expected(index / 8, index % 8)).collect(),
+            blocks: Vec::new(),
+            noise_steps: Vec::new(),
+        }
+    }
+
+    fn missing_of(look: &Look, pictures: usize) -> Vec<Unexplained> {
+        missing(&vec![look; pictures], &field())
+    }
+
+    #[test]
+    fn a_line_of_which_carpet_is_seen_instead_is_missing() {
+        let [told] = &missing_of(&look([0, 8, 7], false), 6)[..] else { panic!() };
+        assert!(told.r#where.contains(&name(&field().curves()[0])), "{}", told.r#where);
+        assert_eq!(told.size, 1.0);
+    }
+
+    #[test]
+    fn a_line_behind_something_is_not_missing() {
+        assert_eq!(missing_of(&look([0, 8, 7], true), 6), []);
+    }
+
+    #[test]
+    fn lines_that_are_found_as_often_as_others_are_not_missing() {
+        assert_eq!(missing_of(&look([5, 6, 7], false), 6), []);
+    }
+
+    #[test]
+    fn a_few_pictures_are_no_proof() {
+        assert_eq!(missing_of(&look([0, 8, 7], false), LEAST_FRAMES - 1), []);
     }
 }

@@ -66,7 +66,6 @@ const THIN_KERNEL: f64 = 0.15;
 const NOISE: f64 = 0.2;
 /// The carpet's sheen, linear.
 const SHEEN: f64 = 0.01;
-
 /// How much patches of carpet differ, logarithm.
 const PATCH: f64 = 0.05;
 /// Side of a patch, metres.

@@ -68,7 +68,12 @@ impl Total {
 
     /// Least squares over the free columns. `base` is where the model is, in the effects' coordinates.
     pub(crate) fn fit(&self, free: &[usize], base: &DVector<f64>) -> Option<Fit> {
-        let mut effects = -base;
+        self.fit_beside(free, base, &-base)
+    }
+
+    /// Least squares over the free columns, the others changed by what is held.
+    pub(crate) fn fit_beside(&self, free: &[usize], base: &DVector<f64>, held: &DVector<f64>) -> Option<Fit> {
+        let mut effects = held.clone();
         for &column in free {
             effects[column] = 0.0;
         }
@@ -153,6 +158,21 @@ mod tests {
         let fit = Total::of([sums()].iter(), 4, 2).fit(&[1], &base).unwrap();
         assert_eq!(fit.delta[0], -0.3);
         assert!(fit.prior_share(1) < 1.0 && fit.prior_share(0) == 1.0);
+    }
+
+    #[test]
+    fn what_is_held_stays_there_and_the_others_are_best_beside_it() {
+        let base = DVector::from_vec(vec![0.3, -0.2]);
+        let total = Total::of([sums()].iter(), 4, 2);
+        let held = DVector::from_vec(vec![0.25, 7.0]);
+        let fit = total.fit_beside(&[1], &base, &held).unwrap();
+        assert_eq!(fit.delta[0], 0.25);
+        let gain = |second: f64| {
+            let delta = DVector::from_vec(vec![0.25, second]);
+            total.gain(&delta) - 0.5 * PRIOR * (base[1] + second).powi(2)
+        };
+        let best = fit.delta[1];
+        assert!(gain(best) > gain(best + 0.05) && gain(best) > gain(best - 0.05));
     }
 
     #[test]

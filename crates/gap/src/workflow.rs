@@ -10,6 +10,7 @@ use crate::{
     look::Look,
     measure::{MeasureError, linearise, look_at},
     naming::{Naming, TELLS_APART, base},
+    placing::placing,
     recording::Recording,
     rows::Channel,
     split::Split,
@@ -25,7 +26,7 @@ const SEARCH: [f64; 2] = [0.028, 0.014];
 /// No more effects than this are added to a model in one go.
 const MOST_EFFECTS: usize = 6;
 /// Rounds of Gauss and Newton's method after an effect was added.
-const SETTLING: usize = 6;
+const SETTLING: usize = 8;
 /// A model has settled when a step gains less than this in log-likelihood.
 const SETTLED: f64 = 1.0;
 
@@ -79,8 +80,8 @@ pub(crate) struct Found {
     /// Indices into the library of the effects that the model had, and of those found, in the order of finding.
     pub(crate) given: Vec<usize>,
     pub(crate) named: Vec<usize>,
-    /// An effect that was taken, and another that left as little in its place.
-    ties: Vec<(usize, usize)>,
+    /// A named effect, and another that leaves as little in its place.
+    rivals: Vec<(usize, usize)>,
 }
 
 impl Found {
@@ -93,11 +94,9 @@ impl Found {
         self.measured.evidence(&self.columns)
     }
 
-    /// Effects not in the model that stood for a named one as well when it was taken.
-    pub(crate) fn tied(&self, effect: usize) -> impl Iterator<Item = usize> {
-        let all = self.all();
-        let tied = self.ties.iter().filter(move |(taken, other)| *taken == effect && !all.contains(other));
-        tied.map(|(_, other)| *other)
+    /// Effects not in the model that stand for one that is as well.
+    pub(crate) fn rivals(&self, effect: usize) -> Vec<usize> {
+        self.rivals.iter().filter(|(of, _)| *of == effect).map(|(_, rival)| *rival).collect()
     }
 }
 
@@ -144,6 +143,11 @@ pub(crate) fn find(
     if !given.is_empty() {
         measured = finder.settle(measured, &given)?;
     }
+    // Lines that are not where the model has them are looked for elsewhere; all is compared from there.
+    let as_given = measured.model.clone();
+    if let Some(placed) = placing(recording, &as_given, &columns)? {
+        measured = Measured::new(recording, placed, &columns, &split, SEARCH[0])?;
+    }
     // Sets that were tried: swapping must not go round in circles.
     let mut tried: Vec<Vec<usize>> = vec![Vec::new()];
     let mut ties = Vec::new();
@@ -151,16 +155,25 @@ pub(crate) fn find(
         progress(Stage::Testing);
         let mut sets = finder.next_sets(&measured, &given, &named);
         sets.retain(|set| !tried.contains(&sorted(set)));
+        let swaps = sets.iter().any(|set| set.len() == named.len());
         let mut closest = finder.closest(&measured, &given, sets)?.into_iter();
         let Some((set, settled)) = closest.next() else { break };
         tried.push(sorted(&set));
+        // What looked better may not be, now that it has settled.
+        if swaps && finder.left(&settled, &measured.system) > finder.left(&measured, &measured.system) {
+            continue;
+        }
         for (other, _) in closest {
             tried.push(sorted(&other));
             ties.extend(differing(&set, &other));
         }
         (named, measured) = (set, settled);
     }
-    Ok(Found { columns, split, measured, given, named, ties })
+    if named.is_empty() && measured.model != as_given {
+        measured = Measured::new(recording, as_given, &columns, &split, SEARCH[1])?;
+    }
+    let rivals = finder.rivals(&measured, &given, &named, &ties)?;
+    Ok(Found { columns, split, measured, given, named, rivals })
 }
 
 /// A recording measured with a model as it is.
@@ -172,7 +185,7 @@ pub(crate) fn as_given(
     let columns = columns(&options.without);
     let split = Split::new(recording.frames.len(), options.seed);
     let measured = Measured::new(recording, model.clone(), &columns, &split, SEARCH[1])?;
-    Ok(Found { columns, split, measured, given: Vec::new(), named: Vec::new(), ties: Vec::new() })
+    Ok(Found { columns, split, measured, given: Vec::new(), named: Vec::new(), rivals: Vec::new() })
 }
 
 /// Models whose settled fits differ by less, in log-likelihood, leave as little as each other. No model is exact, and what
@@ -247,6 +260,40 @@ impl Finder<'_> {
         Ok(settled.into_iter().map(|(_, set, measured)| (set, measured)).collect())
     }
 
+    /// Named effects with those that may stand for them: that tied when they were taken, or that the linearised model
+    /// cannot tell from them; of these, those that leave as little once they have settled.
+    fn rivals(
+        &self,
+        measured: &Measured,
+        given: &[usize],
+        named: &[usize],
+        ties: &[(usize, usize)],
+    ) -> Result<Vec<(usize, usize)>, MeasureError> {
+        let evidence = measured.evidence(self.columns);
+        let naming = Naming { evidence: &evidence, columns: self.columns };
+        let all: Vec<usize> = given.iter().chain(named).copied().collect();
+        let left = self.left(measured, &measured.system);
+        let mut rivals = Vec::new();
+        for &effect in named {
+            let tied = ties.iter().filter(|(of, other)| *of == effect && !all.contains(other));
+            let mut others: Vec<usize> = tied.map(|(_, other)| *other).collect();
+            others.extend(naming.rivals(effect, &all));
+            others.sort_unstable();
+            others.dedup();
+            for rival in others {
+                let set: Vec<usize> =
+                    all.iter().map(|&other| if other == effect { rival } else { other }).collect();
+                let settled = self.settle(measured.clone(), &set)?;
+                let without: Vec<usize> = all.iter().copied().filter(|&other| other != effect).collect();
+                let explained = evidence.loss(&naming.columns_of(&without));
+                if self.left(&settled, &measured.system) < left + apart(explained) {
+                    rivals.push((effect, rival));
+                }
+            }
+        }
+        Ok(rivals)
+    }
+
     /// What a settled model leaves, minus log-likelihood: residuals in the standard deviations of one system, cut off
     /// where they are no measurement, and what tolerances have to be.
     fn left(&self, measured: &Measured, system: &System) -> f64 {
@@ -281,7 +328,7 @@ impl Finder<'_> {
             (self.progress)(Stage::Fitting);
             let evidence = measured.evidence(self.columns);
             let naming = Naming { evidence: &evidence, columns: self.columns };
-            let Some(fit) = evidence.fit(&naming.columns_of(effects)) else { break };
+            let Some(fit) = naming.fit_in_range(effects) else { break };
             let still = evidence.improvement(&fit) < SETTLED;
             let model = self.moved(&measured.model, &naming, &fit, effects);
             (self.progress)(Stage::Measuring);

@@ -211,12 +211,12 @@ impl Chain {
         self.psf_variance_px2 + self.lens.iter().map(added).sum::<f64>()
     }
 
-    /// The sensor's linear output for a linear value, before noise.
+    /// The sensor's linear output for a linear value with its noise.
     pub fn respond(&self, linear: f64) -> f64 {
         self.sensor.iter().fold(linear, |value, used| used.effect.respond(&used.values, value))
     }
 
-    /// Noise of the sensor's linear output.
+    /// Noise of linear values, before the sensor adds to them.
     pub fn noise(&self) -> Noise {
         self.noise
     }

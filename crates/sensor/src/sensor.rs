@@ -24,16 +24,17 @@ impl<'a> Sensor<'a> {
         Self { chain, gain, noise }
     }
 
-    /// The output of a pixel, which is counted row by row.
+    /// The output of a pixel, which is counted row by row. Noise is that of the light and of reading it: what is added
+    /// to it then has none.
     pub(crate) fn record(&self, light: Vec3, pixel: u32) -> Vec3 {
         let exposed = light * self.gain;
-        let output = Vec3::from_array(exposed.to_array().map(|v| self.chain.respond(f64::from(v)) as f32));
-        self.noise.map_or(output, |stream| output + self.noise(output, stream, pixel))
+        let noisy = self.noise.map_or(exposed, |stream| exposed + self.noise(exposed, stream, pixel));
+        Vec3::from_array(noisy.to_array().map(|v| self.chain.respond(f64::from(v)) as f32))
     }
 
-    fn noise(&self, output: Vec3, stream: Stream, pixel: u32) -> Vec3 {
+    fn noise(&self, exposed: Vec3, stream: Stream, pixel: u32) -> Vec3 {
         let [red, green, blue, ..] = stream.normals(pixel).map(|normal| normal as f32);
-        let variance = output.to_array().map(|v| self.chain.noise().variance(f64::from(v)) as f32);
+        let variance = exposed.to_array().map(|v| self.chain.noise().variance(f64::from(v)) as f32);
         Vec3::new(red, green, blue) * Vec3::from_array(variance.map(f32::sqrt))
     }
 }

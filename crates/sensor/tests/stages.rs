@@ -395,6 +395,15 @@ fn noise_has_its_variance_and_no_mean() {
 }
 
 #[test]
+fn a_black_level_has_no_noise_of_its_own() {
+    let (_, plain) = carpet_noise(&[("sensor_noise", &[0.005])], Some(5));
+    let (mean, raised) = carpet_noise(&[("sensor_noise", &[0.005]), ("black_level", &[0.2])], Some(5));
+    assert!((mean - 0.52).abs() < 0.001, "{mean}");
+    // Full scale stays: what the light makes is scaled by 0.8.
+    assert!((raised / plain - 0.64).abs() < 0.02, "{}", raised / plain);
+}
+
+#[test]
 fn noise_is_that_of_seed_and_time() {
     let setup = measured_setup(scene::fisheye([64, 48], 22.0));
     let renderer = Renderer::new(&setup, &scene::field(), scene::colors());

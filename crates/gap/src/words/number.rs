@@ -142,7 +142,7 @@ pub(crate) fn closed(before: f64, after: f64, floor: f64) -> Option<f64> {
 /// The factor and the unit in which residuals of a channel are shown: logarithms as percent.
 pub(crate) fn in_channel<'a>(channel: &str, unit: &'a str) -> (f64, &'a str) {
     match (channel, unit) {
-        ("photometry" | "noise", "1") => (100.0, "%"),
+        ("photometry" | "noise" | "sharpness", "1") => (100.0, "%"),
         (_, "px2") => (1.0, "px²"),
         (_, "1") => (1.0, ""),
         _ => (1.0, unit),

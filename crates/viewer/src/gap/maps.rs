@@ -25,6 +25,24 @@ const BACKGROUND: u8 = 110;
 /// The grey of the field's lines, seen on carpet and on pale cells alike.
 const LINES: u8 = 125;
 
+/// What is shown of a channel's maps.
+#[derive(Clone, Copy)]
+pub struct Shown<'a> {
+    pub maps: &'a Maps,
+    pub side: Side,
+    /// Colours of the values; none where there are too few.
+    pub ramp: Option<Ramp>,
+    /// Size of the view.
+    pub room: Vec2,
+}
+
+impl Shown<'_> {
+    /// Colours of a map in which anything was measured.
+    fn ramp_of(&self, map: &Map) -> Option<Ramp> {
+        self.ramp.filter(|_| has_values(map, self.side))
+    }
+}
+
 /// What the maps keep from frame to frame.
 #[derive(Default)]
 pub struct MapViews {
@@ -34,18 +52,11 @@ pub struct MapViews {
 
 impl MapViews {
     /// Residuals over the picture's shape.
-    pub fn picture_ui(
-        &mut self,
-        ui: &mut Ui,
-        loaded: &Loaded,
-        maps: &Maps,
-        side: Side,
-        ramp: Option<Ramp>,
-        room: Vec2,
-    ) {
+    pub fn picture_ui(&mut self, ui: &mut Ui, loaded: &Loaded, shown: Shown<'_>) {
+        let Shown { maps, side, room, .. } = shown;
         head(ui, &format!("In the picture, {}", side.name()), "Medians of measured minus simulated");
         let map = &maps.picture;
-        let Some(ramp) = ramp.filter(|_| has_values(map, side)) else { return nowhere(ui, room) };
+        let Some(ramp) = shown.ramp_of(map) else { return nowhere(ui, room) };
         let [left, top, right, bottom] = map.extent;
         let corner = DVec2::new(left, top);
         let size = [right - left, bottom - top].map(|side| side.abs() as usize);
@@ -65,15 +76,8 @@ impl MapViews {
     }
 
     /// Residuals over the field from above.
-    pub fn field_ui(
-        &mut self,
-        ui: &mut Ui,
-        loaded: &Loaded,
-        maps: &Maps,
-        side: Side,
-        ramp: Option<Ramp>,
-        room: Vec2,
-    ) {
+    pub fn field_ui(&mut self, ui: &mut Ui, loaded: &Loaded, shown: Shown<'_>) {
+        let Shown { maps, side, room, .. } = shown;
         let lines = match &loaded.field {
             Some(field) => {
                 format!("The lines are those of the field “{}”, whose carpet is as large", field.name)
@@ -84,7 +88,7 @@ impl MapViews {
             format!("Medians of measured minus simulated. {lines}. Wheel: zoom · secondary button: move");
         head(ui, &format!("On the field, {}", side.name()), &more);
         let map = &maps.field;
-        let Some(ramp) = ramp.filter(|_| has_values(map, side)) else { return nowhere(ui, room) };
+        let Some(ramp) = shown.ramp_of(map) else { return nowhere(ui, room) };
         let [left, top, right, bottom] = map.extent;
         let half = DVec2::new(left.abs().max(right.abs()), top.abs().max(bottom.abs()));
         let name = format!("residuals on the field {}", side.name());

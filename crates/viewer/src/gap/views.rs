@@ -3,8 +3,15 @@
 use eframe::egui::{ComboBox, Layout as Flow, RichText, Ui, Vec2, vec2};
 
 use super::{
-    GapSettings, channels::meaning, course, loaded::Loaded, maps::MapViews, pictures::Pictures, ramp::Ramp,
-    side::Side, words::unit_after,
+    GapSettings,
+    channels::meaning,
+    course,
+    loaded::Loaded,
+    maps::{MapViews, Shown},
+    pictures::Pictures,
+    ramp::Ramp,
+    side::Side,
+    words::unit_after,
 };
 use crate::shortcuts::{self, Action};
 
@@ -35,20 +42,21 @@ impl Views {
         let room = ui.available_size();
         let view = vec2(0.5 * (room.x - gap.x), 0.5 * (room.y - gap.y) - HEAD - gap.y).max(Vec2::splat(60.0));
         let side = settings.side;
+        let shown = maps.map(|maps| Shown { maps, side, ramp, room: view });
         row(
             ui,
             view,
             |ui| self.pictures.ui(ui, loaded, settings, view),
-            |ui| match maps {
-                Some(maps) => self.maps.picture_ui(ui, loaded, maps, side, ramp, view),
+            |ui| match shown {
+                Some(shown) => self.maps.picture_ui(ui, loaded, shown),
                 None => nothing(ui, "no maps in this report"),
             },
         );
         row(
             ui,
             view,
-            |ui| match maps {
-                Some(maps) => self.maps.field_ui(ui, loaded, maps, side, ramp, view),
+            |ui| match shown {
+                Some(shown) => self.maps.field_ui(ui, loaded, shown),
                 None => nothing(ui, ""),
             },
             |ui| match maps {

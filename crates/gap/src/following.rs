@@ -1,0 +1,171 @@
+//! What is left of the odometry and follows the movement.
+//!
+//! As for patterns in the pictures, a part of the recording is judged by what the other parts foretell.
+
+use reality_sim_core::pose::Motion2;
+
+use crate::{
+    evidence::sum_of,
+    recording::{Frame, Recording},
+    report::Unexplained,
+    rows::{Channel, Group},
+    unknown::Residuals,
+};
+
+/// Parts of the recording that are judged by the others.
+const FOLDS: usize = 4;
+/// What is foretold gains so many standard deviations: more than an effect needs to be named.
+const LEAST_SCORE: f64 = 3.5;
+/// And so much, in log-likelihood.
+const LEAST_GAIN: f64 = 8.0;
+/// What is foretold of the odometry is at least this part of what is not, root mean square.
+const LEAST_PART: f64 = 0.5;
+/// Steps so many before and after one stand for it.
+const AROUND: std::ops::RangeInclusive<usize> = 2..=3;
+/// The odometry's increments.
+const PARTS: [(&str, &str); 3] = [("steps forward", "m"), ("steps to the left", "m"), ("turns", "rad")];
+
+/// What these may follow, in the order of [`movement`].
+const FOLLOWED: [&str; 3] = ["as the robot walks ahead", "as it turns", "as time goes by"];
+
+/// What a number may follow, and the number, both in its standard deviation.
+type Pair = (f64, f64);
+
+/// The odometry's residuals, as far as they follow the movement. `sigma` is that of each of the increments.
+pub(crate) fn following(
+    recording: &Recording<'_>,
+    frames: &[&Frame],
+    residuals: &[Residuals<'_>],
+    sigma: impl Fn(u8) -> Option<f64>,
+) -> Vec<Unexplained> {
+    let mut all = Vec::new();
+    let steps = movements(recording, frames);
+    for (part, (name, unit)) in (0..).zip(PARTS) {
+        let Some(sigma) = sigma(part) else { continue };
+        let of_part = |group: Group| group.channel == Channel::Motion && group.part == part;
+        let value = |residuals: &Residuals<'_>| {
+            let mut rows = residuals.rows.iter().zip(&residuals.values);
+            rows.find(|(row, value)| of_part(row.group) && value.is_finite()).map(|(_, value)| value / sigma)
+        };
+        let values: Vec<Option<f64>> = residuals.iter().map(value).collect();
+        all.extend(odometry(&steps, &values, name).map(|(r#where, rms)| Unexplained {
+            channel: Channel::Motion.name().to_owned(),
+            r#where,
+            size: rms * sigma,
+            unit: unit.to_owned(),
+            p_value: None,
+        }));
+    }
+    all
+}
+
+/// What each step of the odometry may follow: how far the robot walks ahead at about that time, turns, and for how long.
+/// The poses' errors are in the step's own movement and in what it is compared with: those before and after it stand for
+/// it. To the left the camera sways: no odometry knows of that.
+fn movements(recording: &Recording<'_>, frames: &[&Frame]) -> Vec<Option<[f64; 3]>> {
+    let own: Vec<Option<[f64; 3]>> = frames.iter().map(|frame| movement(recording, frame)).collect();
+    let around = |index: usize| {
+        own[index].as_ref()?;
+        let near = (0..own.len()).filter(|&other| AROUND.contains(&other.abs_diff(index)));
+        let steps: Vec<&[f64; 3]> = near.filter_map(|other| own[other].as_ref()).collect();
+        let mean = |axis: usize| steps.iter().map(|step| step[axis]).sum::<f64>() / steps.len() as f64;
+        (!steps.is_empty()).then(|| [mean(0), mean(1), mean(2)])
+    };
+    (0..own.len()).map(around).collect()
+}
+
+/// Forward, turn, and time.
+fn movement(recording: &Recording<'_>, frame: &Frame) -> Option<[f64; 3]> {
+    let step = frame.step?;
+    let at = |time_s: f64| recording.trajectory.at(time_s).planar();
+    let Motion2 { forward_m, turn_rad, .. } = at(frame.time_s).motion_to(at(step.until_s));
+    Some([forward_m, turn_rad, step.until_s - frame.time_s])
+}
+
+/// What the odometry's steps of one kind follow most, in words, and how large that is in their standard deviations.
+fn odometry(steps: &[Option<[f64; 3]>], values: &[Option<f64>], name: &str) -> Option<(String, f64)> {
+    let follows = (0..).zip(FOLLOWED).filter_map(|(axis, followed): (usize, &str)| {
+        let pair = |(step, value): (&Option<[f64; 3]>, &Option<f64>)| {
+            Vec::from_iter(step.zip(*value).map(|(step, value)| (step[axis], value)))
+        };
+        let follows = Follows::of(&steps.iter().zip(values).map(pair).collect::<Vec<_>>())?;
+        (follows.rms > LEAST_PART * follows.left).then_some((follows.rms, followed))
+    });
+    let (rms, followed) = follows.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some((format!("in the odometry: its {name} are off {followed}"), rms))
+}
+
+/// Numbers that follow others.
+struct Follows {
+    /// Root mean square of what is foretold.
+    rms: f64,
+    /// And of what is not.
+    left: f64,
+}
+
+impl Follows {
+    /// None where frames do not foretell each other.
+    fn of(frames: &[Vec<Pair>]) -> Option<Self> {
+        let slope = slope(frames.iter());
+        let rms = |of: &dyn Fn(&Pair) -> f64| {
+            let squares = frames.iter().flatten().map(|pair| of(pair).powi(2));
+            let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+            f64::sqrt(sum / f64::max(count, 1.0))
+        };
+        let found = Self { rms: rms(&|(to, _)| to * slope), left: rms(&|(to, value)| value - to * slope) };
+        let count = frames.len();
+        let fold = |frame: usize| frame * FOLDS / count;
+        let gain = |frame: usize| {
+            let others = (0..count).filter(|&other| fold(other) != fold(frame));
+            let slope = self::slope(others.map(|other| &frames[other]));
+            let gains = frames[frame].iter().map(|(to, value)| {
+                let foretold = to * slope;
+                foretold * value - 0.5 * foretold * foretold
+            });
+            // What a number's standard deviation is taken to be may have what is foretold in it.
+            gains.sum::<f64>() / found.left.powi(2).max(1e-9)
+        };
+        let gain = sum_of(&(0..count).map(gain).collect::<Vec<f64>>());
+        (gain.value > LEAST_GAIN && gain.score() > LEAST_SCORE).then_some(found)
+    }
+}
+
+/// Least squares.
+fn slope<'a>(frames: impl Iterator<Item = &'a Vec<Pair>>) -> f64 {
+    let sums =
+        frames.flatten().fold([0.0; 2], |[both, square], (to, value)| [both + to * value, square + to * to]);
+    if sums[1] > 0.0 { sums[0] / sums[1] } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Noise;
+
+    /// Frames with six numbers each that follow a movement by this slope.
+    fn frames(seed: u64, slope: f64) -> Vec<Vec<Pair>> {
+        let mut noise = Noise(seed);
+        let frame = |index: u32| {
+            (0..6)
+                .map(|axis| {
+                    let rate = (0.7 * f64::from(index) + f64::from(axis)).sin();
+                    (rate, slope * rate + noise.next())
+                })
+                .collect()
+        };
+        (0..40).map(frame).collect()
+    }
+
+    #[test]
+    fn what_follows_the_movement_is_told_with_its_size() {
+        let follows = Follows::of(&frames(1, 1.5)).unwrap();
+        assert!((follows.rms - 1.5 / f64::sqrt(2.0)).abs() < 0.15, "{}", follows.rms);
+        assert!((follows.left - 1.0).abs() < 0.15, "{}", follows.left);
+    }
+
+    #[test]
+    fn scatter_follows_nothing() {
+        let told = (0..300).filter(|&seed| Follows::of(&frames(seed, 0.0)).is_some()).count();
+        assert_eq!(told, 0);
+    }
+}
