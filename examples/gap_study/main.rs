@@ -2,9 +2,11 @@
 //! or none hidden in each by seed, the workflow's verdict compared with the truth only afterwards.
 //!
 //! `cargo run --release --example gap_study -- --out FOLDER` adds its runs to `FOLDER/runs.jsonl` (a run that is there is
-//! not repeated) and writes `FOLDER/study.md`. `--part nulls|singles|pairs|removed|foreign|full` `--effect ID` and `--runs N` make a part of it.
+//! not repeated) and writes `FOLDER/study.md`; `--page docs/gap.md` puts that between the page's marks, too.
+//! `--part nulls|singles|pairs|removed|foreign|full`, `--effect ID` and `--runs N` make a part of it.
 
 mod limits;
+mod page;
 mod plan;
 mod run;
 mod sight;
@@ -40,6 +42,9 @@ struct Args {
     /// At most so many runs of each part
     #[arg(long)]
     runs: Option<usize>,
+    /// A page that is to have the tables between its marks
+    #[arg(long)]
+    page: Option<PathBuf>,
     /// Only write study.md from the runs that are there
     #[arg(long)]
     summary: bool,
@@ -73,7 +78,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
     }
-    fs::write(args.out.join("study.md"), summary::text(&outcomes))?;
+    let tables = summary::text(&outcomes);
+    fs::write(args.out.join("study.md"), &tables)?;
+    if let Some(page) = &args.page {
+        page::put(page, &tables)?;
+    }
     Ok(())
 }
 

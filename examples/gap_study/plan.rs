@@ -32,12 +32,12 @@ impl Part {
 }
 
 /// Sizes of single effects, in detection limits.
-pub const SIZES: [f64; 4] = [3.0, 6.0, 12.0, 1.0];
+pub const SIZES: [f64; 3] = [3.0, 6.0, 1.0];
 /// From here on an effect has to be named.
 pub const CLEAR: f64 = 3.0;
 const NULLS: u64 = 220;
-const SEEDS: u64 = 4;
-const PAIRS: u64 = 72;
+const SEEDS: u64 = 3;
+const PAIRS: u64 = 48;
 const FOREIGN_SEEDS: u64 = 6;
 /// Effects of a pair, and those taken out of the library, are so large, in detection limits.
 const LARGE: f64 = 6.0;
@@ -136,7 +136,7 @@ pub fn tasks(part: Part) -> Vec<Task> {
             (0..FOREIGN_SEEDS).flat_map(of_seed).collect()
         }
         Part::Full => {
-            let nulls = (0..4).map(|seed| Task::small(part, 50_000 + seed));
+            let nulls = (0..3).map(|seed| Task::small(part, 50_000 + seed));
             let singles = (0..).zip(LIBRARY).map(|(index, id)| Task::single(part, 50_100 + index, id, LARGE));
             nulls.chain(singles).map(Task::full).collect()
         }

@@ -8,7 +8,7 @@ use std::{
 use reality_sim::gap::report::Verdict;
 
 use crate::{
-    plan::{Part, SIZES},
+    plan::{CLEAR, Part, SIZES},
     run::{Compared, Outcome},
 };
 
@@ -17,7 +17,7 @@ pub fn text(outcomes: &[Outcome]) -> String {
     let of = |part: Part| -> Vec<&Outcome> {
         outcomes.iter().filter(|outcome| outcome.task.part == part).collect()
     };
-    let mut text = format!("{} runs.\n", outcomes.len());
+    let mut text = format!("{} runs; rates with Wilson's 95 % intervals.\n", outcomes.len());
     nulls(&mut text, &of(Part::Nulls));
     singles(&mut text, &of(Part::Singles));
     confusion(&mut text, &of(Part::Singles));
@@ -72,7 +72,7 @@ fn in_set(outcome: &Outcome, id: &str) -> bool {
 }
 
 fn nulls(text: &mut String, runs: &[&Outcome]) {
-    line(text, "\n## Nothing is hidden\n");
+    line(text, "\n### Nothing is hidden\n");
     let false_names = runs.iter().filter(|run| !run.named.is_empty()).count();
     let unknown = runs.iter().filter(|run| run.verdict == Verdict::Unknown).count();
     line(text, "| | runs |\n|---|---|");
@@ -88,7 +88,7 @@ fn nulls(text: &mut String, runs: &[&Outcome]) {
 fn singles(text: &mut String, runs: &[&Outcome]) {
     line(
         text,
-        "\n## One effect\n\n| size, detection limits | named exactly | in the reported set | verdict unknown |\n|---|---|---|---|",
+        "\n### One effect\n\n| size, detection limits | named exactly | in the reported set | verdict unknown |\n|---|---|---|---|",
     );
     let mut sizes = SIZES;
     sizes.sort_by(f64::total_cmp);
@@ -113,29 +113,46 @@ fn singles(text: &mut String, runs: &[&Outcome]) {
 fn confusion(text: &mut String, runs: &[&Outcome]) {
     line(
         text,
-        "\n### What was named, by what was hidden, at three limits and more\n\n| hidden | named |\n|---|---|",
+        "\n#### What was named, by what was hidden, at three limits and more\n\nThe gap is the median on unseen frames, in noise floors: before, after, and with the true effect in the model where the library has its very parameters.\n\n| hidden | named | before | after | true |\n|---|---|---|---|---|",
     );
-    let mut rows: BTreeMap<&str, BTreeMap<String, usize>> = BTreeMap::new();
-    for run in runs.iter().filter(|run| run.task.size >= 3.0) {
-        let names: Vec<&str> = named(run).into_iter().collect();
-        let answer = match (names.is_empty(), run.verdict) {
-            (true, verdict) => format!("{verdict:?}").to_lowercase(),
-            (false, Verdict::Unknown) => format!("{} and unknown", names.join(" + ")),
-            (false, _) => names.join(" + "),
-        };
+    let mut rows: BTreeMap<&str, Vec<&Outcome>> = BTreeMap::new();
+    for run in runs.iter().filter(|run| run.task.size >= CLEAR) {
         for id in &run.task.effects {
-            *rows.entry(id).or_default().entry(answer.clone()).or_default() += 1;
+            rows.entry(id).or_default().push(run);
         }
     }
-    for (id, answers) in rows {
+    for (id, runs) in rows {
+        let mut answers: BTreeMap<String, usize> = BTreeMap::new();
+        runs.iter().for_each(|run| *answers.entry(answer(run)).or_default() += 1);
         let answers: Vec<String> =
             answers.into_iter().map(|(answer, count)| format!("{answer} {count}")).collect();
-        line(text, &format!("| {id} | {} |", answers.join(", ")));
+        let gap = |of: fn(&Outcome) -> Option<f64>| {
+            let mut values: Vec<f64> = runs.iter().filter_map(|run| of(run)).collect();
+            values.sort_by(f64::total_cmp);
+            values.get(values.len() / 2).map_or("–".to_owned(), |value| format!("{value:.2}"))
+        };
+        let [before, after, truth] =
+            [gap(|run| Some(run.gap[0])), gap(|run| Some(run.gap[1])), gap(|run| run.oracle)];
+        line(text, &format!("| {id} | {} | {before} | {after} | {truth} |", answers.join(", ")));
+    }
+}
+
+/// The names given, those that cannot be told from each other joined by "or".
+fn answer(run: &Outcome) -> String {
+    let name = |(id, rivals): &(String, Vec<String>)| {
+        std::iter::once(id).chain(rivals).cloned().collect::<Vec<String>>().join(" or ")
+    };
+    let mut names: Vec<String> = run.named.iter().map(name).collect();
+    names.sort();
+    match (names.is_empty(), run.verdict) {
+        (true, verdict) => format!("{verdict:?}").to_lowercase(),
+        (false, Verdict::Unknown) => format!("{} and unknown", names.join(" + ")),
+        (false, _) => names.join(" + "),
     }
 }
 
 fn pairs(text: &mut String, runs: &[&Outcome]) {
-    line(text, "\n## Two effects\n\n| | runs |\n|---|---|");
+    line(text, "\n### Two effects\n\n| | runs |\n|---|---|");
     let found = |run: &&&Outcome| hidden(run).intersection(&named(run)).count();
     let count = runs.len();
     line(
@@ -154,7 +171,7 @@ fn unknowns(text: &mut String, title: &str, runs: &[&Outcome]) {
     line(
         text,
         &format!(
-            "\n## {title}\n\n| hidden | unknown or inconclusive | a wrong name for sure | nothing said |\n|---|---|---|---|"
+            "\n### {title}\n\n| hidden | unknown or inconclusive | a wrong name for sure | nothing said |\n|---|---|---|---|"
         ),
     );
     let mut groups: BTreeMap<&str, Vec<&Outcome>> = BTreeMap::new();
@@ -178,22 +195,19 @@ fn unknowns(text: &mut String, title: &str, runs: &[&Outcome]) {
 }
 
 fn full(text: &mut String, runs: &[&Outcome]) {
-    line(text, "\n## At 640×480, 60 frames\n\n| hidden | verdict | named | s |\n|---|---|---|---|");
+    line(text, "\n### At 640×480, 60 frames\n\n| hidden | verdict | named | s |\n|---|---|---|---|");
     for run in runs {
         let hidden: Vec<&str> = hidden(run).into_iter().collect();
-        let named: Vec<&str> = named(run).into_iter().collect();
+        let hidden = if hidden.is_empty() { "nothing".to_owned() } else { hidden.join(", ") };
         let verdict = format!("{:?}", run.verdict).to_lowercase();
-        line(
-            text,
-            &format!("| {} | {verdict} | {} | {:.1} |", hidden.join(", "), named.join(", "), run.seconds),
-        );
+        line(text, &format!("| {hidden} | {verdict} | {} | {:.1} |", answer(run), run.seconds));
     }
 }
 
 fn sizes(text: &mut String, runs: &[&Outcome]) {
     line(
         text,
-        "\n## Sizes\n\nTrue values inside the 95 % interval, of effects that were named.\n\n| effect | inside |\n|---|---|",
+        "\n### Sizes\n\nTrue values inside the 95 % interval, of effects that were named.\n\n| effect | inside |\n|---|---|",
     );
     let mut groups: BTreeMap<String, Vec<&Compared>> = BTreeMap::new();
     for compared in runs.iter().flat_map(|run| &run.estimates) {
@@ -211,7 +225,7 @@ fn sizes(text: &mut String, runs: &[&Outcome]) {
 fn closing(text: &mut String, runs: &[&Outcome]) {
     line(
         text,
-        "\n## The gap\n\nPart of the distance from the gap before to that with the true effects in the model that is closed, on frames that no fit has seen.\n",
+        "\n### The gap\n\nPart of the distance from the gap before to that with the true effects in the model that is closed, on frames that no fit has seen.\n",
     );
     let mut closed: Vec<f64> = runs
         .iter()

@@ -8,6 +8,7 @@ use reality_sim_sensor::{Model, library};
 use crate::{
     columns::Column,
     evidence::Gain,
+    explained::Explained,
     following::following,
     judge::{ChannelGap, Judged, gaps, restless},
     limits::{NotFound, limit},
@@ -70,9 +71,10 @@ pub fn analyse(
     let unexplained = if evidence.views() < LEAST_VIEWS {
         Vec::new()
     } else {
-        let mut unexplained = unexplained(recording, &found, &naming, &all);
+        let explained = Explained::new(&found, &before, &after);
+        let mut unexplained = unexplained(recording, &found, &naming, &all, &explained);
         if recording.source == PoseSource::Measured {
-            unexplained.extend(restless(&channels));
+            unexplained.extend(restless(&channels, &explained));
         }
         unexplained
     };
@@ -266,6 +268,7 @@ fn unexplained(
     found: &Found,
     naming: &Naming<'_>,
     all: &[usize],
+    explained: &Explained,
 ) -> Vec<Unexplained> {
     let mut delta = naming.evidence.fit(&naming.columns_of(all)).map_or_else(
         || DVector::zeros(found.columns.len() + found.measured.tolerances.len()),
@@ -293,16 +296,16 @@ fn unexplained(
         })
         .collect();
     let looks: Vec<_> = found.split.fitted().map(|frame| &found.measured.looks[frame]).collect();
-    let found_patterns = patterns(&residuals, &system.sigmas, recording.frames[0].time_s);
+    let found_patterns = patterns(&residuals, &system.sigmas, explained, recording.frames[0].time_s);
     let mut unexplained: Vec<Unexplained> = found_patterns.iter().map(unexplained_pattern).collect();
     unexplained.extend(passing::bands(&residuals));
     let carpet = system.sigmas.get(&(Channel::Photometry, 4)).copied().unwrap_or(f64::INFINITY);
     unexplained.extend(passing::things(&residuals, carpet));
     unexplained.extend(moving(&residuals, carpet));
     let motion = |part: u8| system.sigmas.get(&(Channel::Motion, part)).copied();
-    unexplained.extend(following(recording, &frames, &residuals, motion));
+    unexplained.extend(following(recording, &frames, &residuals, motion, explained));
     let fitted = &delta.as_slice()[found.columns.len()..];
-    unexplained.extend(strained(&found.measured.tolerances, fitted));
+    unexplained.extend(strained(&found.measured.tolerances, fitted, explained));
     unexplained.extend(crate::presence::missing(&looks, &recording.sequence.field));
     unexplained
 }

@@ -149,11 +149,6 @@ impl<'a> Evidence<'a> {
         self.total.gain(&fit.delta)
     }
 
-    /// What the model as it is explains of what it would leave with only these columns free.
-    pub(crate) fn loss(&self, free: &[usize]) -> f64 {
-        self.fit(free).map_or(0.0, |fit| -self.total.gain(&fit.delta))
-    }
-
     /// What a set of free columns gains over the model as it is; in short runs where an effect changes over time.
     pub(crate) fn held_out(&self, free: &[usize], over_time: bool) -> Option<HeldOut> {
         let mut frames = vec![0.0; self.system.frames.len()];

@@ -6,6 +6,7 @@ use reality_sim_core::pose::Motion2;
 
 use crate::{
     evidence::sum_of,
+    explained::Explained,
     recording::{Frame, Recording},
     report::Unexplained,
     rows::{Channel, Group},
@@ -37,6 +38,7 @@ pub(crate) fn following(
     frames: &[&Frame],
     residuals: &[Residuals<'_>],
     sigma: impl Fn(u8) -> Option<f64>,
+    explained: &Explained,
 ) -> Vec<Unexplained> {
     let mut all = Vec::new();
     let steps = movements(recording, frames);
@@ -48,13 +50,16 @@ pub(crate) fn following(
             rows.find(|(row, value)| of_part(row.group) && value.is_finite()).map(|(_, value)| value / sigma)
         };
         let values: Vec<Option<f64>> = residuals.iter().map(value).collect();
-        all.extend(odometry(&steps, &values, name).map(|(r#where, rms)| Unexplained {
-            channel: Channel::Motion.name().to_owned(),
-            r#where,
-            size: rms * sigma,
-            unit: unit.to_owned(),
-            p_value: None,
-        }));
+        let off = explained.off(Channel::Motion, part) / sigma;
+        all.extend(odometry(&steps, &values, name).filter(|(_, rms)| *rms > 2.0 * off).map(
+            |(r#where, rms)| Unexplained {
+                channel: Channel::Motion.name().to_owned(),
+                r#where,
+                size: rms * sigma,
+                unit: unit.to_owned(),
+                p_value: None,
+            },
+        ));
     }
     all
 }

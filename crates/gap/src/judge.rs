@@ -6,6 +6,7 @@ use nalgebra::{DVector, Vector6};
 use reality_sim_sensor::Model;
 
 use crate::{
+    explained::Explained,
     measure::{MeasureError, linearise},
     recording::Recording,
     report::Unexplained,
@@ -93,7 +94,7 @@ pub(crate) fn gaps(found: &Found, before: &Judged, after: &Judged) -> BTreeMap<C
 }
 
 /// What is left is this many times as large as its floor where something is at work in it.
-const RESTLESS: f64 = 1.7;
+const RESTLESS: f64 = 1.6;
 /// A row this many standard deviations off is something else.
 const OUTLYING: f64 = 5.0;
 
@@ -123,9 +124,10 @@ impl Squares {
 
 /// Lines that are off by far more than noise and the poses' errors make, although on the whole in no pattern: each picture
 /// in its own way.
-pub(crate) fn restless(gaps: &BTreeMap<Channel, ChannelGap>) -> Option<Unexplained> {
+pub(crate) fn restless(gaps: &BTreeMap<Channel, ChannelGap>, explained: &Explained) -> Option<Unexplained> {
     let gap = gaps.get(&Channel::Geometry)?;
-    (gap.after > RESTLESS * gap.floor).then(|| Unexplained {
+    let off = explained.most_off(Channel::Geometry);
+    (gap.after > RESTLESS * gap.floor.hypot(off)).then(|| Unexplained {
         channel: Channel::Geometry.name().to_owned(),
         r#where: "in each picture in its own way: by more than noise and the poses' errors make".to_owned(),
         size: gap.after,
@@ -142,15 +144,18 @@ fn pose_variance(gradient: &Vector6<f64>, sigmas: &[f64; 6]) -> f64 {
 mod tests {
     use super::*;
 
-    fn restless_at(after: f64) -> Option<Unexplained> {
+    fn restless_at(after: f64, explained: &Explained) -> Option<Unexplained> {
         let gap = ChannelGap { before: after, after, floor: 0.5, unit: "px".to_owned() };
-        restless(&BTreeMap::from([(Channel::Geometry, gap)]))
+        restless(&BTreeMap::from([(Channel::Geometry, gap)]), explained)
     }
 
     #[test]
     fn what_is_far_above_the_floor_is_told_with_its_size() {
-        assert!(restless_at(0.6).is_none());
-        assert_eq!(restless_at(1.4).unwrap().size, 1.4);
+        let nothing = Explained::default();
+        assert!(restless_at(0.6, &nothing).is_none());
+        assert_eq!(restless_at(1.4, &nothing).unwrap().size, 1.4);
+        // A model that explains 30 pixels may be off by one.
+        assert!(restless_at(1.4, &Explained::by(Channel::Geometry, 0, 30.0)).is_none());
     }
 
     #[test]

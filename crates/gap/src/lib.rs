@@ -7,6 +7,7 @@ mod analysis;
 mod carpet;
 mod columns;
 mod evidence;
+mod explained;
 mod following;
 pub mod html;
 mod jpeg;

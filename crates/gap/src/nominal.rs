@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::{naming::ALPHA, report::Unexplained, rows::Channel, tolerance::Tolerance};
+use crate::{explained::Explained, naming::ALPHA, report::Unexplained, rows::Channel, tolerance::Tolerance};
 
 /// Colours in the order of a picture's channels.
 const COLORS: [&str; 3] = ["red", "green", "blue"];
@@ -11,11 +11,13 @@ const CHANNELS: [Channel; 3] = [Channel::Photometry, Channel::Sharpness, Channel
 
 /// What a fit makes of the tolerances, in their standard deviations: too much of all of a channel together is told, with
 /// the one that is farthest off.
-pub(crate) fn strained(tolerances: &[Tolerance], fitted: &[f64]) -> Vec<Unexplained> {
-    CHANNELS.into_iter().filter_map(|channel| of_channel(channel, tolerances, fitted)).collect()
+pub(crate) fn strained(tolerances: &[Tolerance], fitted: &[f64], explained: &Explained) -> Vec<Unexplained> {
+    let told = |channel| of_channel(channel, tolerances, fitted, explained.most_off(channel));
+    CHANNELS.into_iter().filter_map(told).collect()
 }
 
-fn of_channel(channel: Channel, tolerances: &[Tolerance], fitted: &[f64]) -> Option<Unexplained> {
+/// `off` is by how much more the channel's numbers may be off.
+fn of_channel(channel: Channel, tolerances: &[Tolerance], fitted: &[f64], off: f64) -> Option<Unexplained> {
     let nominal: Vec<(Nominal, f64)> = tolerances
         .iter()
         .zip(fitted)
@@ -23,9 +25,10 @@ fn of_channel(channel: Channel, tolerances: &[Tolerance], fitted: &[f64]) -> Opt
             Some((Nominal::of(tolerance).filter(|nominal| nominal.channel == channel)?, *value))
         })
         .collect();
-    let squares: f64 = nominal.iter().map(|(_, value)| value * value).sum();
+    let strain = |(nominal, value): &(Nominal, f64)| value * nominal.sigma / nominal.allowed(off);
+    let squares: f64 = nominal.iter().map(|nominal| strain(nominal).powi(2)).sum();
     let p_value = ChiSquared::new(nominal.len().max(1) as f64).ok()?.sf(squares);
-    let (farthest, value) = nominal.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    let (farthest, value) = nominal.into_iter().max_by(|a, b| strain(a).abs().total_cmp(&strain(b).abs()))?;
     (p_value < ALPHA).then(|| Unexplained {
         channel: channel.name().to_owned(),
         r#where: format!(
@@ -45,9 +48,16 @@ struct Nominal {
     /// How far it is trusted.
     sigma: f64,
     unit: &'static str,
+    /// Whether it is an offset of the channel's numbers.
+    is_of_rows: bool,
 }
 
 impl Nominal {
+    /// How far it may be off: beside what it is trusted, where it is an offset of the channel's numbers, by what those may be.
+    fn allowed(&self, off: f64) -> f64 {
+        if self.is_of_rows { self.sigma.hypot(off) } else { self.sigma }
+    }
+
     /// The part that it is off by where it is compared by its logarithm; else the difference. In standard deviations.
     fn off_by(&self, value: f64) -> f64 {
         let difference = value * self.sigma;
@@ -56,6 +66,7 @@ impl Nominal {
 
     /// What a tolerance is of; patches of carpet are in no file.
     fn of(tolerance: &Tolerance) -> Option<Self> {
+        let is_of_rows = matches!(tolerance, Tolerance::Offset { .. } | Tolerance::Width { .. });
         let (channel, name, sigma, unit) = match *tolerance {
             Tolerance::Offset { group, sigma } => match group.channel {
                 Channel::Photometry => {
@@ -78,7 +89,7 @@ impl Nominal {
             }
             Tolerance::Patch { .. } => return None,
         };
-        Some(Self { channel, name, sigma, unit })
+        Some(Self { channel, name, sigma, unit, is_of_rows })
     }
 }
 
@@ -88,24 +99,33 @@ mod tests {
     use crate::tolerance::tolerances;
 
     /// What is told where the tolerances that are picked are so many standard deviations off, the others half a one.
-    fn told(value: f64, picked: impl Fn(&Nominal) -> bool) -> Vec<Unexplained> {
+    fn told(value: f64, explained: &Explained, picked: impl Fn(&Nominal) -> bool) -> Vec<Unexplained> {
         let tolerances = tolerances(&[]);
         let off = |tolerance| if Nominal::of(tolerance).is_some_and(|n| picked(&n)) { value } else { 0.5 };
-        strained(&tolerances, &tolerances.iter().map(off).collect::<Vec<_>>())
+        strained(&tolerances, &tolerances.iter().map(off).collect::<Vec<_>>(), explained)
     }
 
     #[test]
     fn what_is_within_its_tolerance_is_not_told_and_what_is_far_beyond_is_named() {
-        assert_eq!(told(0.5, |_| true), []);
-        let [told] = &told(5.0, |nominal| nominal.name == "red of carpet")[..] else { panic!() };
+        assert_eq!(told(0.5, &Explained::default(), |_| true), []);
+        let [told] = &told(5.0, &Explained::default(), |nominal| nominal.name == "red of carpet")[..] else {
+            panic!()
+        };
         assert!(told.r#where.contains("red of carpet"), "{}", told.r#where);
         assert!((told.size - 0.35_f64.exp_m1()).abs() < 1e-9 && told.p_value.unwrap() < ALPHA);
     }
 
     #[test]
+    fn what_a_model_explains_its_values_may_be_off_by_a_part_of() {
+        let explained = Explained::by(Channel::Photometry, 2, 2.0);
+        assert_eq!(told(5.0, &explained, |nominal| nominal.name == "blue of lines"), []);
+        assert_eq!(told(5.0, &explained, |nominal| nominal.channel == Channel::Noise).len(), 1);
+    }
+
+    #[test]
     fn every_channel_is_judged_by_itself() {
         for channel in CHANNELS {
-            let told = told(6.0, |nominal| nominal.channel == channel);
+            let told = told(6.0, &Explained::default(), |nominal| nominal.channel == channel);
             assert_eq!(told.len(), 1, "{told:?}");
             assert_eq!(told[0].channel, channel.name());
         }

@@ -18,8 +18,11 @@ const TUKEY: f64 = 5.0;
 const ROUNDS: usize = 4;
 /// Numbers of one frame are not independent: they are worth this part of as many that are.
 pub(crate) const INDEPENDENT: f64 = 0.15;
-/// Standard deviations of poses at first: rotations (radians), positions (metres).
+/// Standard deviations of poses' errors at first: rotations (radians), positions (metres).
 const WIDE: [f64; 2] = [0.01, 0.02];
+/// Those of usual motion capture, which count where the pictures tell little, with this part of a recording's weight.
+const USUAL: [f64; 2] = [0.0025, 0.003];
+const USUAL_WEIGHT: f64 = 0.3;
 /// Poses are never taken to be better than this.
 const NARROW: [f64; 2] = [2e-4, 5e-4];
 /// Side of a cell of the field, metres.
@@ -108,9 +111,10 @@ impl System {
 
 /// What a fit leaves of a frame.
 pub(crate) struct Left {
-    /// The pose's error.
-    pub(crate) pose: Vector6<f64>,
     pub(crate) residuals: Vec<f64>,
+    /// The pose's error, and how well that is known: its variances.
+    pose: Vector6<f64>,
+    pose_variance: Vector6<f64>,
 }
 
 impl Left {
@@ -135,11 +139,13 @@ impl Left {
                 gradient += weight * residual * pose;
             }
         }
-        let pose = normal.cholesky().map_or_else(Vector6::zeros, |normal| normal.solve(&gradient));
+        // A sum of squares and a prior: positive definite but for rounding.
+        let covariance = normal.cholesky().map_or_else(Matrix6::zeros, |normal| normal.inverse());
+        let pose = covariance * gradient;
         for (residual, row) in residuals.iter_mut().zip(&frame.pose) {
             *residual -= row.dot(&pose);
         }
-        Self { pose, residuals }
+        Self { residuals, pose, pose_variance: covariance.diagonal() }
     }
 }
 
@@ -316,15 +322,21 @@ pub(crate) fn median(values: &mut [f64]) -> f64 {
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// The scatter of the poses' errors from frame to frame: what changes slowly is no error of the reference.
+/// The scatter of the poses' errors from frame to frame: what changes slowly is no error of the reference. What is not known
+/// of an error adds to it, or errors that are hardly seen would shrink to nothing; what is usual holds it, or they would
+/// stay as wide as they are at first (expectation maximisation with an inverse gamma prior).
 fn pose_sigmas(left: Option<&[Left]>, reference: Reference) -> [f64; 6] {
     let mut sigmas = [WIDE[0], WIDE[0], WIDE[0], WIDE[1], WIDE[1], WIDE[1]];
     if let Some(left) = left {
         for (axis, sigma) in sigmas.iter_mut().enumerate() {
             let mut steps: Vec<f64> =
                 left.windows(2).map(|pair| (pair[1].pose[axis] - pair[0].pose[axis]).abs()).collect();
-            let narrow = NARROW[axis / 3];
-            *sigma = (1.4826 * median(&mut steps) / std::f64::consts::SQRT_2).max(narrow);
+            let mut unknown: Vec<f64> = left.iter().map(|left| left.pose_variance[axis]).collect();
+            let scatter = 1.4826 * median(&mut steps) / std::f64::consts::SQRT_2;
+            let found = scatter * scatter + median(&mut unknown);
+            let usual = USUAL[axis / 3].powi(2);
+            let variance = (found + USUAL_WEIGHT * usual) / (1.0 + USUAL_WEIGHT);
+            *sigma = variance.sqrt().max(NARROW[axis / 3]);
         }
     }
     if reference == Reference::Attitude {

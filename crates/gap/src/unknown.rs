@@ -9,6 +9,7 @@ use glam::{DMat2, DVec2};
 
 use crate::{
     evidence::{Gain, sum_of, two_sided},
+    explained::Explained,
     rows::{Channel, Row},
     system::median,
     words,
@@ -52,13 +53,13 @@ pub(crate) struct Pattern {
     pub(crate) p_value: f64,
     /// Mean there.
     pub(crate) strongest_size: f64,
-    /// The usual variance of the blur, pixels squared.
-    scale: f64,
+    /// What is smaller does not matter.
+    material: f64,
 }
 
 impl Pattern {
     fn is_all_over(&self) -> bool {
-        self.gain.score() > LEAST_SCORE && self.size > material(self.channel, self.scale)
+        self.gain.score() > LEAST_SCORE && self.size > self.material
     }
 
     /// Where it is, in words.
@@ -86,8 +87,7 @@ impl Pattern {
     }
 
     fn is_significant(&self) -> bool {
-        let in_one_place =
-            self.p_value < LIKELY_CHANCE && self.strongest_size > material(self.channel, self.scale);
+        let in_one_place = self.p_value < LIKELY_CHANCE && self.strongest_size > self.material;
         self.is_all_over() || in_one_place
     }
 }
@@ -125,14 +125,18 @@ fn material(channel: Channel, scale: f64) -> f64 {
 pub(crate) fn patterns(
     frames: &[Residuals<'_>],
     sigmas: &BTreeMap<(Channel, u8), f64>,
+    explained: &Explained,
     from_s: f64,
 ) -> Vec<Pattern> {
+    // The usual variance of the blur.
+    let scale = middle(frames, Channel::Sharpness);
+    let material = |channel: Channel| material(channel, scale) + explained.most_off(channel);
     let channels =
         [Channel::Geometry, Channel::Photometry, Channel::Sharpness, Channel::Color, Channel::Noise];
     let loci = [Locus::Picture, Locus::Field, Locus::Time];
     let pairs = channels.into_iter().flat_map(|channel| loci.map(|locus| (channel, locus)));
     pairs
-        .filter_map(|(channel, locus)| pattern(frames, sigmas, channel, locus, from_s))
+        .filter_map(|(channel, locus)| pattern(frames, sigmas, (channel, locus), material(channel), from_s))
         .filter(Pattern::is_significant)
         .collect()
 }
@@ -169,8 +173,8 @@ impl std::ops::AddAssign for Bin {
 fn pattern(
     frames: &[Residuals<'_>],
     sigmas: &BTreeMap<(Channel, u8), f64>,
-    channel: Channel,
-    locus: Locus,
+    (channel, locus): (Channel, Locus),
+    material: f64,
     from_s: f64,
 ) -> Option<Pattern> {
     let binned: Vec<BTreeMap<(i32, i32), Bin>> =
@@ -231,7 +235,7 @@ fn pattern(
         size: sigma * (squares / rows.max(1.0)).sqrt(),
         strongest,
         p_value,
-        scale: middle(frames, Channel::Sharpness),
+        material,
         strongest_size: sigma * all[&strongest].mean(SHRINK).length(),
     })
 }
@@ -357,7 +361,8 @@ mod tests {
                 size: SIZE,
             })
             .collect();
-        patterns(&frames, &BTreeMap::from([((Channel::Photometry, 4), SIGMA)]), 0.0)
+        let sigmas = BTreeMap::from([((Channel::Photometry, 4), SIGMA)]);
+        patterns(&frames, &sigmas, &Explained::default(), 0.0)
     }
 
     #[test]

@@ -280,13 +280,15 @@ impl Finder<'_> {
             others.extend(naming.rivals(effect, &all));
             others.sort_unstable();
             others.dedup();
+            if others.is_empty() {
+                continue;
+            }
+            let without: Vec<usize> = all.iter().copied().filter(|&other| other != effect).collect();
+            let left_without = self.left(&self.settle(measured.clone(), &without)?, &measured.system);
             for rival in others {
-                let set: Vec<usize> =
-                    all.iter().map(|&other| if other == effect { rival } else { other }).collect();
+                let set: Vec<usize> = without.iter().copied().chain([rival]).collect();
                 let settled = self.settle(measured.clone(), &set)?;
-                let without: Vec<usize> = all.iter().copied().filter(|&other| other != effect).collect();
-                let explained = evidence.loss(&naming.columns_of(&without));
-                if self.left(&settled, &measured.system) < left + apart(explained) {
+                if self.left(&settled, &measured.system) < left + apart(left_without - left) {
                     rivals.push((effect, rival));
                 }
             }
