@@ -97,7 +97,7 @@ fn odometry(steps: &[Option<[f64; 3]>], values: &[Option<f64>], name: &str) -> O
         (follows.rms > LEAST_PART * follows.left).then_some((follows.rms, followed))
     });
     let (rms, followed) = follows.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some((format!("in the odometry: its {name} are off {followed}"), rms))
+    Some((format!("in its {name}, {followed}"), rms))
 }
 
 /// Numbers that follow others.

@@ -40,18 +40,17 @@ pub(crate) fn placing(
     columns: &[Column],
 ) -> Result<Option<Model>, MeasureError> {
     let pictures = Pictures::of(recording)?;
-    let mut best = (pictures.placed(model)?, model.clone());
+    let Some(as_given) = pictures.placed(model) else { return Ok(None) };
+    let mut best = (as_given, model.clone());
     let mut is_better = false;
     for _ in 0..ROUNDS {
         let wanting = best.0.wanting();
         if wanting == 0.0 {
             break;
         }
-        let tries = pictures.tries(&best.1, columns)?;
-        let placed: Vec<(Placed, Model)> = tries
-            .into_par_iter()
-            .map(|model| Ok((pictures.placed(&model)?, model)))
-            .collect::<Result<_, MeasureError>>()?;
+        let tries = pictures.tries(&best.1, columns);
+        let placed: Vec<(Placed, Model)> =
+            tries.into_par_iter().filter_map(|model| Some((pictures.placed(&model)?, model))).collect();
         let Some(found) = placed.into_iter().max_by(|a, b| a.0.score().total_cmp(&b.0.score())) else {
             break;
         };
@@ -109,11 +108,11 @@ impl<'a> Pictures<'a> {
     }
 
     /// The model with other values of one parameter, or of both of an effect that has two.
-    fn tries(&self, model: &Model, columns: &[Column]) -> Result<Vec<Model>, MeasureError> {
+    fn tries(&self, model: &Model, columns: &[Column]) -> Vec<Model> {
         let mut movers: BTreeMap<usize, Vec<&Column>> = BTreeMap::new();
         for column in columns.iter().filter(|column| column.is_size()) {
             let [low, high] = column.parameter().range.map(|value| self.moved(model, column, value));
-            if self.farthest_px(&low, &high)? > LEAST_MOVE_PX {
+            if self.farthest_px(&low, &high).is_none_or(|pixels| pixels > LEAST_MOVE_PX) {
                 movers.entry(column.effect).or_default().push(column);
             }
         }
@@ -133,7 +132,7 @@ impl<'a> Pictures<'a> {
                 }
             }
         }
-        Ok(tries)
+        tries
     }
 
     fn moved(&self, model: &Model, column: &Column, value: f64) -> Model {
@@ -144,9 +143,14 @@ impl<'a> Pictures<'a> {
         with_value(model, effect, &values, column.parameter, value)
     }
 
-    fn placed(&self, model: &Model) -> Result<Placed, MeasureError> {
+    /// None where there is no such lens, or no such field: an end of one range may not go with the rest.
+    fn chain(&self, model: &Model) -> Option<Chain> {
+        Chain::new(&self.recording.sequence.setup, &self.recording.sequence.field, model).ok()
+    }
+
+    fn placed(&self, model: &Model) -> Option<Placed> {
         let Recording { sequence, trajectory, .. } = self.recording;
-        let chain = Chain::new(&sequence.setup, &sequence.field, model)?;
+        let chain = self.chain(model)?;
         let near_px = NEAR * f64::from(sequence.setup.camera.width);
         let mut placed = Placed::default();
         for (time_s, texture) in &self.pictures {
@@ -157,17 +161,16 @@ impl<'a> Pictures<'a> {
             found.into_iter().for_each(|curve| count(curve, 0));
             expected.for_each(|curve| count(curve, 1));
         }
-        Ok(placed)
+        Some(placed)
     }
 
     /// How far apart two models have the same point of a line, at most.
-    fn farthest_px(&self, model: &Model, other: &Model) -> Result<f64, MeasureError> {
-        let Recording { sequence, trajectory, .. } = self.recording;
-        let chain = |model: &Model| Chain::new(&sequence.setup, &sequence.field, model);
-        let chains = [chain(model)?, chain(other)?];
+    fn farthest_px(&self, model: &Model, other: &Model) -> Option<f64> {
+        let chains = [self.chain(model)?, self.chain(other)?];
         let mut farthest_px: f64 = 0.0;
         for (time_s, _) in &self.pictures {
-            let [one, other] = chains.each_ref().map(|chain| View::new(chain, trajectory, *time_s));
+            let view = |chain| View::new(chain, &self.recording.trajectory, *time_s);
+            let [one, other] = chains.each_ref().map(view);
             // A line's point is that of the same curve, however long the model has it.
             for (curve, same) in one.curves.iter().zip(&other.curves) {
                 for fraction in [0.0, 0.25, 0.5, 0.75, 1.0] {
@@ -179,7 +182,7 @@ impl<'a> Pictures<'a> {
                 }
             }
         }
-        Ok(farthest_px)
+        Some(farthest_px)
     }
 }
 

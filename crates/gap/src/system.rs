@@ -82,9 +82,10 @@ pub(crate) struct System {
 
 impl System {
     pub(crate) fn new(frames: &[&FrameRows], size: usize, reference: Reference, views: &[usize]) -> Self {
-        let mut sigmas = first_sigmas(frames);
+        let first = first_residuals(frames);
+        let mut sigmas = group_sigmas(all_of(frames, first.iter()));
         let mut weights: Vec<Vec<f64>> =
-            frames.iter().map(|frame| weigh(frame, &frame.residuals, &sigmas)).collect();
+            frames.iter().zip(&first).map(|(frame, first)| weigh(frame, first, &sigmas)).collect();
         let mut pose_sigmas = pose_sigmas(None, reference);
         for _ in 0..ROUNDS {
             let sums = by_frame(frames, &weights, size, &pose_sigmas);
@@ -94,7 +95,7 @@ impl System {
                 .zip(&weights)
                 .map(|(frame, weights)| Left::new(frame, weights, &all, &pose_sigmas))
                 .collect();
-            sigmas = robust_sigmas(frames, &left);
+            sigmas = group_sigmas(all_of(frames, left.iter().map(|left| &left.residuals)));
             weights = frames
                 .iter()
                 .zip(&left)
@@ -292,17 +293,27 @@ fn key(group: Group) -> (Channel, u8) {
     (group.channel, group.part)
 }
 
-fn robust_sigmas(frames: &[&FrameRows], left: &[Left]) -> BTreeMap<(Channel, u8), f64> {
-    group_sigmas(
-        frames
-            .iter()
-            .zip(left)
-            .flat_map(|(frame, left)| frame.rows.iter().zip(left.residuals.iter().copied())),
-    )
+/// Residuals of all frames with their rows.
+fn all_of<'a>(
+    frames: &'a [&'a FrameRows],
+    residuals: impl Iterator<Item = &'a Vec<f64>>,
+) -> impl Iterator<Item = (&'a Row, f64)> {
+    frames.iter().zip(residuals).flat_map(|(frame, values)| frame.rows.iter().zip(values.iter().copied()))
 }
 
-fn first_sigmas(frames: &[&FrameRows]) -> BTreeMap<(Channel, u8), f64> {
-    group_sigmas(frames.iter().flat_map(|frame| frame.rows.iter().zip(frame.residuals.iter().copied())))
+/// Residuals as weights are found by at first: those of the odometry about their medians. An effect that makes all its steps
+/// longer would make them count less than its steps aside, which are little but the reference's errors.
+fn first_residuals(frames: &[&FrameRows]) -> Vec<Vec<f64>> {
+    let mut groups: BTreeMap<(Channel, u8), Vec<f64>> = BTreeMap::new();
+    for (row, value) in all_of(frames, frames.iter().map(|frame| &frame.residuals)) {
+        if row.group.channel == Channel::Motion && value.is_finite() {
+            groups.entry(key(row.group)).or_default().push(value);
+        }
+    }
+    let medians: BTreeMap<(Channel, u8), f64> =
+        groups.into_iter().map(|(group, mut values)| (group, median(&mut values))).collect();
+    let about = |(row, value): (&Row, &f64)| value - medians.get(&key(row.group)).unwrap_or(&0.0);
+    frames.iter().map(|frame| frame.rows.iter().zip(&frame.residuals).map(about).collect()).collect()
 }
 
 /// Standard deviations by the median of absolute residuals about zero.
@@ -403,6 +414,28 @@ mod tests {
             let delta = solve(&system.frames, 2);
             assert!((delta[1] - 0.2).abs() < 0.05, "{delta}");
         }
+    }
+
+    #[test]
+    fn steps_ahead_tell_of_the_odometrys_scale_and_the_references_errors_aside_do_not() {
+        let mut noise = Noise(5);
+        let truth = 0.5;
+        let frames: Vec<FrameRows> = (0..40)
+            .map(|_| {
+                // The reference's own error is in what is expected of a step, and with it in the step's change with scale.
+                let [ahead_m, aside_m] = [0.05 + 0.003 * noise.next(), 0.006 * noise.next()];
+                FrameRows {
+                    rows: vec![row(Channel::Motion, 0), row(Channel::Motion, 1)],
+                    residuals: vec![(1.0 + truth) * 0.05 - ahead_m, -aside_m],
+                    jacobian: vec![vec![(0, ahead_m)], vec![(0, aside_m)]],
+                    pose: vec![Vector6::zeros(); 2],
+                }
+            })
+            .collect();
+        let views: Vec<usize> = (0..frames.len()).collect();
+        let system = System::new(&frames.iter().collect::<Vec<_>>(), 1, Reference::Whole, &views);
+        let delta = solve(&system.frames, 1);
+        assert!((delta[0] - truth).abs() < 0.1, "{delta}");
     }
 
     #[test]
