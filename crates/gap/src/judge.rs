@@ -94,7 +94,7 @@ pub(crate) fn gaps(found: &Found, before: &Judged, after: &Judged) -> BTreeMap<C
 }
 
 /// What is left is this many times as large as its floor where something is at work in it.
-const RESTLESS: f64 = 1.6;
+const RESTLESS: f64 = 1.8;
 /// A row this many standard deviations off is something else.
 const OUTLYING: f64 = 5.0;
 
