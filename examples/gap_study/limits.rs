@@ -47,18 +47,21 @@ impl Limits {
         let unit = Hidden::of(id, 1.0, &mut Random::new(task.seed.wrapping_mul(77)))?;
         let known = parameters(&unit).into_iter().find(|(name, _)| name == parameter);
         let per_multiple = known.map_or(main_size(&unit), |(_, value)| value).abs();
-        let largest = LARGEST * reach(id) / main_size(&unit).abs();
+        let largest = LARGEST * reach(id, &unit) / main_size(&unit).abs();
         let multiple = (in_limits * limit / per_multiple).min(largest);
         Ok(Some((multiple, multiple * per_multiple / limit)))
     }
 }
 
-/// The plausible range of an effect's first parameter.
-fn reach(id: &str) -> f64 {
+/// How far an effect's first parameter may plausibly be from where it vanishes, to the side on which it is hidden.
+fn reach(id: &str, unit: &Hidden) -> f64 {
     let first = effect(id)
         .and_then(|effect| effect.parameters().iter().find(|parameter| parameter.role == Role::Size));
-    match id {
-        "sensor_noise" => 4.0,
-        _ => first.map_or(f64::INFINITY, |parameter| parameter.range[1]),
+    let is_below = parameters(unit).iter().any(|(_, value)| *value < 0.0);
+    match (id, first) {
+        ("sensor_noise", _) => 4.0,
+        (_, Some(parameter)) if is_below => parameter.neutral - parameter.range[0],
+        (_, Some(parameter)) => parameter.range[1] - parameter.neutral,
+        (_, None) => f64::INFINITY,
     }
 }

@@ -27,7 +27,8 @@ pub fn text(outcomes: &[Outcome]) -> String {
     full(&mut text, &of(Part::Full));
     let all: Vec<&Outcome> = outcomes.iter().collect();
     sizes(&mut text, &all);
-    closing(&mut text, &all);
+    let whole: Vec<&Outcome> = all.iter().copied().filter(|run| run.task.without.is_none()).collect();
+    closing(&mut text, &whole);
     text
 }
 

@@ -10,6 +10,8 @@ use crate::{
     total::Fit,
 };
 
+/// Sizes that matter are no chance below this.
+const LARGE_BY_CHANCE: f64 = 0.05;
 /// An effect is named where it is this unlikely to be chance, corrected for all effects tested.
 pub(crate) const ALPHA: f64 = 0.005;
 /// And where its gain on unseen frames is this many standard deviations above zero.
@@ -85,7 +87,7 @@ impl Naming<'_> {
             effect,
             p_value: (p_value * tested as f64).min(1.0),
             gain,
-            material: self.is_material(&fit, &sizes),
+            material: p_value < ALPHA && self.is_material(effect, &fit, &sizes),
             fit,
         })
     }
@@ -155,11 +157,16 @@ impl Naming<'_> {
         self.columns[column].value(self.coordinate(fit, column))
     }
 
-    fn is_material(&self, fit: &Fit, sizes: &[usize]) -> bool {
-        sizes.iter().any(|&column| {
-            let parameter = self.columns[column].parameter();
-            (self.value(fit, column) - parameter.neutral).abs() >= parameter.material
-        })
+    /// Whether sizes that would matter are surely not chance: of a field's five, one may be sure and too small, another large
+    /// and hardly seen.
+    fn is_material(&self, effect: usize, fit: &Fit, sizes: &[usize]) -> bool {
+        let matters = |column: &usize| {
+            let parameter = self.columns[*column].parameter();
+            (self.value(fit, *column) - parameter.neutral).abs() >= parameter.material
+        };
+        let large: Vec<usize> = sizes.iter().copied().filter(matters).collect();
+        let is_sure = || changes_over_time(&[effect]) || self.evidence.p_value(fit, &large) < LARGE_BY_CHANCE;
+        !large.is_empty() && is_sure()
     }
 
     /// The effect that speaks most for itself beside those already named, if one does, and behind it those that may stand
