@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     plan::{Chosen, Task},
-    truth::{main_size, parameters},
+    truth::{has_the_librarys_form, main_size, parameters},
 };
 
 /// What came out.
@@ -136,11 +136,11 @@ fn compared(hidden: &Hidden, report: &Report) -> Vec<Compared> {
     parameters(hidden).into_iter().filter_map(one).collect()
 }
 
-/// The gap with the true effects in the model, where all of them have the library's parameters.
+/// The gap with the true effects in the model, where the library has all of them in the very form in which they are hidden.
 fn oracle(sequence: &Sequence, effects: &[Hidden], options: &Options) -> Result<Option<f64>, Box<dyn Error>> {
     let mut model = Model::default();
     for hidden in effects {
-        let Some(known) = effect(hidden.id()).filter(|_| !parameters(hidden).is_empty()) else {
+        let Some(known) = effect(hidden.id()).filter(|_| has_the_librarys_form(hidden)) else {
             return Ok(None);
         };
         let truth = parameters(hidden);

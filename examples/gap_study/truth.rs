@@ -1,6 +1,6 @@
 //! What is hidden, as the parameters of the library's effects.
 
-use reality_sim_hidden::Hidden;
+use reality_sim_hidden::{Falloff, Hidden};
 
 /// The one number that stands for an effect's size.
 pub fn main_size(hidden: &Hidden) -> f64 {
@@ -49,4 +49,12 @@ pub fn parameters(hidden: &Hidden) -> Vec<(&'static str, f64)> {
         // Given by other numbers than the library's.
         _ => Vec::new(),
     }
+}
+
+/// Whether the library's effect draws the very same with the true parameters: it has no disc as a blur, and another course
+/// towards the corners than cos⁴.
+pub fn has_the_librarys_form(hidden: &Hidden) -> bool {
+    let is_other =
+        matches!(hidden, Hidden::Defocus { .. } | Hidden::Vignetting { falloff: Falloff::Cos4, .. });
+    !is_other && !parameters(hidden).is_empty()
 }

@@ -221,11 +221,13 @@ impl<'a> Evidence<'a> {
         }
     }
 
-    /// Standard deviation of a free column.
+    /// Standard deviation of a free column. What is held by its prior alone scatters little from frame to frame, and is as
+    /// unknown as before.
     pub(crate) fn sigma(&self, fit: &Fit, column: usize) -> f64 {
         let Some(place) = fit.free.iter().position(|&free| free == column) else { return 0.0 };
         let variances = self.covariances(fit).map(|covariance| covariance[(place, place)]);
-        variances.into_iter().fold(0.0, f64::max).sqrt()
+        let of_prior = PRIOR * fit.inverse.column(place).norm_squared();
+        (variances.into_iter().fold(0.0, f64::max) + of_prior).sqrt()
     }
 }
 
@@ -366,6 +368,21 @@ mod tests {
             inside += usize::from((fit.delta[0] - 0.6).abs() < 1.96 * sigma);
         }
         assert!((170..=199).contains(&inside), "{inside} of 200");
+    }
+
+    #[test]
+    fn what_hardly_shows_is_as_unknown_as_before() {
+        let mut system = system(1, [0.5, 0.0], 0.5);
+        // The second column changes next to nothing.
+        for sums in &mut system.frames {
+            sums.a.row_mut(1).scale_mut(1e-3);
+            sums.a.column_mut(1).scale_mut(1e-3);
+            sums.g[1] *= 1e-3;
+        }
+        (system.views, system.cells) = (system.frames.clone(), system.frames.clone());
+        let evidence = Evidence::new(&system, DVector::zeros(2));
+        let fit = evidence.fit(&[0, 1]).unwrap();
+        assert!(evidence.sigma(&fit, 1) > 0.99 && evidence.sigma(&fit, 0) < 0.1);
     }
 
     #[test]

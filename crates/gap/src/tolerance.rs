@@ -60,8 +60,8 @@ const BLUR: f64 = 0.03;
 const WIDTH: f64 = 0.02;
 /// What a disc's or a bar's fitted variance is off by: 10 % on broad lines, up to 28 % on the thinnest (a uniform disc's
 /// edge and line spread, fitted as in [`crate::profile`]).
-const KERNEL: f64 = 0.08;
-const THIN_KERNEL: f64 = 0.15;
+const KERNEL: f64 = 0.12;
+const THIN_KERNEL: f64 = 0.2;
 /// The nominal noise's variance, of which fine texture of the carpet cannot be told: natural logarithm.
 const NOISE: f64 = 0.2;
 /// The carpet's sheen, linear.

@@ -131,15 +131,43 @@ pub(crate) fn patterns(
     // The usual variance of the blur.
     let scale = middle(frames, Channel::Sharpness);
     let material = |channel: Channel| material(channel, scale) + explained.most_off(channel);
-    let channels =
-        [Channel::Geometry, Channel::Photometry, Channel::Sharpness, Channel::Color, Channel::Noise];
     let loci = [Locus::Picture, Locus::Field, Locus::Time];
-    let pairs = channels.into_iter().flat_map(|channel| loci.map(|locus| (channel, locus)));
+    let pairs = SOURCES.into_iter().flat_map(|source| loci.map(|locus| (source, locus)));
     pairs
-        .filter_map(|(channel, locus)| pattern(frames, sigmas, (channel, locus), material(channel), from_s))
+        .filter_map(|(source, locus)| {
+            pattern(frames, sigmas, (source, locus), material(source.channel), from_s)
+        })
         .filter(Pattern::is_significant)
         .collect()
 }
+
+/// Rows that are binned together.
+#[derive(Debug, Clone, Copy)]
+struct Source {
+    channel: Channel,
+    /// All parts of the channel where none is given.
+    part: Option<u8>,
+}
+
+impl Source {
+    const fn whole(channel: Channel) -> Self {
+        Self { channel, part: None }
+    }
+
+    fn has(&self, row: &Row) -> bool {
+        row.group.channel == self.channel && self.part.is_none_or(|part| row.group.part == part)
+    }
+}
+
+/// Red and blue are bent to opposite sides by a lens: together they would cancel.
+const SOURCES: [Source; 6] = [
+    Source::whole(Channel::Geometry),
+    Source::whole(Channel::Photometry),
+    Source::whole(Channel::Sharpness),
+    Source { channel: Channel::Color, part: Some(0) },
+    Source { channel: Channel::Color, part: Some(1) },
+    Source::whole(Channel::Noise),
+];
 
 /// Sums of a bin: information and score of a mean vector. Offsets of lines have two numbers a bin, all else has one.
 #[derive(Debug, Clone, Copy, Default)]
@@ -173,12 +201,13 @@ impl std::ops::AddAssign for Bin {
 fn pattern(
     frames: &[Residuals<'_>],
     sigmas: &BTreeMap<(Channel, u8), f64>,
-    (channel, locus): (Channel, Locus),
+    (source, locus): (Source, Locus),
     material: f64,
     from_s: f64,
 ) -> Option<Pattern> {
+    let channel = source.channel;
     let binned: Vec<BTreeMap<(i32, i32), Bin>> =
-        frames.iter().map(|frame| bins(frame, sigmas, channel, locus, from_s)).collect();
+        frames.iter().map(|frame| bins(frame, sigmas, source, locus, from_s)).collect();
     let count = frames.len();
     // Sharper than the mean of a group: patterns are measured in its standard deviations.
     let sigma = sigmas
@@ -270,16 +299,17 @@ fn p_value(frames: &[BTreeMap<(i32, i32), Bin>], place: (i32, i32)) -> Option<f6
 fn bins(
     frame: &Residuals<'_>,
     sigmas: &BTreeMap<(Channel, u8), f64>,
-    channel: Channel,
+    source: Source,
     locus: Locus,
     from_s: f64,
 ) -> BTreeMap<(i32, i32), Bin> {
+    let channel = source.channel;
     let mut bins: BTreeMap<(i32, i32), Bin> = BTreeMap::new();
     // Of the carpet's brightness the middle one of a place stands for all.
     let mut blocks: BTreeMap<(i32, i32), Vec<f64>> = BTreeMap::new();
     for (row, value) in frame.rows.iter().zip(&frame.values) {
         let sigma = sigmas.get(&(row.group.channel, row.group.part));
-        let Some(&sigma) = sigma.filter(|_| row.group.channel == channel && value.is_finite()) else {
+        let Some(&sigma) = sigma.filter(|_| source.has(row) && value.is_finite()) else {
             continue;
         };
         let place = match locus {
@@ -325,7 +355,7 @@ pub(crate) fn picture_cell(pixel: DVec2, size: [u32; 2]) -> (i32, i32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::carpet_row;
+    use crate::testing::{carpet_row, row};
 
     const SIGMA: f64 = 0.05;
     const SIZE: [u32; 2] = [320, 240];
@@ -363,6 +393,30 @@ mod tests {
             .collect();
         let sigmas = BTreeMap::from([((Channel::Photometry, 4), SIGMA)]);
         patterns(&frames, &sigmas, &Explained::default(), 0.0)
+    }
+
+    #[test]
+    fn red_and_blue_that_are_off_to_opposite_sides_are_two_patterns() {
+        let rows: Vec<Row> = (0..1200_u32)
+            .flat_map(|index| {
+                let pixel = 8.0 * DVec2::new(f64::from(index % 40), f64::from(index / 40));
+                [0, 1].map(|part| Row { pixel, normal: DVec2::X, ..row(Channel::Color, part) })
+            })
+            .collect();
+        let sign = |part: u8| if part == 0 { 1.0 } else { -1.0 };
+        let off = |row: &Row| sign(row.group.part) * 0.004 * (row.pixel.x - 160.0);
+        let frames: Vec<Residuals<'_>> = (0..24)
+            .map(|frame| Residuals {
+                rows: &rows,
+                values: rows.iter().map(off).collect(),
+                time_s: 0.2 * f64::from(frame),
+                size: SIZE,
+            })
+            .collect();
+        let sigmas = BTreeMap::from([((Channel::Color, 0), SIGMA), ((Channel::Color, 1), SIGMA)]);
+        let found = patterns(&frames, &sigmas, &Explained::default(), 0.0);
+        let in_picture = found.iter().filter(|pattern| pattern.locus == Locus::Picture);
+        assert_eq!(in_picture.count(), 2, "{found:?}");
     }
 
     #[test]

@@ -218,10 +218,29 @@ fn times_are_those_of_rows_and_clock() {
 }
 
 #[test]
+fn vignetting_follows_the_cosine_to_the_fourth_of_a_wide_lens() {
+    // Its corner is seen at 45 degrees: there a quarter of the light is left. Shape and bend from ρ² = 1/2 and 1/4.
+    let cos4 = |radius: f64| (1.0 + radius * radius).powi(-2);
+    let strength = 0.75;
+    let shape = 4.0 * (0.5 * strength - (1.0 - cos4(0.5_f64.sqrt())));
+    let bend = (1.0 - cos4(0.5) - 0.25 * strength + 0.1875 * shape) / 0.09375;
+    for step in 0..=20 {
+        let radius = f64::from(step) / 20.0;
+        let falloff = known("vignetting").falloff(&[strength, shape, bend], radius);
+        assert!((falloff - cos4(radius)).abs() < 0.015, "{radius}: {falloff} for {}", cos4(radius));
+    }
+}
+
+#[test]
 fn light_and_gain_follow_their_formulas() {
     let vignetting = known("vignetting");
     assert!((vignetting.falloff(&[0.4, 0.0], 1.0) - 0.6).abs() < 1e-15);
     assert!((vignetting.falloff(&[0.4, 0.3], 0.5) - (1.0 - 0.1 + 0.3 * 0.25 * 0.75)).abs() < 1e-15);
+    assert!(
+        (vignetting.falloff(&[0.4, 0.0, 0.2], 0.5) - (1.0 - 0.1 - 0.2 * 0.25 * 0.75 * 0.5)).abs() < 1e-15
+    );
+    assert_eq!(vignetting.falloff(&[0.4, 0.3, 0.2], 0.0), 1.0);
+    assert!((vignetting.falloff(&[0.4, 0.3, 0.2], 1.0) - 0.6).abs() < 1e-15);
     assert_eq!(vignetting.falloff(&[0.95, 0.0], 1.2), 0.02);
     assert_eq!(known("white_balance").gain(&[0.2, -0.1], 3.0), [1.2, 1.0, 0.9]);
     assert_eq!(known("chromatic_aberration").magnification(&[0.002, -0.001]), [1.002, 1.0, 0.999]);

@@ -36,7 +36,7 @@ fn the_file_says_what_its_numbers_are() {
     let model = Model::default().with(effect("vignetting").unwrap(), [0.52]);
     let expected = "# Effects of the simulated camera beside what camera.toml says. Neutral values: no effect.\n\n\
         [[effect]]\nid = \"vignetting\"  # the lens darkens towards the corners\n\
-        strength = 0.52  # 1\nshape = 0.0  # 1\n";
+        strength = 0.52  # 1\nshape = 0.0  # 1\nbend = 0.0  # 1\n";
     assert_eq!(model.to_toml(), expected);
 }
 
@@ -56,7 +56,7 @@ fn values_of_an_effect_are_replaced_filled_up_and_cut_off() {
     let model =
         Model::default().with(vignetting, [0.1, 0.2]).with(defocus, [1.0]).with(vignetting, vec![0.3]);
     assert_eq!(model.effects.len(), 2);
-    assert_eq!(model.values("vignetting").unwrap(), [0.3, 0.0]);
+    assert_eq!(model.values("vignetting").unwrap(), [0.3, 0.0, 0.0]);
     assert_eq!(model.with(defocus, [2.0, 5.0, 6.0]).values("defocus").unwrap(), [2.0]);
 }
 
@@ -74,7 +74,7 @@ fn a_faulty_model_is_refused_with_its_line_its_fault_and_what_to_do() {
         ("[[effect]]\nid = 3\n", "model.toml, line 2: the key `id` is missing: add "),
         (
             "[[effect]]\nid = 'vignetting'\nstrenght = 0.5\n",
-            "model.toml, line 3: the key `strenght` is not known: vignetting has strength, shape",
+            "model.toml, line 3: the key `strenght` is not known: vignetting has strength, shape, bend",
         ),
         (
             "[[effect]]\nid = 'defocus'\nsigma_px = nan\n",

@@ -1,6 +1,7 @@
 //! Less light reaches the corners of the sensor.
 //!
-//! `falloff = 1 − strength ρ² − shape ρ² (ρ² − 1)`: the shape leaves the corner and the middle as they are.
+//! `falloff = 1 − strength ρ² − shape ρ² (ρ² − 1) − bend ρ² (ρ² − 1) (2 ρ² − 1)`: an even polynomial of the sixth degree, as
+//! Goldman and Chen (2005) fit falloffs, in a basis in which shape and bend leave the corner and the middle as they are.
 
 use crate::effect::{About, Covariate, Effect, Parameter, Stage, values};
 
@@ -17,6 +18,7 @@ const ABOUT: About = About {
     parameters: &[
         Parameter::size("strength", "1", [0.0, 0.95], 0.03),
         Parameter::shape("shape", "1", [-1.0, 1.0], 0.01),
+        Parameter::shape("bend", "1", [-0.4, 0.4], 0.01),
     ],
     covariates: &[Covariate::Radius, Covariate::Intensity],
     because: "lines and carpet darken with the square of the distance from the image centre, in every frame",
@@ -29,8 +31,9 @@ impl Effect for Vignetting {
     }
 
     fn falloff(&self, p: &[f64], radius: f64) -> f64 {
-        let [strength, shape] = values(p);
+        let [strength, shape, bend] = values(p);
         let squared = radius * radius;
-        (1.0 - strength * squared - shape * squared * (squared - 1.0)).max(DARKEST)
+        let inner = squared * (squared - 1.0);
+        (1.0 - strength * squared - shape * inner - bend * inner * (2.0 * squared - 1.0)).max(DARKEST)
     }
 }
