@@ -149,11 +149,17 @@ impl<'a> Evidence<'a> {
         self.total.gain(&fit.delta)
     }
 
-    /// What a set of free columns gains over the model as it is; in short runs where an effect changes over time.
-    pub(crate) fn held_out(&self, free: &[usize], over_time: bool) -> Option<HeldOut> {
+    /// What a set of free columns gains over the model as it is; in short runs where an effect changes over time. `shared`
+    /// columns are free in what this is compared with as well: where the other frames do not tell of them, they stay where
+    /// the model is, or a line that is seen in the frames left out alone would drown what the sets differ in.
+    pub(crate) fn held_out(&self, free: &[usize], shared: &[usize], over_time: bool) -> Option<HeldOut> {
         let mut frames = vec![0.0; self.system.frames.len()];
+        let mut drawn_to = self.base.clone();
+        for &column in shared {
+            drawn_to[column] = 0.0;
+        }
         for (left_out, others) in if over_time { &self.runs } else { &self.stretches } {
-            let delta = others.fit(free, &self.base)?.delta;
+            let delta = others.fit_beside(free, &drawn_to, &-&self.base)?.delta;
             for &frame in left_out {
                 let sums = &self.system.frames[frame];
                 frames[frame] = sums.g.dot(&delta) - 0.5 * delta.dot(&(&sums.a * &delta));
@@ -361,8 +367,8 @@ mod tests {
             let evidence = Evidence::new(&system, DVector::zeros(2));
             let fit = evidence.fit(&[0, 1]).unwrap();
             assert!(evidence.p_value(&fit, &[0]) < 1e-3);
-            let nothing = evidence.held_out(&[], false).unwrap();
-            let gain = evidence.held_out(&[0, 1], false).unwrap().over(&nothing);
+            let nothing = evidence.held_out(&[], &[], false).unwrap();
+            let gain = evidence.held_out(&[0, 1], &[], false).unwrap().over(&nothing);
             assert!(gain.value > 0.0 && gain.score() > 2.0);
             let sigma = evidence.sigma(&fit, 0);
             inside += usize::from((fit.delta[0] - 0.6).abs() < 1.96 * sigma);
@@ -392,9 +398,9 @@ mod tests {
                 let system = system(seed, [0.5, 0.0], 0.5);
                 let evidence = Evidence::new(&system, DVector::zeros(2));
                 evidence
-                    .held_out(&[0, 1], false)
+                    .held_out(&[0, 1], &[], false)
                     .unwrap()
-                    .over(&evidence.held_out(&[0], false).unwrap())
+                    .over(&evidence.held_out(&[0], &[], false).unwrap())
                     .value
             })
             .collect();
@@ -412,8 +418,11 @@ mod tests {
         }
         shifted.views.clone_from(&shifted.frames);
         let evidence = Evidence::new(&shifted, base);
-        let kept = evidence.held_out(&[0, 1], false).unwrap();
-        assert!(evidence.held_out(&[1], false).unwrap().over(&kept).value < -50.0, "without it much is lost");
+        let kept = evidence.held_out(&[0, 1], &[], false).unwrap();
+        assert!(
+            evidence.held_out(&[1], &[], false).unwrap().over(&kept).value < -50.0,
+            "without it much is lost"
+        );
         let kept = evidence.fit(&[0, 1]).unwrap();
         assert!(kept.delta[0].abs() < 0.1);
     }

@@ -5,7 +5,7 @@ use reality_sim_sensor::{Covariate, library};
 
 use crate::{
     columns::Column,
-    evidence::{Evidence, Gain, two_sided},
+    evidence::{Evidence, Gain, HeldOut, two_sided},
     recording::LEAST_VIEWS,
     total::Fit,
 };
@@ -121,8 +121,7 @@ impl Naming<'_> {
     /// and each is seen in a few frames: of so many numbers from so few frames a fit's scatter tells little, what it
     /// foretells does.
     fn foretold(&self, with: &[usize], without: &[usize]) -> f64 {
-        let held_out = |effects: &[usize]| self.evidence.held_out(&self.columns_of(effects), true);
-        let (Some(with), Some(without)) = (held_out(with), held_out(without)) else { return 1.0 };
+        let Some([with, without]) = self.held_out([with, without], true) else { return 1.0 };
         let score = with.surely_over(&without);
         if score > 0.0 { two_sided(score, self.evidence.degrees() as f64) } else { 1.0 }
     }
@@ -222,8 +221,15 @@ impl Naming<'_> {
     /// What one set of effects gains over another, both judged on the same unseen frames.
     fn gain(&self, set: &[usize], over: &[usize]) -> Option<Gain> {
         let over_time = changes_over_time(set) || changes_over_time(over);
-        let held_out = |effects: &[usize]| self.evidence.held_out(&self.columns_of(effects), over_time);
-        Some(held_out(set)?.over(&held_out(over)?))
+        let [set, over] = self.held_out([set, over], over_time)?;
+        Some(set.over(&over))
+    }
+
+    fn held_out(&self, sets: [&[usize]; 2], over_time: bool) -> Option<[HeldOut; 2]> {
+        let [first, second] = sets.map(|effects| self.columns_of(effects));
+        let shared: Vec<usize> = first.iter().copied().filter(|column| second.contains(column)).collect();
+        let held_out = |free: &[usize]| self.evidence.held_out(free, &shared, over_time);
+        Some([held_out(&first)?, held_out(&second)?])
     }
 
     /// Whether an effect has something to add to another one: then they are two, not one in two shapes.
