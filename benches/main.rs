@@ -4,6 +4,7 @@ mod blur;
 mod border;
 mod database;
 mod frame;
+mod gap;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod image_at;
@@ -35,7 +36,7 @@ fn main() {
         .measurement_time(Duration::from_secs(1))
         .without_plots()
         .configure_from_args();
-    let stages: [fn(&mut Criterion, &Scene); 13] = [
+    let stages: [fn(&mut Criterion, &Scene); 14] = [
         blur::bench,
         border::bench,
         white_lines::bench,
@@ -49,6 +50,7 @@ fn main() {
         neighbours::bench,
         database::bench,
         image_at::bench,
+        gap::bench,
     ];
     for stage in stages {
         stage(&mut criterion, &scene);

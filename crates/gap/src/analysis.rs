@@ -27,7 +27,7 @@ use crate::{
     system::Left,
     unknown::{Pattern, Residuals, patterns},
     words,
-    workflow::{Found, Options, Stage, as_given, find},
+    workflow::{Found, Options, as_given, find},
 };
 
 /// What the workflow made of a recording.

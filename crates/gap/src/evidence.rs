@@ -4,7 +4,9 @@ use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
 use crate::{
-    system::{PRIOR, Sums, System},
+    split::stretch,
+    sums::Sums,
+    system::{PRIOR, System},
     total::{Fit, Total},
 };
 
@@ -16,7 +18,7 @@ pub(crate) const UNSEEN: f64 = 0.1;
 /// Parts of the recording that are left out in turn.
 const FOLDS: usize = 6;
 /// Frames in a row that are left out together where an effect changes over time: few, so that it is seen before and
-/// after. Else a fold is one stretch: frames next to each other see the same patches, and would tell of each other.
+/// after. Else a fold is one stretch.
 const RUN: usize = 2;
 
 /// A gain in log-likelihood on frames that the fit has not seen.
@@ -103,7 +105,7 @@ type Fold = (Vec<usize>, Total);
 impl<'a> Evidence<'a> {
     /// `base` is where the model is, in the coordinates of the effects' columns; the tolerances' are behind them.
     pub(crate) fn new(system: &'a System, base: DVector<f64>) -> Self {
-        let size = system.frames.first().map_or(base.len(), |sums| sums.g.len());
+        let size = system.size;
         let count = system.frames.len();
         let folds = FOLDS.min(count).max(1);
         let fold = |is_left_out: &dyn Fn(usize) -> bool| -> Fold {
@@ -113,7 +115,8 @@ impl<'a> Evidence<'a> {
             (left_out, total)
         };
         let total = Total::of(system.frames.iter(), size, base.len());
-        let stretches = (0..folds).map(|index| fold(&|frame| frame * folds / count == index)).collect();
+        let stretches =
+            (0..folds).map(|index| fold(&|frame| stretch(frame, count, folds) == index)).collect();
         let runs = (0..folds).map(|index| fold(&|frame| frame / RUN % folds == index)).collect();
         Self { system, base, total, stretches, runs }
     }
@@ -161,8 +164,7 @@ impl<'a> Evidence<'a> {
         for (left_out, others) in if over_time { &self.runs } else { &self.stretches } {
             let delta = others.fit_beside(free, &drawn_to, &-&self.base)?.delta;
             for &frame in left_out {
-                let sums = &self.system.frames[frame];
-                frames[frame] = sums.g.dot(&delta) - 0.5 * delta.dot(&(&sums.a * &delta));
+                frames[frame] = self.system.frames[frame].gain(&delta);
             }
         }
         let delta = self.fit(free)?.delta;
@@ -174,7 +176,7 @@ impl<'a> Evidence<'a> {
     /// (sandwich estimators).
     pub(crate) fn covariances(&self, fit: &Fit) -> [DMatrix<f64>; 2] {
         let scores = |sums: &'a [Sums]| -> Vec<DVector<f64>> {
-            let score = |sums: &Sums| self.total.projected(&(&sums.g - &sums.a * &fit.delta), &fit.free);
+            let score = |sums: &Sums| self.total.projected(&sums.score(&fit.delta), &fit.free);
             sums.iter().map(score).collect()
         };
         let tolerances = self.total.tolerance_scatter(&fit.free);
@@ -292,31 +294,29 @@ fn independent(scores: &[DVector<f64>], size: usize) -> DMatrix<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::Noise;
+    use crate::testing::{Noise, system_of};
+
+    type Equations = (DMatrix<f64>, DVector<f64>);
 
     /// Frames with 20 rows each of two columns; all rows of a frame share an error of their own besides.
-    fn system(seed: u64, truth: [f64; 2], shared: f64) -> System {
+    fn frames(seed: u64, truth: [f64; 2], shared: f64) -> Vec<Equations> {
         let mut noise = Noise(seed);
-        let frame = |noise: &mut Noise| {
+        let mut frame = || {
             let common = shared * noise.next();
-            let mut sums = Sums { a: DMatrix::zeros(2, 2), g: DVector::zeros(2) };
+            let (mut a, mut g) = (DMatrix::zeros(2, 2), DVector::zeros(2));
             for _ in 0..20 {
                 let row = DVector::from_vec(vec![1.0 + 0.3 * noise.next(), noise.next()]);
                 let residual = row.dot(&DVector::from_vec(truth.to_vec())) + common + noise.next();
-                sums.a.ger(1.0, &row, &row, 1.0);
-                sums.g += residual * row;
+                a.ger(1.0, &row, &row, 1.0);
+                g += residual * row;
             }
-            sums
+            (a, g)
         };
-        let frames: Vec<Sums> = (0..45).map(|_| frame(&mut noise)).collect();
-        System {
-            cells: frames.clone(),
-            views: frames.clone(),
-            frames,
-            sigmas: std::collections::BTreeMap::new(),
-            pose_sigmas: [1.0; 6],
-            weights: Vec::new(),
-        }
+        (0..45).map(|_| frame()).collect()
+    }
+
+    fn system(seed: u64, truth: [f64; 2], shared: f64) -> System {
+        system_of(frames(seed, truth, shared))
     }
 
     #[test]
@@ -378,14 +378,14 @@ mod tests {
 
     #[test]
     fn what_hardly_shows_is_as_unknown_as_before() {
-        let mut system = system(1, [0.5, 0.0], 0.5);
+        let mut frames = frames(1, [0.5, 0.0], 0.5);
         // The second column changes next to nothing.
-        for sums in &mut system.frames {
-            sums.a.row_mut(1).scale_mut(1e-3);
-            sums.a.column_mut(1).scale_mut(1e-3);
-            sums.g[1] *= 1e-3;
+        for (a, g) in &mut frames {
+            a.row_mut(1).scale_mut(1e-3);
+            a.column_mut(1).scale_mut(1e-3);
+            g[1] *= 1e-3;
         }
-        (system.views, system.cells) = (system.frames.clone(), system.frames.clone());
+        let system = system_of(frames);
         let evidence = Evidence::new(&system, DVector::zeros(2));
         let fit = evidence.fit(&[0, 1]).unwrap();
         assert!(evidence.sigma(&fit, 1) > 0.99 && evidence.sigma(&fit, 0) < 0.1);
@@ -409,15 +409,14 @@ mod tests {
 
     #[test]
     fn an_effect_held_at_neutral_is_taken_out_of_the_model() {
-        let system = system(3, [0.4, 0.0], 0.0);
+        let mut frames = frames(3, [0.4, 0.0], 0.0);
         // The model has the effect already: nothing is left of it.
         let base = DVector::from_vec(vec![0.4, 0.0]);
-        let mut shifted = system.clone();
-        for sums in &mut shifted.frames {
-            sums.g -= &sums.a * &base;
+        for (a, g) in &mut frames {
+            *g -= &*a * &base;
         }
-        shifted.views.clone_from(&shifted.frames);
-        let evidence = Evidence::new(&shifted, base);
+        let system = system_of(frames);
+        let evidence = Evidence::new(&system, base);
         let kept = evidence.held_out(&[0, 1], &[], false).unwrap();
         assert!(
             evidence.held_out(&[1], &[], false).unwrap().over(&kept).value < -50.0,

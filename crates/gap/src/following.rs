@@ -10,6 +10,7 @@ use crate::{
     recording::{Frame, Recording},
     report::Unexplained,
     rows::{Channel, Group},
+    split::stretch,
     unknown::Residuals,
 };
 
@@ -21,6 +22,8 @@ const LEAST_SCORE: f64 = 3.5;
 const LEAST_GAIN: f64 = 8.0;
 /// What is foretold of the odometry is at least this part of what is not, root mean square.
 const LEAST_PART: f64 = 0.5;
+/// And this many times what the model may be off by beside what it explains.
+const BEYOND: f64 = 2.0;
 /// Steps so many before and after one stand for it.
 const AROUND: std::ops::RangeInclusive<usize> = 2..=3;
 /// The odometry's increments.
@@ -51,7 +54,7 @@ pub(crate) fn following(
         };
         let values: Vec<Option<f64>> = residuals.iter().map(value).collect();
         let off = explained.off(Channel::Motion, part) / sigma;
-        all.extend(odometry(&steps, &values, name).filter(|(_, rms)| *rms > 2.0 * off).map(
+        all.extend(odometry(&steps, &values, name).filter(|(_, rms)| *rms > BEYOND * off).map(
             |(r#where, rms)| Unexplained {
                 channel: Channel::Motion.name().to_owned(),
                 r#where,
@@ -119,7 +122,7 @@ impl Follows {
         };
         let found = Self { rms: rms(&|(to, _)| to * slope), left: rms(&|(to, value)| value - to * slope) };
         let count = frames.len();
-        let fold = |frame: usize| frame * FOLDS / count;
+        let fold = |frame: usize| stretch(frame, count, FOLDS);
         let gain = |frame: usize| {
             let others = (0..count).filter(|&other| fold(other) != fold(frame));
             let slope = self::slope(others.map(|other| &frames[other]));

@@ -8,6 +8,7 @@ mod carpet;
 mod columns;
 mod evidence;
 mod explained;
+mod finder;
 mod following;
 pub mod html;
 mod jpeg;
@@ -16,6 +17,7 @@ mod limits;
 mod look;
 mod maps;
 mod measure;
+mod measured;
 mod moving;
 mod naming;
 mod nominal;
@@ -25,6 +27,7 @@ mod placing;
 mod predict;
 mod presence;
 mod profile;
+mod progress;
 mod recording;
 pub mod report;
 mod report_file;
@@ -32,6 +35,7 @@ mod rows;
 mod search;
 mod split;
 mod starting;
+mod sums;
 mod surroundings;
 mod system;
 #[cfg(test)]
@@ -47,8 +51,9 @@ pub use self::{
     judge::ChannelGap,
     measure::MeasureError,
     pictures::{Pictures, PicturesError},
+    progress::Stage,
     recording::{LEAST_FRAMES, PoseSource, Recording, RecordingError},
     report_file::{ReportError, ReportFault},
     rows::Channel,
-    workflow::{Options, Stage},
+    workflow::Options,
 };

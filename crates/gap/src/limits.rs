@@ -131,3 +131,64 @@ fn unseen_reason(recording: &Recording<'_>, effect: &dyn Effect) -> &'static str
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+    use crate::{
+        columns::Column,
+        evidence::Evidence,
+        system::System,
+        testing::{Noise, system_of},
+    };
+
+    /// Forty frames with this much information each on the one column, in which the effect is this large.
+    fn system(seed: u64, information: f64, size: f64) -> System {
+        let mut noise = Noise(seed);
+        let mut frame = || {
+            let score = information * size + information.sqrt() * noise.next();
+            (DMatrix::from_element(1, 1, information), DVector::from_element(1, score))
+        };
+        system_of((0..40).map(|_| frame()).collect())
+    }
+
+    fn pitch() -> Column {
+        let effect = library().iter().position(|effect| effect.id() == "mount_pitch").unwrap();
+        Column { effect, parameter: 0 }
+    }
+
+    /// The limit, and how unlikely what is fitted is chance.
+    fn limit_and_p(seed: u64, information: f64, size: f64) -> (Option<f64>, f64) {
+        let system = system(seed, information, size);
+        let evidence = Evidence::new(&system, DVector::zeros(1));
+        let naming = Naming { evidence: &evidence, columns: &[pitch()] };
+        let fit = evidence.fit(&[0]).unwrap();
+        (limit_of(&naming, 0, &[]), evidence.p_value(&fit, &[0]))
+    }
+
+    #[test]
+    fn an_effect_at_its_limit_is_found_in_nine_recordings_of_ten() {
+        let limits: Vec<f64> = (0..200).filter_map(|seed| limit_and_p(seed, 2.0, 0.0).0).collect();
+        assert_eq!(limits.len(), 200);
+        let limit = limits.iter().sum::<f64>() / 200.0;
+        let size = pitch().coordinate(limit);
+        let found = (0..400).filter(|&seed| limit_and_p(1000 + seed, 2.0, size).1 < ALPHA).count();
+        assert!((320..=396).contains(&found), "{found} of 400 at {limit}");
+        let half = (0..400).filter(|&seed| limit_and_p(1000 + seed, 2.0, 0.4 * size).1 < ALPHA).count();
+        assert!(half < 160, "{half} of 400 well below it");
+    }
+
+    #[test]
+    fn more_information_lowers_the_limit_to_what_matters_and_no_farther() {
+        let limit = |information: f64| limit_and_p(3, information, 0.0).0.unwrap();
+        assert!((limit(2.0) / limit(8.0) - 2.0).abs() < 0.2, "{} {}", limit(2.0), limit(8.0));
+        assert_eq!(limit(1e7), pitch().parameter().material);
+    }
+
+    #[test]
+    fn what_the_pictures_hardly_tell_of_has_no_limit() {
+        assert_eq!(limit_and_p(3, 1e-3, 0.0).0, None);
+    }
+}

@@ -40,26 +40,23 @@ pub(crate) fn placing(
     columns: &[Column],
 ) -> Result<Option<Model>, MeasureError> {
     let pictures = Pictures::of(recording)?;
-    let Some(as_given) = pictures.placed(model) else { return Ok(None) };
-    let mut best = (as_given, model.clone());
-    let mut is_better = false;
+    let Some(mut best) = pictures.placed(model) else { return Ok(None) };
+    let mut better: Option<Model> = None;
     for _ in 0..ROUNDS {
-        let wanting = best.0.wanting();
+        let wanting = best.wanting();
         if wanting == 0.0 {
             break;
         }
-        let tries = pictures.tries(&best.1, columns);
+        let tries = pictures.tries(better.as_ref().unwrap_or(model), columns);
         let placed: Vec<(Placed, Model)> =
             tries.into_par_iter().filter_map(|model| Some((pictures.placed(&model)?, model))).collect();
-        let Some(found) = placed.into_iter().max_by(|a, b| a.0.score().total_cmp(&b.0.score())) else {
-            break;
-        };
-        if found.0.score() < best.0.score() + 2.0 * BETTER * wanting {
-            break;
-        }
-        (best, is_better) = (found, true);
+        // A piece that is found where it was missed counts twice.
+        let least = best.score() + 2.0 * BETTER * wanting;
+        let found = placed.into_iter().max_by(|a, b| a.0.score().total_cmp(&b.0.score()));
+        let Some((found, model)) = found.filter(|(found, _)| found.score() >= least) else { break };
+        (best, better) = (found, Some(model));
     }
-    Ok(is_better.then_some(best.1))
+    Ok(better)
 }
 
 /// Pieces of line, found and expected, by the field's curves.

@@ -5,6 +5,12 @@ const RUN: usize = 5;
 /// One run of so many is kept for judging.
 const EVERY: usize = 4;
 
+/// Which of so many stretches of a recording, in a row and as long as each other, a frame is in. Frames that are judged by
+/// the others are taken by stretches: those next to each other see the same things, and would tell of each other.
+pub(crate) fn stretch(frame: usize, count: usize, stretches: usize) -> usize {
+    frame * stretches / count
+}
+
 /// Frames by what they are for.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Split {

@@ -5,12 +5,15 @@
 //! with `J̃ = J − P (Pᵀ W P + Λ)⁻¹ Pᵀ W J` and `A = J̃ᵀ W J`: all later fits, tests and comparisons need only the sums
 //! of `A` and `g = J̃ᵀ W r` over some frames, or over some part of the field.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{DMatrix, DVector, Matrix6, Vector6};
 use rayon::prelude::*;
 
-use crate::rows::{Channel, Group, Row};
+use crate::{
+    rows::{Channel, Group, Row},
+    sums::Sums,
+};
 
 /// Residuals beyond this many standard deviations count nothing (Tukey's biweight).
 const TUKEY: f64 = 5.0;
@@ -51,22 +54,11 @@ pub(crate) enum Reference {
     Attitude,
 }
 
-/// `A`, `g` and the sum of squares of some rows.
-#[derive(Debug, Clone)]
-pub(crate) struct Sums {
-    pub(crate) a: DMatrix<f64>,
-    pub(crate) g: DVector<f64>,
-}
-
-impl Sums {
-    fn zero(size: usize) -> Self {
-        Self { a: DMatrix::zeros(size, size), g: DVector::zeros(size) }
-    }
-}
-
 /// The whole system.
 #[derive(Debug, Clone)]
 pub(crate) struct System {
+    /// Number of columns: the effects' and, behind them, the tolerances'.
+    pub(crate) size: usize,
     pub(crate) frames: Vec<Sums>,
     /// The same sums by view: frames in a row from one place show the same errors again and again.
     pub(crate) views: Vec<Sums>,
@@ -88,7 +80,7 @@ impl System {
             frames.iter().zip(&first).map(|(frame, first)| weigh(frame, first, &sigmas)).collect();
         let mut pose_sigmas = pose_sigmas(None, reference);
         for _ in 0..ROUNDS {
-            let sums = by_frame(frames, &weights, size, &pose_sigmas);
+            let (sums, _) = by_frame(frames, &weights, &pose_sigmas);
             let all = solve(&sums, size);
             let left: Vec<Left> = frames
                 .iter()
@@ -103,10 +95,10 @@ impl System {
                 .collect();
             pose_sigmas = self::pose_sigmas(Some(&left), reference);
         }
-        let sums = by_frame(frames, &weights, size, &pose_sigmas);
-        let cells = by_cell(frames, &weights, size, &pose_sigmas);
-        let views = by_view(&sums, views, size);
-        Self { frames: sums, views, cells, sigmas, pose_sigmas, weights }
+        let (sums, projections) = by_frame(frames, &weights, &pose_sigmas);
+        let cells = by_cell(frames, &weights, &projections);
+        let views = by_view(&sums, views);
+        Self { size, frames: sums, views, cells, sigmas, pose_sigmas, weights }
     }
 }
 
@@ -156,45 +148,37 @@ fn prior(sigmas: &[f64; 6]) -> Matrix6<f64> {
 
 /// Least squares over all columns, each held by its prior.
 fn solve(sums: &[Sums], size: usize) -> DVector<f64> {
-    let mut total = Sums::zero(size);
-    for sums in sums {
-        total.a += &sums.a;
-        total.g += &sums.g;
-    }
-    let held = total.a + DMatrix::identity(size, size) * PRIOR;
-    held.cholesky().map_or_else(|| DVector::zeros(size), |held| held.solve(&total.g))
+    let (mut a, mut g) = (DMatrix::identity(size, size) * PRIOR, DVector::zeros(size));
+    sums.iter().for_each(|sums| sums.add_to(&mut a, &mut g));
+    a.cholesky().map_or_else(|| DVector::zeros(size), |held| held.solve(&g))
 }
 
-fn by_frame(frames: &[&FrameRows], weights: &[Vec<f64>], size: usize, pose_sigmas: &[f64; 6]) -> Vec<Sums> {
-    let sums = |(frame, weights): (&&FrameRows, &Vec<f64>)| {
-        let mut sums = Sums::zero(size);
-        add(&mut sums, frame, weights, &projection(frame, weights, size, pose_sigmas));
-        sums
+/// Sums of each frame, and the pose's change in it.
+fn by_frame(
+    frames: &[&FrameRows],
+    weights: &[Vec<f64>],
+    pose_sigmas: &[f64; 6],
+) -> (Vec<Sums>, Vec<Projection>) {
+    let of_frame = |(frame, weights): (&&FrameRows, &Vec<f64>)| {
+        let projection = Projection::new(frame, weights, pose_sigmas);
+        let rows: Vec<usize> = (0..frame.rows.len()).collect();
+        (sums_of(&[Part { frame, weights, projection: &projection, rows }]), projection)
     };
-    frames.par_iter().zip(weights).map(sums).collect()
+    frames.par_iter().zip(weights).map(of_frame).unzip()
 }
 
-/// A frame and some of its rows, by their indices.
-type RowsOfFrame = (usize, Vec<usize>);
-
-fn by_view(frames: &[Sums], views: &[usize], size: usize) -> Vec<Sums> {
+fn by_view(frames: &[Sums], views: &[usize]) -> Vec<Sums> {
     let count = views.iter().max().map_or(0, |last| last + 1);
-    let mut sums = vec![Sums::zero(size); count];
-    for (frame, &view) in frames.iter().zip(views) {
-        sums[view].a += &frame.a;
-        sums[view].g += &frame.g;
-    }
-    sums.retain(|sums| sums.g.iter().any(|value| *value != 0.0));
-    sums
+    let of_view = |view: usize| {
+        let frames = frames.iter().zip(views).filter(move |(_, of)| **of == view);
+        Sums::together(frames.map(|(frame, _)| frame))
+    };
+    (0..count).map(of_view).filter(|sums| !sums.is_empty()).collect()
 }
 
-fn by_cell(frames: &[&FrameRows], weights: &[Vec<f64>], size: usize, pose_sigmas: &[f64; 6]) -> Vec<Sums> {
-    let projections: Vec<_> = frames
-        .par_iter()
-        .zip(weights)
-        .map(|(frame, weights)| projection(frame, weights, size, pose_sigmas))
-        .collect();
-    let mut members: BTreeMap<(i32, i32), Vec<RowsOfFrame>> = BTreeMap::new();
+fn by_cell(frames: &[&FrameRows], weights: &[Vec<f64>], projections: &[Projection]) -> Vec<Sums> {
+    // In each cell the frames that see it, with their rows.
+    let mut members: BTreeMap<(i32, i32), Vec<(usize, Vec<usize>)>> = BTreeMap::new();
     for (index, frame) in frames.iter().enumerate() {
         for (row, _) in frame.rows.iter().enumerate().filter(|(_, row)| row.group.channel != Channel::Motion)
         {
@@ -206,75 +190,96 @@ fn by_cell(frames: &[&FrameRows], weights: &[Vec<f64>], size: usize, pose_sigmas
             }
         }
     }
-    let sums = |lists: &Vec<RowsOfFrame>| {
-        let mut sums = Sums::zero(size);
-        for (frame, rows) in lists {
-            for &row in rows {
-                add_row(&mut sums, frames[*frame], weights[*frame][row], row, &projections[*frame]);
-            }
-        }
-        sums
+    let of_cell = |lists: Vec<(usize, Vec<usize>)>| {
+        let part = |(index, rows): (usize, Vec<usize>)| Part {
+            frame: frames[index],
+            weights: &weights[index],
+            projection: &projections[index],
+            rows,
+        };
+        sums_of(&lists.into_iter().map(part).collect::<Vec<_>>())
     };
-    members.into_values().collect::<Vec<_>>().par_iter().map(sums).collect()
+    members.into_values().collect::<Vec<_>>().into_par_iter().map(of_cell).collect()
 }
 
-/// `(Pᵀ W P + Λ)⁻¹ Pᵀ W J`: the pose's change that imitates each column.
-fn projection(frame: &FrameRows, weights: &[f64], size: usize, pose_sigmas: &[f64; 6]) -> DMatrix<f64> {
-    let mut normal = prior(pose_sigmas);
-    let mut cross = DMatrix::zeros(6, size);
-    for (row, (pose, &weight)) in frame.pose.iter().zip(weights).enumerate() {
-        if weight > 0.0 && frame.rows[row].group.channel == Channel::Geometry {
-            normal.ger(weight, pose, pose, 1.0);
-            for &(column, change) in &frame.jacobian[row] {
-                for axis in 0..6 {
-                    cross[(axis, column)] += weight * change * pose[axis];
+/// `(Pᵀ W P + Λ)⁻¹ Pᵀ W J`: the pose's change that imitates each column, for those that move lines.
+struct Projection {
+    /// In order.
+    columns: Vec<usize>,
+    changes: Vec<Vector6<f64>>,
+}
+
+impl Projection {
+    fn new(frame: &FrameRows, weights: &[f64], pose_sigmas: &[f64; 6]) -> Self {
+        let mut normal = prior(pose_sigmas);
+        let mut cross: BTreeMap<usize, Vector6<f64>> = BTreeMap::new();
+        for (row, (pose, &weight)) in frame.pose.iter().zip(weights).enumerate() {
+            if weight > 0.0 && frame.rows[row].group.channel == Channel::Geometry {
+                normal.ger(weight, pose, pose, 1.0);
+                for &(column, change) in &frame.jacobian[row] {
+                    *cross.entry(column).or_insert_with(Vector6::zeros) += weight * change * pose;
+                }
+            }
+        }
+        // A sum of squares and a prior: positive definite but for rounding.
+        let normal = normal.cholesky();
+        let solve = |right: Vector6<f64>| match &normal {
+            Some(normal) => normal.solve(&right),
+            None => Vector6::zeros(),
+        };
+        let (columns, changes) = cross.into_iter().map(|(column, cross)| (column, solve(cross))).unzip();
+        Self { columns, changes }
+    }
+}
+
+/// Some rows of a frame.
+struct Part<'a> {
+    frame: &'a FrameRows,
+    weights: &'a [f64],
+    projection: &'a Projection,
+    rows: Vec<usize>,
+}
+
+impl Part<'_> {
+    fn counted(&self) -> impl Iterator<Item = usize> {
+        self.rows.iter().copied().filter(|&row| self.weights[row] > 0.0)
+    }
+
+    fn is_line(&self, row: usize) -> bool {
+        self.frame.rows[row].group.channel == Channel::Geometry
+    }
+
+    /// Columns that its rows change with, and those that change with the pose.
+    fn columns(&self) -> BTreeSet<usize> {
+        let plain = self.counted().flat_map(|row| &self.frame.jacobian[row]).map(|(column, _)| *column);
+        let lines = self.counted().any(|row| self.is_line(row));
+        let imitated = self.projection.columns.iter().copied().filter(|_| lines);
+        plain.chain(imitated).collect()
+    }
+}
+
+/// `J̃ᵀ W J` and `J̃ᵀ W r` of some rows of some frames.
+fn sums_of(parts: &[Part<'_>]) -> Sums {
+    let columns: BTreeSet<usize> = parts.iter().flat_map(Part::columns).collect();
+    let mut sums = Sums::zero(columns.into_iter().collect());
+    for part in parts {
+        for row in part.counted() {
+            let (weight, residual) = (part.weights[row], part.frame.residuals[row]);
+            let plain = part.frame.jacobian[row].iter();
+            let plain: Vec<(usize, f64)> =
+                plain.map(|(column, value)| (sums.place(*column), *value)).collect();
+            for &(place, value) in &plain {
+                sums.add(place, value, &plain, weight, residual);
+            }
+            if part.is_line(row) {
+                for (&column, change) in part.projection.columns.iter().zip(&part.projection.changes) {
+                    let place = sums.place(column);
+                    sums.add(place, -change.dot(&part.frame.pose[row]), &plain, weight, residual);
                 }
             }
         }
     }
-    match normal.cholesky() {
-        Some(normal) => {
-            let mut solved = DMatrix::zeros(6, size);
-            for column in 0..size {
-                let right: Vector6<f64> = Vector6::from_iterator(cross.column(column).iter().copied());
-                solved.set_column(column, &normal.solve(&right));
-            }
-            solved
-        }
-        None => cross * 0.0,
-    }
-}
-
-fn add(sums: &mut Sums, frame: &FrameRows, weights: &[f64], projection: &DMatrix<f64>) {
-    for (row, &weight) in weights.iter().enumerate() {
-        add_row(sums, frame, weight, row, projection);
-    }
-}
-
-/// Adds `J̃ᵀ W J` and `J̃ᵀ W r` of one row.
-fn add_row(sums: &mut Sums, frame: &FrameRows, weight: f64, row: usize, projection: &DMatrix<f64>) {
-    if weight <= 0.0 {
-        return;
-    }
-    let (plain, residual) = (&frame.jacobian[row], frame.residuals[row]);
-    let mut put = |column: usize, value: f64| {
-        sums.g[column] += weight * value * residual;
-        for &(other, plain) in plain {
-            sums.a[(column, other)] += weight * value * plain;
-        }
-    };
-    for &(column, value) in plain {
-        put(column, value);
-    }
-    if frame.rows[row].group.channel == Channel::Geometry {
-        for column in 0..projection.ncols() {
-            let imitated: f64 =
-                projection.column(column).iter().zip(frame.pose[row].iter()).map(|(a, b)| a * b).sum();
-            if imitated != 0.0 {
-                put(column, -imitated);
-            }
-        }
-    }
+    sums
 }
 
 /// Weights by Tukey's biweight of what a fit leaves.
@@ -393,10 +398,18 @@ mod tests {
         System::new(&frames.iter().collect::<Vec<_>>(), 2, Reference::Whole, &views)
     }
 
+    /// All sums added up, of all columns.
+    fn whole(sums: &[Sums]) -> (DMatrix<f64>, DVector<f64>) {
+        let (mut a, mut g) = (DMatrix::zeros(2, 2), DVector::zeros(2));
+        sums.iter().for_each(|sums| sums.add_to(&mut a, &mut g));
+        (a, g)
+    }
+
     #[test]
     fn what_a_pose_can_imitate_tells_little_and_what_it_cannot_tells_all() {
         let system = system(&frames(1, 0.01, 0.0));
-        let total = |i: usize| system.frames.iter().map(|sums| sums.a[(i, i)]).sum::<f64>();
+        let whole = whole(&system.frames).0;
+        let total = |i: usize| whole[(i, i)];
         // Without a pose's error both columns would have 1800 rows' information, in their own units 100² and 1.
         let kept = [total(0) / 1e4, total(1)].map(|information| information / (INDEPENDENT * 1800.0 / 0.09));
         assert!(kept[0] < 0.05, "{kept:?}");
@@ -456,7 +469,7 @@ mod tests {
     #[test]
     fn sums_by_frame_view_and_cell_are_of_the_same_rows() {
         let system = system(&frames(4, 0.005, 0.1));
-        let sum = |sums: &[Sums]| sums.iter().map(|sums| sums.g.clone()).sum::<DVector<f64>>();
+        let sum = |sums: &[Sums]| whole(sums).1;
         let (of_frames, of_views, of_cells) = (sum(&system.frames), sum(&system.views), sum(&system.cells));
         assert!((&of_frames - of_views).norm() < 1e-9 * of_frames.norm());
         assert!((&of_frames - of_cells).norm() < 1e-9 * of_frames.norm());

@@ -1,8 +1,15 @@
 //! What tests of several modules make their data of.
 
-use glam::DVec2;
+use std::collections::BTreeMap;
 
-use crate::rows::{Channel, Group, Row};
+use glam::DVec2;
+use nalgebra::{DMatrix, DVector};
+
+use crate::{
+    rows::{Channel, Group, Row},
+    sums::Sums,
+    system::System,
+};
 
 /// Numbers from a fixed linear congruential generator, summed to be nearly normal.
 pub(crate) struct Noise(pub(crate) u64);
@@ -34,4 +41,19 @@ pub(crate) fn row(channel: Channel, part: u8) -> Row {
 /// The green of a block of carpet.
 pub(crate) fn carpet_row(pixel: DVec2, ground: DVec2) -> Row {
     Row { pixel, ground, normal: DVec2::ZERO, half_width_px: 0.0, ..row(Channel::Photometry, 4) }
+}
+
+/// A system of frames with these normal equations; each is a view and a place on the field of its own.
+pub(crate) fn system_of(frames: Vec<(DMatrix<f64>, DVector<f64>)>) -> System {
+    let size = frames[0].1.len();
+    let frames: Vec<Sums> = frames.into_iter().map(|(a, g)| Sums::whole(a, g)).collect();
+    System {
+        size,
+        cells: frames.clone(),
+        views: frames.clone(),
+        frames,
+        sigmas: BTreeMap::new(),
+        pose_sigmas: [1.0; 6],
+        weights: Vec::new(),
+    }
 }

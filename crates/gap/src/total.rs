@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::system::{PRIOR, Sums};
+use crate::{sums::Sums, system::PRIOR};
 
 /// A set of columns fitted to some frames; the other effects are held where they vanish.
 #[derive(Debug, Clone)]
@@ -42,10 +42,7 @@ impl Total {
     /// Of frames, with `parameters` columns of effects before those of the tolerances.
     pub(crate) fn of<'a>(sums: impl Iterator<Item = &'a Sums>, size: usize, parameters: usize) -> Self {
         let (mut a, mut g) = (DMatrix::zeros(size, size), DVector::zeros(size));
-        for sums in sums {
-            a += &sums.a;
-            g += &sums.g;
-        }
+        sums.for_each(|sums| sums.add_to(&mut a, &mut g));
         let count = size - parameters;
         let across = a.view((0, parameters), (parameters, count)).clone_owned();
         let mut tolerances = a.view((parameters, parameters), (count, count)).clone_owned();
@@ -122,8 +119,8 @@ impl Total {
 mod tests {
     use super::*;
 
-    /// Sums of a well-conditioned system: two effects and two tolerances.
-    fn sums() -> Sums {
+    /// A well-conditioned system: two effects and two tolerances.
+    fn equations() -> (DMatrix<f64>, DVector<f64>) {
         let factor = DMatrix::from_row_slice(
             5,
             4,
@@ -133,12 +130,17 @@ mod tests {
             ],
         );
         let residuals = DVector::from_vec(vec![0.5, -1.0, 2.0, 0.3, 1.2]);
-        Sums { a: factor.transpose() * &factor, g: factor.transpose() * residuals }
+        (factor.transpose() * &factor, factor.transpose() * residuals)
+    }
+
+    fn sums() -> Sums {
+        let (a, g) = equations();
+        Sums::whole(a, g)
     }
 
     /// All four columns solved for at once.
     fn at_once(base: &DVector<f64>) -> DVector<f64> {
-        let Sums { a, g } = sums();
+        let (a, g) = equations();
         let held = a + DMatrix::identity(4, 4) * PRIOR;
         let prior = DVector::from_vec(vec![base[0], base[1], 0.0, 0.0]) * PRIOR;
         held.try_inverse().unwrap() * (g - prior)

@@ -11,6 +11,7 @@ use crate::{
     evidence::{Gain, sum_of, two_sided},
     explained::Explained,
     rows::{Channel, Row},
+    split::stretch,
     system::median,
     words,
 };
@@ -217,13 +218,13 @@ fn pattern(
         .fold(0.0, f64::max);
     let mut gains = Vec::with_capacity(count);
     for (index, frame) in binned.iter().enumerate() {
-        let fold = index * FOLDS / count;
+        let fold = stretch(index, count, FOLDS);
         let mut others: BTreeMap<(i32, i32), Bin> = BTreeMap::new();
         for (other, bins) in binned.iter().enumerate() {
             let is_other = match locus {
                 // A time's pattern is judged by the frames next to it, not by other times.
                 Locus::Time => other % 2 != index % 2,
-                _ => other * FOLDS / count != fold,
+                _ => stretch(other, count, FOLDS) != fold,
             };
             if is_other {
                 bins.iter().for_each(|(place, bin)| *others.entry(*place).or_default() += *bin);

@@ -1,56 +1,21 @@
 //! Detect, name, add, until nothing more is found.
 
-use std::{cmp::Ordering, collections::BTreeMap};
-
 use reality_sim_sensor::{Model, library};
 
 use crate::{
     columns::{Column, columns},
     evidence::Evidence,
-    look::Look,
-    measure::{MeasureError, linearise, look_at},
-    naming::{Naming, TELLS_APART, base},
+    finder::Finder,
+    measure::MeasureError,
+    measured::{Measured, SEARCH},
     placing::placing,
+    progress::Stage,
     recording::Recording,
-    rows::Channel,
     split::Split,
-    starting::starting_values,
-    system::{FrameRows, INDEPENDENT, Left, System},
-    tolerance::{Tolerance, tolerances},
-    total::Fit,
 };
 
-/// How far from where they are expected lines are looked for at first and once a model has been moved, as a part of
-/// the picture's width.
-const SEARCH: [f64; 2] = [0.028, 0.014];
 /// No more effects than this are added to a model in one go.
 const MOST_EFFECTS: usize = 6;
-/// Rounds of Gauss and Newton's method after an effect was added.
-const SETTLING: usize = 8;
-/// A model has settled when a step gains less than this in log-likelihood.
-const SETTLED: f64 = 1.0;
-
-/// What a model leaves is off by this part of what it explains.
-const INEXACT: f64 = 0.03;
-/// Residuals beyond this many standard deviations are no measurements.
-const CUT_OFF: f64 = 5.0;
-/// Rows of a channel in the pictures that a mean residual stands for.
-const PICTURE_ROWS: f64 = 3000.0;
-/// Rows of the odometry that it stands for.
-const MOTION_ROWS: f64 = 60.0;
-
-/// What the workflow is doing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
-    /// Looking at the pictures.
-    Measuring,
-    /// Testing every effect.
-    Testing,
-    /// Fitting all effects of the extended model together.
-    Fitting,
-    /// Judging on frames that no fit has seen.
-    Judging,
-}
 
 /// How to work.
 #[derive(Debug, Clone, Default)]
@@ -59,16 +24,6 @@ pub struct Options {
     pub seed: u64,
     /// Effects that are not in the library this time.
     pub without: Vec<String>,
-}
-
-/// A recording measured where a model expects things.
-#[derive(Debug, Clone)]
-pub(crate) struct Measured {
-    pub(crate) model: Model,
-    pub(crate) looks: Vec<Look>,
-    pub(crate) tolerances: Vec<Tolerance>,
-    pub(crate) frames: Vec<FrameRows>,
-    pub(crate) system: System,
 }
 
 /// A model with the effects that were found.
@@ -97,31 +52,6 @@ impl Found {
     /// Effects not in the model that stand for one that is as well.
     pub(crate) fn rivals(&self, effect: usize) -> Vec<usize> {
         self.rivals.iter().filter(|(of, _)| *of == effect).map(|(_, rival)| *rival).collect()
-    }
-}
-
-impl Measured {
-    fn new(
-        recording: &Recording<'_>,
-        model: Model,
-        columns: &[Column],
-        split: &Split,
-        search: f64,
-    ) -> Result<Self, MeasureError> {
-        let search_px = search * f64::from(recording.sequence.setup.camera.width);
-        let looks = look_at(recording, &model, search_px)?;
-        let tolerances = tolerances(&looks);
-        let frames = linearise(recording, &looks, &model, columns, &tolerances)?;
-        let fitted: Vec<&FrameRows> = split.fitted().map(|frame| &frames[frame]).collect();
-        let views = recording.views();
-        let views: Vec<usize> = split.fitted().map(|frame| views[frame]).collect();
-        let size = columns.len() + tolerances.len();
-        let system = System::new(&fitted, size, recording.reference(), &views);
-        Ok(Self { model, looks, tolerances, frames, system })
-    }
-
-    pub(crate) fn evidence(&self, columns: &[Column]) -> Evidence<'_> {
-        Evidence::new(&self.system, base(columns, &self.model))
     }
 }
 
@@ -188,12 +118,6 @@ pub(crate) fn as_given(
     Ok(Found { columns, split, measured, given: Vec::new(), named: Vec::new(), rivals: Vec::new() })
 }
 
-/// Models whose settled fits differ by less, in log-likelihood, leave as little as each other. No model is exact, and what
-/// it is off by grows with what it explains.
-fn apart(explained: f64) -> f64 {
-    (0.5 * TELLS_APART * TELLS_APART).max(INEXACT * explained)
-}
-
 /// The one effect of a set that another set has something else for.
 fn differing(set: &[usize], other: &[usize]) -> Option<(usize, usize)> {
     let of = set.iter().find(|effect| !other.contains(effect))?;
@@ -207,168 +131,9 @@ fn sorted(effects: &[usize]) -> Vec<usize> {
     sorted
 }
 
-struct Finder<'a> {
-    recording: &'a Recording<'a>,
-    columns: &'a [Column],
-    split: &'a Split,
-    progress: &'a dyn Fn(Stage),
-}
-
-impl Finder<'_> {
-    /// The next sets of effects to try, one of which is to be taken: one dropped that no longer holds, one replaced by a
-    /// better one, or one more.
-    fn next_sets(&self, measured: &Measured, given: &[usize], named: &[usize]) -> Vec<Vec<usize>> {
-        let evidence = measured.evidence(self.columns);
-        let naming = Naming { evidence: &evidence, columns: self.columns };
-        let all: Vec<usize> = given.iter().chain(named).copied().collect();
-        let tested = naming.effects().len();
-        let fallen =
-            named.iter().find(|&&effect| naming.case(effect, &all, tested).is_none_or(|case| !case.holds()));
-        if let Some(fallen) = fallen {
-            return vec![named.iter().copied().filter(|effect| effect != fallen).collect()];
-        }
-        if let Some((old, new)) = naming.better(&all, named) {
-            return vec![named.iter().map(|&effect| if effect == old { new } else { effect }).collect()];
-        }
-        naming.next(&all).into_iter().map(|next| named.iter().copied().chain([next]).collect()).collect()
-    }
-
-    /// Settles each of several sets: first the one to take, then those that leave as little. The set to take is the one
-    /// of fewest numbers among those that cannot be told apart, then the one that leaves least.
-    fn closest(
-        &self,
-        measured: &Measured,
-        given: &[usize],
-        sets: Vec<Vec<usize>>,
-    ) -> Result<Vec<(Vec<usize>, Measured)>, MeasureError> {
-        let only = sets.len() == 1;
-        let mut settled = Vec::with_capacity(sets.len());
-        for set in sets {
-            let all: Vec<usize> = given.iter().chain(&set).copied().collect();
-            let model = self.settle(measured.clone(), &all)?;
-            let left = if only { 0.0 } else { self.left(&model, &measured.system) };
-            settled.push((left, set, model));
-        }
-        let least = settled.iter().map(|(left, ..)| *left).fold(f64::INFINITY, f64::min);
-        let apart = if only { 0.0 } else { apart(self.left(measured, &measured.system) - least) };
-        settled.retain(|(left, ..)| *left <= least + apart);
-        let sizes = |set: &[usize]| {
-            self.columns.iter().filter(|column| column.is_size() && set.contains(&column.effect)).count()
-        };
-        settled
-            .sort_by(|a, b| (sizes(&a.1), a.0).partial_cmp(&(sizes(&b.1), b.0)).unwrap_or(Ordering::Equal));
-        Ok(settled.into_iter().map(|(_, set, measured)| (set, measured)).collect())
-    }
-
-    /// Named effects with those that may stand for them: that tied when they were taken, or that the linearised model
-    /// cannot tell from them; of these, those that leave as little once they have settled.
-    fn rivals(
-        &self,
-        measured: &Measured,
-        given: &[usize],
-        named: &[usize],
-        ties: &[(usize, usize)],
-    ) -> Result<Vec<(usize, usize)>, MeasureError> {
-        let evidence = measured.evidence(self.columns);
-        let naming = Naming { evidence: &evidence, columns: self.columns };
-        let all: Vec<usize> = given.iter().chain(named).copied().collect();
-        let left = self.left(measured, &measured.system);
-        let mut rivals = Vec::new();
-        for &effect in named {
-            let tied = ties.iter().filter(|(of, other)| *of == effect && !all.contains(other));
-            let mut others: Vec<usize> = tied.map(|(_, other)| *other).collect();
-            others.extend(naming.rivals(effect, &all));
-            others.sort_unstable();
-            others.dedup();
-            if others.is_empty() {
-                continue;
-            }
-            let without: Vec<usize> = all.iter().copied().filter(|&other| other != effect).collect();
-            let left_without = self.left(&self.settle(measured.clone(), &without)?, &measured.system);
-            for rival in others {
-                let set: Vec<usize> = without.iter().copied().chain([rival]).collect();
-                let settled = self.settle(measured.clone(), &set)?;
-                if self.left(&settled, &measured.system) < left + apart(left_without - left) {
-                    rivals.push((effect, rival));
-                }
-            }
-        }
-        Ok(rivals)
-    }
-
-    /// What a settled model leaves, minus log-likelihood: residuals in the standard deviations of one system, cut off
-    /// where they are no measurement, and what tolerances have to be.
-    fn left(&self, measured: &Measured, system: &System) -> f64 {
-        let evidence = measured.evidence(self.columns);
-        let Some(fit) = evidence.as_it_is() else { return f64::INFINITY };
-        let strain = 0.5 * fit.delta.norm_squared();
-        let mut means: BTreeMap<(Channel, u8), (f64, f64)> = BTreeMap::new();
-        for (frame, weights) in self.split.fitted().zip(&measured.system.weights) {
-            let rows = &measured.frames[frame];
-            let left = Left::new(rows, weights, &fit.delta, &system.pose_sigmas);
-            for (row, residual) in rows.rows.iter().zip(&left.residuals).filter(|(_, left)| left.is_finite())
-            {
-                let key = (row.group.channel, row.group.part);
-                if let Some(sigma) = system.sigmas.get(&key) {
-                    let mean = means.entry(key).or_default();
-                    mean.0 += (residual / sigma).powi(2).min(CUT_OFF * CUT_OFF);
-                    mean.1 += 1.0;
-                }
-            }
-        }
-        // Other models find other numbers of lines: means count, times as many as there are independent.
-        let counted = means.iter().map(|((channel, _), (sum, count))| {
-            let rows = if *channel == Channel::Motion { MOTION_ROWS } else { INDEPENDENT * PICTURE_ROWS };
-            0.5 * rows * sum / count.max(1.0)
-        });
-        counted.sum::<f64>() + strain
-    }
-
-    /// Fits the effects together and measures anew where they put things, until nothing moves.
-    fn settle(&self, mut measured: Measured, effects: &[usize]) -> Result<Measured, MeasureError> {
-        for _ in 0..SETTLING {
-            (self.progress)(Stage::Fitting);
-            let evidence = measured.evidence(self.columns);
-            let naming = Naming { evidence: &evidence, columns: self.columns };
-            let Some(fit) = naming.fit_in_range(effects) else { break };
-            let still = evidence.improvement(&fit) < SETTLED;
-            let model = self.moved(&measured.model, &naming, &fit, effects);
-            (self.progress)(Stage::Measuring);
-            measured = Measured::new(self.recording, model, self.columns, self.split, SEARCH[1])?;
-            if still {
-                break;
-            }
-        }
-        Ok(measured)
-    }
-
-    /// The model with only these effects, at the fitted values.
-    fn moved(&self, model: &Model, naming: &Naming<'_>, fit: &Fit, effects: &[usize]) -> Model {
-        let mut moved = Model::default();
-        for &index in effects {
-            let effect = library()[index];
-            let mut values = model
-                .values(effect.id())
-                .map_or_else(|| starting_values(effect, self.recording), <[f64]>::to_vec);
-            for column in naming.columns_of(&[index]) {
-                values[self.columns[column].parameter] = naming.value(fit, column);
-            }
-            moved = moved.with(effect, values);
-        }
-        moved
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn models_are_apart_by_more_than_what_they_explain_may_be_off_by() {
-        assert_eq!(apart(0.0), 0.5 * TELLS_APART * TELLS_APART);
-        assert!(apart(1000.0) > apart(100.0));
-        assert!(apart(1000.0) < 100.0, "a tenth of what is explained is no tie");
-    }
 
     #[test]
     fn sets_differ_by_one_effect_in_the_place_of_another() {
