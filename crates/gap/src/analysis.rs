@@ -18,6 +18,7 @@ use crate::{
     naming::{Case, Naming},
     nominal::strained,
     passing,
+    progress::Stage,
     recording::{Frame, LEAST_VIEWS, PoseSource, Recording},
     report::{
         EffectReport, Estimate, Gap, Limit, NotFoundReport, PosesReport, Report, Unexplained, Unobservable,
