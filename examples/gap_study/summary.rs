@@ -12,12 +12,16 @@ use crate::{
     run::{Compared, Outcome},
 };
 
+/// Gaps that are a smaller part of what the true effects leave are none to be closed.
+const LEAST_GAP: f64 = 0.02;
+
 /// The tables of `docs/gap.md`.
 pub fn text(outcomes: &[Outcome]) -> String {
     let of = |part: Part| -> Vec<&Outcome> {
         outcomes.iter().filter(|outcome| outcome.task.part == part).collect()
     };
     let mut text = format!("{} runs; rates with Wilson's 95 % intervals.\n", outcomes.len());
+    targets(&mut text, outcomes);
     nulls(&mut text, &of(Part::Nulls));
     singles(&mut text, &of(Part::Singles));
     confusion(&mut text, &of(Part::Singles));
@@ -27,8 +31,7 @@ pub fn text(outcomes: &[Outcome]) -> String {
     full(&mut text, &of(Part::Full));
     let all: Vec<&Outcome> = outcomes.iter().collect();
     sizes(&mut text, &all);
-    let whole: Vec<&Outcome> = all.iter().copied().filter(|run| run.task.without.is_none()).collect();
-    closing(&mut text, &whole);
+    closing(&mut text, &whole(&all));
     text
 }
 
@@ -72,6 +75,69 @@ fn in_set(outcome: &Outcome, id: &str) -> bool {
     outcome.named.iter().any(|(named, rivals)| named == id || rivals.iter().any(|rival| rival == id))
 }
 
+/// What was asked for, and what was found.
+fn targets(text: &mut String, outcomes: &[Outcome]) {
+    let of = |parts: &[Part]| -> Vec<&Outcome> {
+        outcomes.iter().filter(|run| parts.contains(&run.task.part)).collect()
+    };
+    let clear: Vec<&Outcome> =
+        of(&[Part::Singles]).into_iter().filter(|run| run.task.size >= CLEAR).collect();
+    let (nulls, pairs) = (of(&[Part::Nulls]), of(&[Part::Pairs]));
+    let outside = of(&[Part::Removed, Part::Foreign]);
+    let every: Vec<&Outcome> = outcomes.iter().collect();
+    let sizes: Vec<&Compared> = every.iter().flat_map(|run| &run.estimates).collect();
+    let closed = closed(&whole(&every));
+    let count = |runs: &[&Outcome], is: &dyn Fn(&Outcome) -> bool| {
+        (runs.iter().filter(|run| is(run)).count(), runs.len())
+    };
+    let rows = [
+        ("one effect of three limits or more: named exactly", "≥ 90 %", count(&clear, &is_exact)),
+        ("the same: in the reported set", "≥ 97 %", count(&clear, &has_all)),
+        ("nothing hidden: a name", "≤ 2 %", count(&nulls, &|run| !run.named.is_empty())),
+        ("two effects: both named", "≥ 70 %", count(&pairs, &|run| right(run) == 2)),
+        ("two effects: at least one", "≥ 95 %", count(&pairs, &|run| right(run) >= 1)),
+        ("two effects: a third, wrong one", "≤ 5 %", count(&pairs, &has_wrong)),
+        ("outside the library: unknown or inconclusive", "≥ 90 %", count(&outside, &is_unknown)),
+        ("outside the library: a wrong name for sure", "≤ 5 %", count(&outside, &is_sure)),
+        ("true sizes inside the 95 % interval", "88–99 %", (inside(&sizes), sizes.len())),
+        (
+            "85 % of the gap closed",
+            "all",
+            (closed.iter().filter(|part| **part >= 0.85).count(), closed.len()),
+        ),
+    ];
+    line(text, "\n### What was wanted\n\n| | wanted | found |\n|---|---|---|");
+    for (what, wanted, (hits, runs)) in rows {
+        line(text, &format!("| {what} | {wanted} | {} |", rate(hits, runs)));
+    }
+}
+
+/// Runs in which the library has all of its effects.
+fn whole<'a>(runs: &[&'a Outcome]) -> Vec<&'a Outcome> {
+    runs.iter().copied().filter(|run| run.task.without.is_none()).collect()
+}
+
+fn has_all(run: &Outcome) -> bool {
+    hidden(run).iter().all(|id| in_set(run, id))
+}
+
+/// How many of the names are right.
+fn right(run: &Outcome) -> usize {
+    hidden(run).intersection(&named(run)).count()
+}
+
+fn has_wrong(run: &Outcome) -> bool {
+    named(run).difference(&hidden(run)).count() > 0
+}
+
+fn is_unknown(run: &Outcome) -> bool {
+    matches!(run.verdict, Verdict::Unknown | Verdict::Inconclusive)
+}
+
+fn is_sure(run: &Outcome) -> bool {
+    matches!(run.verdict, Verdict::Named)
+}
+
 fn nulls(text: &mut String, runs: &[&Outcome]) {
     line(text, "\n### Nothing is hidden\n");
     let false_names = runs.iter().filter(|run| !run.named.is_empty()).count();
@@ -83,7 +149,11 @@ fn nulls(text: &mut String, runs: &[&Outcome]) {
     for id in runs.iter().flat_map(|run| named(run)) {
         *wrong.entry(id).or_default() += 1;
     }
-    line(text, &format!("\nNames given: {wrong:?}"));
+    let wrong: Vec<String> = wrong.into_iter().map(|(id, times)| format!("{id} {times}")).collect();
+    line(
+        text,
+        &format!("\nNames given: {}.", if wrong.is_empty() { "none".to_owned() } else { wrong.join(", ") }),
+    );
 }
 
 fn singles(text: &mut String, runs: &[&Outcome]) {
@@ -96,7 +166,7 @@ fn singles(text: &mut String, runs: &[&Outcome]) {
     for size in sizes {
         let runs: Vec<_> = runs.iter().filter(|run| run.task.size == size).collect();
         let exactly = runs.iter().filter(|run| is_exact(run)).count();
-        let in_set = runs.iter().filter(|run| hidden(run).iter().all(|id| in_set(run, id))).count();
+        let in_set = runs.iter().filter(|run| has_all(run)).count();
         let unknown = runs.iter().filter(|run| run.verdict == Verdict::Unknown).count();
         let count = runs.len();
         line(
@@ -114,7 +184,7 @@ fn singles(text: &mut String, runs: &[&Outcome]) {
 fn confusion(text: &mut String, runs: &[&Outcome]) {
     line(
         text,
-        "\n#### What was named, by what was hidden, at three limits and more\n\nThe gap is the median on unseen frames, in noise floors: before, after, and with the true effect in the model where the library has its very parameters.\n\n| hidden | named | before | after | true |\n|---|---|---|---|---|",
+        "\n#### What was named, by what was hidden, at three limits and more\n\nThe gap is the median on unseen frames, in noise floors: before, after, and with the true effect in the model where the library has its very form.\n\n| hidden | named | before | after | true |\n|---|---|---|---|---|",
     );
     let mut rows: BTreeMap<&str, Vec<&Outcome>> = BTreeMap::new();
     for run in runs.iter().filter(|run| run.task.size >= CLEAR) {
@@ -154,18 +224,18 @@ fn answer(run: &Outcome) -> String {
 
 fn pairs(text: &mut String, runs: &[&Outcome]) {
     line(text, "\n### Two effects\n\n| | runs |\n|---|---|");
-    let found = |run: &&&Outcome| hidden(run).intersection(&named(run)).count();
-    let count = runs.len();
-    line(
-        text,
-        &format!("| both named | {} |", rate(runs.iter().filter(|run| found(run) == 2).count(), count)),
-    );
-    line(
-        text,
-        &format!("| at least one | {} |", rate(runs.iter().filter(|run| found(run) >= 1).count(), count)),
-    );
-    let third = runs.iter().filter(|run| named(run).difference(&hidden(run)).count() > 0).count();
-    line(text, &format!("| a third, wrong one | {} |", rate(third, count)));
+    let part = |is: &dyn Fn(&Outcome) -> bool| rate(runs.iter().filter(|run| is(run)).count(), runs.len());
+    line(text, &format!("| both named | {} |", part(&|run| right(run) == 2)));
+    line(text, &format!("| at least one | {} |", part(&|run| right(run) >= 1)));
+    line(text, &format!("| a third, wrong one | {} |", part(&has_wrong)));
+    let missed: Vec<String> = runs
+        .iter()
+        .filter(|run| named(run) != hidden(run))
+        .map(|run| format!("{}: {}", run.task.effects.join(" + "), answer(run)))
+        .collect();
+    if !missed.is_empty() {
+        line(text, &format!("\nNot both and no more: {}.", missed.join("; ")));
+    }
 }
 
 fn unknowns(text: &mut String, title: &str, runs: &[&Outcome]) {
@@ -182,12 +252,10 @@ fn unknowns(text: &mut String, title: &str, runs: &[&Outcome]) {
         }
     }
     let row = |name: &str, runs: &[&Outcome]| {
-        let unknown = |run: &&&Outcome| matches!(run.verdict, Verdict::Unknown | Verdict::Inconclusive);
-        let wrong = |run: &&&Outcome| matches!(run.verdict, Verdict::Named);
-        let silent = |run: &&&Outcome| matches!(run.verdict, Verdict::None);
+        let silent = |run: &Outcome| matches!(run.verdict, Verdict::None);
         let count =
-            |kind: &dyn Fn(&&&Outcome) -> bool| rate(runs.iter().filter(|run| kind(run)).count(), runs.len());
-        format!("| {name} | {} | {} | {} |", count(&unknown), count(&wrong), count(&silent))
+            |kind: &dyn Fn(&Outcome) -> bool| rate(runs.iter().filter(|run| kind(run)).count(), runs.len());
+        format!("| {name} | {} | {} | {} |", count(&is_unknown), count(&is_sure), count(&silent))
     };
     for (id, runs) in &groups {
         line(text, &row(id, runs));
@@ -214,8 +282,6 @@ fn sizes(text: &mut String, runs: &[&Outcome]) {
     for compared in runs.iter().flat_map(|run| &run.estimates) {
         groups.entry(format!("{} {}", compared.effect, compared.parameter)).or_default().push(compared);
     }
-    let inside =
-        |all: &[&Compared]| all.iter().filter(|c| (c.value - c.truth).abs() <= 1.96 * c.sigma).count();
     for (name, all) in &groups {
         line(text, &format!("| {name} | {} |", rate(inside(all), all.len())));
     }
@@ -223,18 +289,29 @@ fn sizes(text: &mut String, runs: &[&Outcome]) {
     line(text, &format!("| all | {} |", rate(inside(&all), all.len())));
 }
 
-fn closing(text: &mut String, runs: &[&Outcome]) {
-    line(
-        text,
-        "\n### The gap\n\nPart of the distance from the gap before to that with the true effects in the model that is closed, on frames that no fit has seen.\n",
-    );
+fn inside(all: &[&Compared]) -> usize {
+    all.iter().filter(|c| (c.value - c.truth).abs() <= 1.96 * c.sigma).count()
+}
+
+/// Of the distance from the gap before to that with the true effects in the model, where there is one, the part that is
+/// closed; in order.
+fn closed(runs: &[&Outcome]) -> Vec<f64> {
     let mut closed: Vec<f64> = runs
         .iter()
         .filter_map(|run| Some((run.gap, run.oracle?)))
-        .filter(|([before, _], oracle)| before - oracle > 0.02 * oracle)
+        .filter(|([before, _], oracle)| before - oracle > LEAST_GAP * oracle)
         .map(|([before, after], oracle)| (before - after) / (before - oracle))
         .collect();
     closed.sort_by(f64::total_cmp);
+    closed
+}
+
+fn closing(text: &mut String, runs: &[&Outcome]) {
+    line(
+        text,
+        "\n### The gap\n\nPart of the distance from the gap before to that with the true effects in the model that is closed, on frames that no fit has seen; where the library has the true effects' very form, and their gap is more than 2 %.\n",
+    );
+    let closed = closed(runs);
     if closed.is_empty() {
         return;
     }

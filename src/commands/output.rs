@@ -11,6 +11,9 @@ use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
+/// Names of values have this much room at least.
+const NAME: usize = 10;
+
 /// Checks that a file can be written under this name later, and that it is none of `inputs`.
 pub fn check_output_file(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<()> {
     let name = path.display();
@@ -67,7 +70,8 @@ pub fn check_distinct(outputs: &[&PathBuf]) -> anyhow::Result<()> {
 
 /// Lines of a name and a value each, the values below each other.
 pub fn aligned(lines: &[(&str, String)]) -> String {
-    lines.iter().map(|(name, value)| format!("{name:10}{value}\n")).collect()
+    let width = lines.iter().map(|(name, _)| name.len() + 1).fold(NAME, usize::max);
+    lines.iter().map(|(name, value)| format!("{name:width$}{value}\n")).collect()
 }
 
 /// Prints one JSON object on standard output.

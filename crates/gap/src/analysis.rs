@@ -110,6 +110,7 @@ pub fn analyse(
     report.summary = words::summary(words::Findings {
         verdict,
         effects: &report.effects,
+        in_model: &report.in_model,
         unexplained: &report.unexplained,
         gap: &report.gap,
         not_found: &report.not_found,

@@ -92,22 +92,22 @@ fn missing_input(recording: &Recording<'_>, effect: &dyn Effect) -> Option<[&'st
     let sharpness = photometry.is_some_and(|p| p.psf_sigma_px.is_some());
     if effect.stage() == Stage::Odometry && sequence.frames.iter().all(|frame| frame.odometry.is_none()) {
         Some([
-            "frames.csv has no odometry",
+            "there is no odometry in frames.csv",
             "write odometry_x_m, odometry_y_m and odometry_yaw_rad into frames.csv",
         ])
     } else if photometric && recording.scene.is_none() {
         Some([
-            "camera.toml does not say how bright lines and carpet are",
+            "nothing in camera.toml says how bright lines and carpet are",
             "write line_linear_rgb and carpet_linear_rgb into [photometry] of camera.toml",
         ])
     } else if effect.id() == "sensor_noise" && !noise {
         Some([
-            "camera.toml does not say how much noise to expect",
+            "nothing in camera.toml says how much noise to expect",
             "write noise_shot and noise_read into [photometry] of camera.toml",
         ])
     } else if ["defocus", "motion_blur"].contains(&effect.id()) && !sharpness {
         Some([
-            "camera.toml does not say how sharp the picture should be",
+            "nothing in camera.toml says how sharp the picture should be",
             "write psf_sigma_px into [photometry] of camera.toml",
         ])
     } else {

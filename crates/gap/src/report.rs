@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use reality_sim_core::field::FieldDimensions;
 use serde::{Deserialize, Serialize};
 
-use crate::judge::ChannelGap;
+use crate::{judge::ChannelGap, words};
 
 /// The answer in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -106,6 +106,24 @@ pub struct NotFoundReport {
     pub p_value: f64,
     /// Gain in log-likelihood on frames that the fit has not seen.
     pub held_out_gain: Estimate,
+}
+
+impl NotFoundReport {
+    /// The limit as a person says it: "0.08°", "4.0 ms".
+    pub fn limit_in_words(&self) -> String {
+        words::limit_in_words(
+            &self.id,
+            &self.parameter,
+            self.detection_limit.value,
+            &self.detection_limit.unit,
+        )
+    }
+}
+
+/// A size of a channel's residuals, in its unit, as a person says it: "0.13 px²", "7.4 %".
+pub fn size_in_words(channel: &str, size: f64, unit: &str) -> String {
+    let (factor, unit) = words::in_channel(channel, unit);
+    format!("{} {unit}", words::digits(factor * size, 3)).trim_end().to_owned()
 }
 
 /// A size with its unit.

@@ -230,7 +230,7 @@ pub trait Effect: Sync + Debug {
         self.about().covariates
     }
 
-    /// Its signature, as one clause: "lines and carpet darken with the square of the distance from …".
+    /// Its signature, as one clause: "lines and carpet darken towards the corners, with the distance from …".
     fn because(&self) -> &'static str {
         self.about().because
     }

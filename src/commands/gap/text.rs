@@ -2,49 +2,43 @@
 
 use std::path::Path;
 
-use reality_sim::gap::report::Report;
+use reality_sim::gap::report::{Report, size_in_words};
 
 use crate::commands::output::aligned;
 
+/// What is left less this part of what was is no change.
+const MOVED: f64 = 0.02;
+
 /// The verdict, the gap, and where the rest is to be read.
 pub fn text(report: &Report, folder: &Path) -> String {
-    let mut lines = Vec::new();
+    let mut lines: Vec<(&str, String)> = Vec::new();
     for effect in &report.effects {
-        let rivals = if effect.confusable_with.is_empty() {
-            String::new()
-        } else {
-            format!(", or {}", effect.confusable_with.join(" or "))
-        };
+        let rivals: String = effect.confusable_with.iter().map(|rival| format!(", or {rival}")).collect();
         lines.push(("found", format!("{}{rivals}: {}", effect.id, effect.size)));
     }
     for unexplained in &report.unexplained {
         lines.push(("unknown", format!("{}: {}", unexplained.channel, unexplained.r#where)));
     }
     for (channel, gap) in &report.gap.channels {
-        let moved =
-            if gap.after < 0.98 * gap.before { format!(" → {:.3}", gap.after) } else { String::new() };
-        lines.push((
-            channel.as_str(),
-            format!("{:.3}{moved} {} (noise {:.3})", gap.before, gap.unit, gap.floor),
-        ));
+        let size = |size: f64| size_in_words(channel, size, &gap.unit);
+        let moved = (gap.before - gap.after).abs() > MOVED * gap.before;
+        let after = if moved { format!(" → {}", size(gap.after)) } else { String::new() };
+        lines.push((channel, format!("{}{after} (noise {})", size(gap.before), size(gap.floor))));
     }
-    let limits: Vec<String> = report
-        .not_found
-        .iter()
-        .map(|effect| {
-            format!("{} {:.2e} {}", effect.id, effect.detection_limit.value, effect.detection_limit.unit)
-        })
-        .collect();
+    let limits = report.not_found.iter().map(|effect| format!("{} {}", effect.id, effect.limit_in_words()));
+    let limits: Vec<String> = limits.collect();
     if !limits.is_empty() {
-        lines.push(("not found", format!("would be from: {}", limits.join(", "))));
+        lines.push(("not found", format!("would have been from: {}", limits.join(", "))));
     }
     for effect in &report.unobservable {
         lines.push(("not seen", format!("{}: {}", effect.id, effect.reason)));
+    }
+    if !report.poses.absorbed.is_empty() {
+        lines.push(("poses", report.poses.absorbed.clone()));
     }
     for file in &report.left_out {
         lines.push(("left out", format!("{file}: the picture is missing or broken")));
     }
     lines.push(("report", folder.join("report.html").display().to_string()));
-    let wide: Vec<(&str, String)> = lines;
-    format!("{}\n{}", report.summary, aligned(&wide))
+    format!("{}\n{}", report.summary, aligned(&lines))
 }

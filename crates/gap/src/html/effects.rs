@@ -1,10 +1,12 @@
 //! All effects with the evidence, as tables.
 
-use super::text::{capital, cell, effect_cell, escape, number, table};
+use reality_sim_sensor::effect as library_effect;
+
+use super::text::{capital, cell, channel_title, effect_cell, escape, number, table};
 use crate::{
     report::{EffectReport, Estimate, Limit, NotFoundReport, Report, Unexplained, Unobservable},
     rows::Channel,
-    words::{digits, in_channel, limit_in_words, percent, probability, with_sigma},
+    words::{digits, in_channel, percent, probability, with_sigma},
 };
 
 /// More are folded.
@@ -90,21 +92,22 @@ fn not_found(effects: &[NotFoundReport]) -> String {
         return String::new();
     }
     let row = |effect: &NotFoundReport| {
-        let limit = &effect.detection_limit;
-        let words = limit_in_words(&effect.id, &effect.parameter, limit.value, &limit.unit);
+        let words = effect.limit_in_words();
+        let recording = library_effect(&effect.id).map_or("", |known| known.recording_that_would_decide());
         format!(
-            "<tr>{}{}{}<td class=\"n\">{}{}</td></tr>",
+            "<tr>{}{}{}<td class=\"n\">{}{}</td>{}</tr>",
             effect_cell(&effect.name, &effect.id),
             number(&probability(effect.p_value)),
             number(&gain(&effect.held_out_gain)),
             escape(&words),
             if words.starts_with(&effect.parameter) { String::new() } else { as_in_model(effect) },
+            cell(&capital(recording)),
         )
     };
     let rows: Vec<String> = effects.iter().map(row).collect();
     format!(
         "<h3>Not found</h3>\n{}",
-        table(&["Effect", ">p", ">Held-out gain", ">Would have been found from"], &rows)
+        table(&["Effect", ">p", ">Held-out gain", ">Would have been found from", "To see less of it"], &rows)
     )
 }
 
@@ -145,7 +148,7 @@ pub(super) fn unexplained(patterns: &[Unexplained]) -> String {
         let (factor, unit) = in_channel(&pattern.channel, &pattern.unit);
         format!(
             "<tr>{}{}{}{}</tr>",
-            cell(&capital(&pattern.channel)),
+            cell(&channel_title(&pattern.channel)),
             cell(&pattern.r#where),
             number(format!("{} {unit}", digits(factor * pattern.size, 2)).trim_end()),
             number(&pattern.p_value.map_or_else(String::new, probability))

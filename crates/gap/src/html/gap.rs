@@ -1,11 +1,14 @@
 //! The gap before and after beside the noise floor, as a table.
 
-use super::text::{capital, cell, escape, number, table};
+use super::text::{cell, channel_title, escape, number, table};
 use crate::{
     report::Gap,
     rows::Channel,
     words::{closed, digits, in_channel, percent},
 };
+
+/// A channel whose gap got smaller by less than this part has nothing added to it.
+const MOVED: f64 = 0.02;
 
 /// Width and height of a bar.
 const BAR: [f64; 2] = [160.0, 12.0];
@@ -23,7 +26,8 @@ pub(super) fn section(gap: &Gap) -> String {
     let rows: Vec<String> = rows.chain([total]).collect();
     format!(
         "<h2>The gap</h2>\n{}<p class=\"quiet\">Root mean squares on frames that no fit has seen. In the bars, grey is \
-         the noise floor, orange what is left of the gap, green what was closed.</p>\n",
+         the noise floor, orange what is left of the gap, green what was closed. Nominal values within their tolerance, patches of carpet and worn lines lie above \
+         the floor as well: only what is listed under Unexplained is more than that.</p>\n",
         table(&["Channel", ">Before", ">After", ">Noise floor", "Unit", ">Closed", ""], &rows)
     )
 }
@@ -32,12 +36,12 @@ fn row(class: &str, channel: &str, sizes: [f64; 3], (factor, unit): (f64, &str))
     let [before, after, floor] = sizes;
     // The floor of odometry is what is left of it: to say how much is closed would say nothing.
     let part = closed(before, after, floor)
-        .filter(|_| channel != Channel::Motion.name())
+        .filter(|_| channel != Channel::Motion.name() && (before - after).abs() > MOVED * before)
         .map_or_else(|| "–".to_owned(), |part| percent(part).replace("−0", "0"));
     let numbers: String = sizes.iter().map(|size| number(&digits(factor * size, 3))).collect();
     format!(
         "<tr class=\"{class}\">{}{numbers}{}{}<td>{}</td></tr>",
-        cell(&capital(channel)),
+        cell(&channel_title(channel)),
         cell(unit),
         number(&part),
         bar(before, after, floor)

@@ -10,7 +10,7 @@ mod text;
 
 use self::{
     maps::Subject,
-    text::{capital, escape},
+    text::{channel_title, escape},
 };
 use crate::{
     judge::ChannelGap,
@@ -26,7 +26,7 @@ pub fn page(report: &Report, pictures: &Pictures) -> String {
     let title = escape(&format!("Gap: {}", report.recording));
     let sections = [
         verdict(report),
-        pictures::section(pictures, report.shown_frame),
+        pictures::section(pictures, report),
         channels(report),
         gap::section(&report.gap),
         effects::section(report),
@@ -60,20 +60,26 @@ fn verdict(report: &Report) -> String {
     )
 }
 
-/// Where residuals are: the channel whose gap was closed most, the others folded.
+/// Where residuals are: the channel whose gap was closed most, the others folded but for those that an effect closes, too.
 fn channels(report: &Report) -> String {
     let Some(first) = most_closed(report) else { return String::new() };
     let others = report.maps.iter().filter(|(channel, _)| **channel != first);
     let folded = others.map(|(channel, maps)| {
-        let name = escape(&capital(channel));
-        format!("<details><summary>{name}</summary>\n{}</details>\n", drawings(report, channel, maps))
+        let name = escape(&channel_title(channel));
+        let open = if report.effects.iter().any(|effect| effect.closes.contains_key(channel)) {
+            " open"
+        } else {
+            ""
+        };
+        format!("<details{open}><summary>{name}</summary>\n{}</details>\n", drawings(report, channel, maps))
     });
     let shown = report.maps.get(first).map(|maps| drawings(report, first, maps)).unwrap_or_default();
-    format!("<h2>Where and when they differ: {}</h2>\n{shown}{}", escape(first), folded.collect::<String>())
+    let title = escape(&channel_title(first));
+    format!("<h2>Where and when they differ: {title}</h2>\n{shown}{}", folded.collect::<String>())
 }
 
-/// By the noise floor.
-fn most_closed(report: &Report) -> Option<&str> {
+/// By the noise floor; of those that are not closed at all the first.
+fn most_closed(report: &Report) -> Option<&'static str> {
     let closed = |channel: &str| {
         let size = |gap: &ChannelGap| (gap.before - gap.after) / gap.floor.max(f64::MIN_POSITIVE);
         report
@@ -84,7 +90,8 @@ fn most_closed(report: &Report) -> Option<&str> {
             .filter(|size| size.is_finite())
             .unwrap_or(f64::NEG_INFINITY)
     };
-    report.maps.keys().map(String::as_str).max_by(|a, b| closed(a).total_cmp(&closed(b)))
+    let drawn = Channel::ALL.iter().rev().map(|channel| channel.name());
+    drawn.filter(|channel| report.maps.contains_key(*channel)).max_by(|a, b| closed(a).total_cmp(&closed(b)))
 }
 
 fn drawings(report: &Report, channel: &str, maps: &Maps) -> String {

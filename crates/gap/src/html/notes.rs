@@ -11,13 +11,15 @@ const READING: &str = "<h2>How to read this page</h2>\n<ul>\
 <li><b>p</b>: how likely chance alone would show as much of an effect. It is corrected for the number of effects that were \
 tested, and its scatter is that from frame to frame: samples of one frame are not independent.</li>\
 <li><b>Held-out gain</b>: by how much the logarithm of the likelihood grows on frames that the fit has not seen; ± is one \
-standard deviation. An effect is named only where the gain is clearly above 0.</li>\
+standard deviation. Below 0, what some frames suggest fails on others.</li>\
+<li><b>Named</b> is an effect where p is below 0.005, the gain is above 4 and more than 2.5 standard deviations above 0, and \
+its size is sure to be one that matters.</li>\
 <li><b>Would have been found from</b>: the size at which an effect that is there is found in nine recordings of ten like \
 this one.</li>\
 <li><b>Gap</b>: measured minus simulated, on frames kept for judging, which no fit has seen. The noise floor is what \
 neighbouring measurements in one picture scatter by, with what errors of the reference poses make; where less is left, it is \
 what is left. Odometry has no neighbours in a picture: its floor is what is left, and no part of it is said to be \
-closed.</li>\
+closed; metres and radians are taken together.</li>\
 <li>Photometry and noise are in percent: 100 times a difference of natural logarithms.</li></ul>\n";
 
 pub(super) fn section(report: &Report) -> String {

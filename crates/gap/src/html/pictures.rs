@@ -3,29 +3,46 @@
 use image::{ExtendedColorType, ImageEncoder, Rgb, RgbImage, codecs::jpeg::JpegEncoder};
 
 use super::text::escape;
-use crate::pictures::Pictures;
+use crate::{pictures::Pictures, report::Report, rows::Channel};
 
 /// Of pictures in the page.
 const JPEG_QUALITY: u8 = 88;
 /// Differences are shown this many times as large.
 const AMPLIFIED: u8 = 4;
 
-/// As recorded, before, after; and what differs.
-pub(super) fn section(pictures: &Pictures, shown_frame: usize) -> String {
+/// As recorded, before, after; and what differs. Where nothing was added to the model, before and after are one.
+pub(super) fn section(pictures: &Pictures, report: &Report) -> String {
     let Pictures { measured, before, after } = pictures;
     let difference = |drawn: &RgbImage, when: &str| {
         let caption = format!("|measured − simulated| × {AMPLIFIED}, {when}");
         figure(&difference(measured, drawn), &caption)
     };
+    let figures = if before == after {
+        format!(
+            "<div class=\"three\">{}{}{}</div>",
+            figure(measured, "as recorded"),
+            figure(before, "simulated with the model as it was given"),
+            difference(before, "model as it was given"),
+        )
+    } else {
+        format!(
+            "<div class=\"three\">{}{}{}</div>\n<div class=\"two\">{}{}</div>",
+            figure(measured, "as recorded"),
+            figure(before, "simulated with the model as it was given"),
+            figure(after, "simulated with the extended model"),
+            difference(before, "model as it was given"),
+            difference(after, "extended model"),
+        )
+    };
+    let colors = if report.gap.channels.contains_key(Channel::Photometry.name()) {
+        ""
+    } else {
+        " Brightness and colours are not: nothing in camera.toml says how bright lines and carpet are."
+    };
     format!(
-        "<h2>The same frame</h2>\n<div class=\"three\">{}{}{}</div>\n<div class=\"two\">{}{}</div>\n\
-         <p class=\"quiet\">Frame {shown_frame} of the recording. Only lines and carpet are compared: \
-         what stands on and around the field does not count.</p>\n",
-        figure(measured, "as recorded"),
-        figure(before, "simulated with the model as it was given"),
-        figure(after, "simulated with the extended model"),
-        difference(before, "model as it was given"),
-        difference(after, "extended model"),
+        "<h2>The same frame</h2>\n{figures}\n<p class=\"quiet\">Frame {} of the recording. Only lines and carpet are \
+         compared: what stands on and around the field does not count.{colors}</p>\n",
+        report.shown_frame
     )
 }
 

@@ -100,7 +100,7 @@ fn report() -> Report {
         in_model: vec![found(all[13])],
         unexplained: vec![Unexplained {
             channel: "sharpness".to_owned(),
-            r#where: "left of the middle, low".to_owned(),
+            r#where: "left of the middle, in the lower part".to_owned(),
             size: 0.131,
             unit: "px2".to_owned(),
             p_value: Some(2e-5),

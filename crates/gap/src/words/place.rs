@@ -2,7 +2,7 @@
 
 use super::number::rounded;
 
-/// Where a cell of the picture's grid lies, cells counted from the upper left: "left of the middle, low".
+/// Where a cell of the picture's grid lies, cells counted from the upper left: "left of the middle, in the lower part".
 pub(crate) fn picture_place(cell: (i32, i32), grid: [usize; 2]) -> String {
     let across = [
         "at the left edge",
@@ -11,7 +11,7 @@ pub(crate) fn picture_place(cell: (i32, i32), grid: [usize; 2]) -> String {
         "right of the middle",
         "at the right edge",
     ];
-    let down = ["at the top", "high", "at half height", "low", "at the bottom"];
+    let down = ["at the top", "in the upper part", "at half height", "in the lower part", "at the bottom"];
     let [column, row] = [fifth(cell.0, grid[0]), fifth(cell.1, grid[1])];
     if (column, row) == (2, 2) { across[2].to_owned() } else { format!("{}, {}", across[column], down[row]) }
 }
@@ -35,7 +35,8 @@ mod tests {
 
     #[test]
     fn cells_of_the_picture_have_names() {
-        let names = [((0, 0), "at the left edge, at the top"), ((2, 4), "left of the middle, low")];
+        let names =
+            [((0, 0), "at the left edge, at the top"), ((2, 4), "left of the middle, in the lower part")];
         for (cell, name) in names {
             assert_eq!(picture_place(cell, [8, 6]), name);
         }

@@ -22,6 +22,8 @@ pub(crate) struct Findings<'a> {
     pub(crate) verdict: Verdict,
     /// Effects that were found.
     pub(crate) effects: &'a [EffectReport],
+    /// Effects that the model had before.
+    pub(crate) in_model: &'a [EffectReport],
     pub(crate) unexplained: &'a [Unexplained],
     pub(crate) gap: &'a Gap,
     pub(crate) not_found: &'a [NotFoundReport],
@@ -31,7 +33,7 @@ pub(crate) struct Findings<'a> {
 /// The verdict as one to a few sentences.
 pub(crate) fn summary(findings: Findings<'_>) -> String {
     match findings.verdict {
-        Verdict::None => nothing(findings.not_found),
+        Verdict::None => nothing(findings),
         Verdict::Named | Verdict::Confusable => named(findings),
         Verdict::Unknown if findings.effects.is_empty() => unknown(findings.unexplained),
         Verdict::Unknown => format!("{} {}", unknown(findings.unexplained), named(findings)),
@@ -120,7 +122,7 @@ fn unknown(unexplained: &[Unexplained]) -> String {
     sentences.iter().map(|text| sentence(text)).collect::<Vec<String>>().join(" ")
 }
 
-/// "sharpness: in the picture left of the middle, low (0.13 px²)"; without its size where its place has a number.
+/// "sharpness: in the picture left of the middle, in the lower part (0.13 px²)"; without its size where its place has a number.
 fn said(pattern: &Unexplained) -> String {
     let place = &pattern.r#where;
     let amount = if place.contains(" %") { String::new() } else { format!(" ({})", amount(pattern)) };
@@ -133,7 +135,36 @@ fn amount(pattern: &Unexplained) -> String {
     format!("{} {unit}", digits(factor * pattern.size, 2)).trim_end().to_owned()
 }
 
-fn nothing(not_found: &[NotFoundReport]) -> String {
+/// What is not missing, from which size on, and how many effects nobody could tell of.
+fn nothing(findings: Findings<'_>) -> String {
+    let subject = match findings.in_model {
+        [] => "Nothing is missing".to_owned(),
+        known => {
+            let known: Vec<&str> = known.iter().map(|effect| effect.id.as_str()).collect();
+            format!("Nothing further is missing beside {} of the model", enumerated(&known))
+        }
+    };
+    let shown = match shown_from(findings.not_found) {
+        Some(limits) => format!("{subject}: these frames would have shown {limits}."),
+        None => format!("{subject} that these frames would show."),
+    };
+    std::iter::once(shown).chain(not_judged(findings)).collect::<Vec<String>>().join(" ")
+}
+
+/// "9 of 22 effects cannot be judged, most of them because …".
+fn not_judged(findings: Findings<'_>) -> Option<String> {
+    let unobservable = findings.unobservable;
+    let known = [findings.effects.len(), findings.in_model.len(), findings.not_found.len()];
+    let all = unobservable.len() + known.iter().sum::<usize>();
+    let times = |reason: &str| unobservable.iter().filter(|effect| effect.reason == reason).count();
+    let usual =
+        unobservable.iter().map(|effect| effect.reason.as_str()).max_by_key(|reason| times(reason))?;
+    let most = if times(usual) < unobservable.len() { ", most of them" } else { "" };
+    Some(format!("{} of {all} effects cannot be judged{most} because {usual}.", unobservable.len()))
+}
+
+/// "a loss of light at the corners from 3.0 % on and …".
+fn shown_from(not_found: &[NotFoundReport]) -> Option<String> {
     let mut limits: Vec<(usize, String)> = not_found
         .iter()
         .filter(|effect| effect.detection_limit.value.is_finite())
@@ -147,10 +178,7 @@ fn nothing(not_found: &[NotFoundReport]) -> String {
     limits.sort();
     limits.truncate(LIMITS);
     let limits: Vec<&str> = limits.iter().map(|(_, text)| text.as_str()).collect();
-    if limits.is_empty() {
-        return "Nothing is missing that these frames would show.".to_owned();
-    }
-    format!("Nothing is missing: these frames would have shown {}.", enumerated(&limits))
+    (!limits.is_empty()).then(|| enumerated(&limits))
 }
 
 fn inconclusive(unobservable: &[Unobservable]) -> String {
@@ -262,7 +290,15 @@ mod tests {
 
     fn said(verdict: Verdict, effects: &[EffectReport], unexplained: &[Unexplained]) -> String {
         let gap = gap();
-        summary(Findings { verdict, effects, unexplained, gap: &gap, not_found: &[], unobservable: &[] })
+        summary(Findings {
+            verdict,
+            effects,
+            in_model: &[],
+            unexplained,
+            gap: &gap,
+            not_found: &[],
+            unobservable: &[],
+        })
     }
 
     #[test]
@@ -312,13 +348,13 @@ mod tests {
     fn what_is_unexplained_comes_first() {
         let pattern = Unexplained {
             channel: "sharpness".to_owned(),
-            r#where: "in the picture left of the middle, low".to_owned(),
+            r#where: "in the picture left of the middle, in the lower part".to_owned(),
             size: 0.131,
             unit: "px2".to_owned(),
             p_value: Some(1e-6),
         };
         let sentence = "Something is at work that no effect of the library explains. Sharpness: in the picture left of the \
-                        middle, low (0.13 px²).";
+                        middle, in the lower part (0.13 px²).";
         assert_eq!(said(Verdict::Unknown, &[], std::slice::from_ref(&pattern)), sentence);
         let both = said(Verdict::Unknown, &[vignetting()], &[pattern]);
         assert!(both.starts_with(sentence) && both.contains("The lens darkens"), "{both}");
@@ -347,6 +383,7 @@ mod tests {
         let findings = Findings {
             verdict: Verdict::None,
             effects: &[],
+            in_model: &[],
             unexplained: &[],
             gap: &gap,
             not_found: &limits,
@@ -360,6 +397,23 @@ mod tests {
         assert_eq!(
             summary(Findings { not_found: &[], ..findings }),
             "Nothing is missing that these frames would show."
+        );
+        let blind = |reason: &str| Unobservable {
+            id: "black_level".to_owned(),
+            name: "black".to_owned(),
+            reason: reason.to_owned(),
+            recording_that_would_decide: String::new(),
+        };
+        let unobservable = [blind("it is dark"), blind("it is dark"), blind("nothing moves")];
+        let partly = summary(Findings { unobservable: &unobservable, ..findings });
+        assert!(
+            partly.ends_with("3 of 7 effects cannot be judged, most of them because it is dark."),
+            "{partly}"
+        );
+        let further = summary(Findings { in_model: &[vignetting()], ..findings });
+        assert!(
+            further.starts_with("Nothing further is missing beside vignetting of the model: "),
+            "{further}"
         );
     }
 
@@ -375,6 +429,7 @@ mod tests {
         let findings = Findings {
             verdict: Verdict::Inconclusive,
             effects: &[],
+            in_model: &[],
             unexplained: &[],
             gap: &gap,
             not_found: &[],

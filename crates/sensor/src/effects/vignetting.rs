@@ -21,7 +21,7 @@ const ABOUT: About = About {
         Parameter::shape("bend", "1", [-0.4, 0.4], 0.01),
     ],
     covariates: &[Covariate::Radius, Covariate::Intensity],
-    because: "lines and carpet darken with the square of the distance from the image centre, in every frame",
+    because: "lines and carpet darken towards the corners, with the distance from the image centre, in every frame",
     recording_that_would_decide: "bring the same places of the field into the middle of the picture and into its corners",
 };
 
