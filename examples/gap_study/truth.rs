@@ -20,7 +20,9 @@ pub fn main_size(hidden: &Hidden) -> f64 {
 pub fn parameters(hidden: &Hidden) -> Vec<(&'static str, f64)> {
     match *hidden {
         Hidden::RadialDistortion { k } => {
-            vec![("k1", k[0]), ("k2", k[1]), ("k3", k[2]), ("k4", k[3])]
+            // What is not hidden is no true value to be met.
+            let all = ["k1", "k2", "k3", "k4"].into_iter().zip(k);
+            all.filter(|(_, change)| *change != 0.0).collect()
         }
         Hidden::PrincipalPoint { dx_px, dy_px } => vec![("x_px", dx_px), ("y_px", dy_px)],
         Hidden::FocalLength { scale } => vec![("scale", scale)],

@@ -8,7 +8,7 @@ use crate::{
     columns::Column,
     measure::MeasureError,
     measured::{Measured, SEARCH},
-    naming::{Naming, TELLS_APART},
+    naming::{Case, Naming, TELLS_APART},
     progress::Stage,
     recording::Recording,
     rows::Channel,
@@ -48,21 +48,33 @@ pub(crate) struct Finder<'a> {
 
 impl Finder<'_> {
     /// The next sets of effects to try, one of which is to be taken: one dropped that no longer holds, one replaced by a
-    /// better one, or one more.
-    pub(crate) fn next_sets(&self, measured: &Measured, given: &[usize], named: &[usize]) -> Vec<Vec<usize>> {
+    /// better one, or one more. `is_new` are sets that were not tried: those to which nothing leads but a drop may be again.
+    pub(crate) fn next_sets(
+        &self,
+        measured: &Measured,
+        given: &[usize],
+        named: &[usize],
+        is_new: impl Fn(&[usize]) -> bool,
+    ) -> Vec<Vec<usize>> {
         let evidence = measured.evidence(self.columns);
         let naming = Naming { evidence: &evidence, columns: self.columns };
         let all: Vec<usize> = given.iter().chain(named).copied().collect();
         let tested = naming.effects().len();
+        // One alone was the best there is: it has to lose more to be dropped.
+        let keeps = |case: &Case| case.holds() || (named.len() == 1 && case.stands());
         let fallen =
-            named.iter().find(|&&effect| naming.case(effect, &all, tested).is_none_or(|case| !case.holds()));
+            named.iter().find(|&&effect| naming.case(effect, &all, tested).is_none_or(|case| !keeps(&case)));
         if let Some(fallen) = fallen {
             return vec![named.iter().copied().filter(|effect| effect != fallen).collect()];
         }
-        if let Some((old, new)) = naming.better(&all, named) {
-            return vec![named.iter().map(|&effect| if effect == old { new } else { effect }).collect()];
+        let swapped = |(old, new): (usize, usize)| -> Vec<usize> {
+            named.iter().map(|&effect| if effect == old { new } else { effect }).collect()
+        };
+        if let Some(swap) = naming.better(&all, named).into_iter().map(swapped).find(|set| is_new(set)) {
+            return vec![swap];
         }
-        naming.next(&all).into_iter().map(|next| named.iter().copied().chain([next]).collect()).collect()
+        let added = naming.next(&all).into_iter().map(|next| named.iter().copied().chain([next]).collect());
+        added.filter(|set: &Vec<usize>| is_new(set)).collect()
     }
 
     /// Settles each of several sets: first the one to take, then those that leave as little. The set to take is the one

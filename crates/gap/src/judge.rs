@@ -10,8 +10,8 @@ use crate::{
     measure::{MeasureError, linearise},
     recording::Recording,
     report::Unexplained,
-    rows::{Channel, Row},
-    system::{FrameRows, Left},
+    rows::Channel,
+    system::{FrameRows, Left, weigh},
     workflow::Found,
 };
 
@@ -31,7 +31,7 @@ pub struct ChannelGap {
     pub before: f64,
     /// With the extended model.
     pub after: f64,
-    /// What noise alone makes, from neighbouring measurements in one picture.
+    /// What noise alone makes, from neighbouring measurements in one picture, or neighbouring steps of the odometry.
     pub floor: f64,
     /// Of the three.
     pub unit: String,
@@ -45,7 +45,7 @@ impl Judged {
         let nowhere = DVector::zeros(measured.tolerances.len());
         let sigmas = &measured.system.pose_sigmas;
         let residual = |frame: &FrameRows, pose_sigmas: &[f64; 6]| {
-            let weights = inlier_weights(frame, &measured.system.sigmas);
+            let weights = weigh(frame, &frame.residuals, &measured.system.sigmas);
             Left::new(frame, &weights, &nowhere, pose_sigmas).residuals
         };
         Ok(Self {
@@ -55,21 +55,16 @@ impl Judged {
     }
 }
 
-/// Weights of rows by their group's scatter alone.
-fn inlier_weights(frame: &FrameRows, sigmas: &BTreeMap<(Channel, u8), f64>) -> Vec<f64> {
-    let weight = |(row, residual): (&Row, &f64)| {
-        let sigma = sigmas.get(&(row.group.channel, row.group.part));
-        sigma.filter(|_| residual.is_finite()).map_or(0.0, |sigma| sigma.powi(-2))
-    };
-    frame.rows.iter().zip(&frame.residuals).map(weight).collect()
-}
-
 /// The gap of every channel that was measured, on the judged frames.
 pub(crate) fn gaps(found: &Found, before: &Judged, after: &Judged) -> BTreeMap<Channel, ChannelGap> {
     let mut sums: BTreeMap<Channel, Squares> = BTreeMap::new();
+    let mut last: BTreeMap<(Channel, u8), f64> = BTreeMap::new();
+    let mut next = 0;
     for frame in found.split.judged() {
         let rows = &found.measured.frames[frame];
-        let mut last: BTreeMap<(Channel, u8), f64> = BTreeMap::new();
+        // Neighbours are measured in one picture; those of a step are the steps before and after it.
+        last.retain(|(channel, _), _| *channel == Channel::Motion && frame == next);
+        next = frame + 1;
         for (index, row) in rows.rows.iter().enumerate() {
             let key = (row.group.channel, row.group.part);
             let (b, a) = (before.residuals[frame][index], after.residuals[frame][index]);
@@ -116,9 +111,7 @@ impl Squares {
         let mean = |sum: f64| sum / self.count.max(1.0);
         let (before, after) = (mean(self.before).sqrt(), mean(self.after).sqrt());
         let noise = (self.steps / self.pairs.max(1.0) + mean(self.poses)).sqrt();
-        // Odometry has no neighbours in one picture: its floor is what the scatter leaves.
-        let floor = if channel == Channel::Motion { after } else { noise.min(after) };
-        ChannelGap { before, after, floor, unit: channel.unit().to_owned() }
+        ChannelGap { before, after, floor: noise.min(after), unit: channel.unit().to_owned() }
     }
 }
 

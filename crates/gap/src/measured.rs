@@ -9,6 +9,7 @@ use crate::{
     measure::{MeasureError, linearise, look_at},
     naming::base,
     recording::Recording,
+    rows::Channel,
     split::Split,
     system::{FrameRows, System},
     tolerance::{Tolerance, tolerances},
@@ -39,7 +40,11 @@ impl Measured {
         let search_px = search * f64::from(recording.sequence.setup.camera.width);
         let looks = look_at(recording, &model, search_px)?;
         let tolerances = tolerances(&looks);
-        let frames = linearise(recording, &looks, &model, columns, &tolerances)?;
+        let mut frames = linearise(recording, &looks, &model, columns, &tolerances)?;
+        // A step of the odometry to a frame that is kept for judging is not fitted.
+        for frame in split.fitted().filter(|frame| split.is_judged(frame + 1)) {
+            frames[frame].leave_out(Channel::Motion);
+        }
         let fitted: Vec<&FrameRows> = split.fitted().map(|frame| &frames[frame]).collect();
         let views = recording.views();
         let views: Vec<usize> = split.fitted().map(|frame| views[frame]).collect();

@@ -1,7 +1,7 @@
 //! Which effects are missing: one after the other is added while the frames that a fit has not seen get more likely.
 
 use nalgebra::DVector;
-use reality_sim_sensor::{Covariate, library};
+use reality_sim_sensor::{Covariate, Stage, library};
 
 use crate::{
     columns::Column,
@@ -10,7 +10,7 @@ use crate::{
     total::Fit,
 };
 
-/// Sizes that matter are no chance below this.
+/// Sizes that matter are no chance below this; nor is an effect that is the only one once it has settled.
 const LARGE_BY_CHANCE: f64 = 0.05;
 /// An effect is named where it is this unlikely to be chance, corrected for all effects tested.
 pub(crate) const ALPHA: f64 = 0.005;
@@ -49,6 +49,13 @@ impl Case {
     }
 }
 
+impl Case {
+    /// Whether it still speaks for itself, if less than it takes to be named.
+    pub(crate) fn stands(&self) -> bool {
+        self.material && self.p_value < LARGE_BY_CHANCE && self.gain.value > 0.0
+    }
+}
+
 /// The evidence with names.
 pub(crate) struct Naming<'a> {
     pub(crate) evidence: &'a Evidence<'a>,
@@ -78,8 +85,9 @@ impl Naming<'_> {
             self.columns_of(&[effect]).into_iter().filter(|&column| self.columns[column].is_size()).collect();
         let gain = self.gain(&with, &without)?;
         let p_value = if self.is_possible(&fit, &sizes) {
-            let fitted = self.evidence.p_value(&fit, &sizes).min(self.alone(&without, &sizes));
-            if changes_over_time(&[effect]) { fitted.min(self.foretold(&with, &without)) } else { fitted }
+            let together = Some(self.evidence.p_value(&fit, &sizes));
+            let foretold = changes_over_time(&[effect]).then(|| self.foretold(&with, &without));
+            best_of([together, self.alone(&without, &sizes), foretold])
         } else {
             1.0
         };
@@ -87,7 +95,7 @@ impl Naming<'_> {
             effect,
             p_value: (p_value * tested as f64).min(1.0),
             gain,
-            material: p_value < ALPHA && self.is_material(effect, &fit, &sizes),
+            material: p_value < ALPHA && self.is_material(effect, &with, &fit, &sizes),
             fit,
         })
     }
@@ -127,16 +135,16 @@ impl Naming<'_> {
     }
 
     /// The least p-value of one of an effect's sizes alone, corrected for their number: few of them may be at work.
-    fn alone(&self, beside: &[usize], sizes: &[usize]) -> f64 {
+    fn alone(&self, beside: &[usize], sizes: &[usize]) -> Option<f64> {
         if !(2..=TRIED_ALONE).contains(&sizes.len()) {
-            return 1.0;
+            return None;
         }
         let p_value = |&size: &usize| {
             let mut free = self.columns_of(beside);
             free.push(size);
             self.evidence.fit(&free).map_or(1.0, |fit| self.evidence.p_value(&fit, &[size]))
         };
-        sizes.len() as f64 * sizes.iter().map(p_value).fold(1.0, f64::min)
+        Some(sizes.len() as f64 * sizes.iter().map(p_value).fold(1.0, f64::min))
     }
 
     /// What cannot be below none, as a blur, is no effect where it would have to be.
@@ -156,16 +164,29 @@ impl Naming<'_> {
         self.columns[column].value(self.coordinate(fit, column))
     }
 
-    /// Whether sizes that would matter are surely not chance: of a field's five, one may be sure and too small, another large
-    /// and hardly seen.
-    fn is_material(&self, effect: usize, fit: &Fit, sizes: &[usize]) -> bool {
-        let matters = |column: &usize| {
-            let parameter = self.columns[*column].parameter();
-            (self.value(fit, *column) - parameter.neutral).abs() >= parameter.material
+    /// Whether sizes that would matter are surely not chance, together or one alone: of a field's five, one may be sure and
+    /// too small, another large and hardly seen; of noise's two, neither can be told from the other.
+    fn is_material(&self, effect: usize, with: &[usize], fit: &Fit, sizes: &[usize]) -> bool {
+        let matters = |fit: &Fit, column: usize| {
+            let parameter = self.columns[column].parameter();
+            (self.value(fit, column) - parameter.neutral).abs() >= parameter.material
         };
-        let large: Vec<usize> = sizes.iter().copied().filter(matters).collect();
-        let is_sure = || changes_over_time(&[effect]) || self.evidence.p_value(fit, &large) < LARGE_BY_CHANCE;
-        !large.is_empty() && is_sure()
+        let large: Vec<usize> = sizes.iter().copied().filter(|&column| matters(fit, column)).collect();
+        if large.is_empty() {
+            return false;
+        }
+        let alone = |&size: &usize| {
+            let others = sizes.iter().filter(|other| **other != size);
+            let mut free = self.columns_of(with);
+            others.for_each(|other| free.retain(|column| column != other));
+            self.evidence.fit(&free).is_some_and(|fit| {
+                let p_value = sizes.len() as f64 * self.evidence.p_value(&fit, &[size]);
+                matters(&fit, size) && p_value < LARGE_BY_CHANCE
+            })
+        };
+        changes_over_time(&[effect])
+            || self.evidence.p_value(fit, &large) < LARGE_BY_CHANCE
+            || (sizes.len() <= TRIED_ALONE && sizes.iter().any(alone))
     }
 
     /// The effect that speaks most for itself beside those already named, if one does, and behind it those that may stand
@@ -189,8 +210,9 @@ impl Naming<'_> {
         std::iter::once(best).chain(alternatives).map(|case| case.effect).collect()
     }
 
-    /// An effect not named that explains clearly more than one named does, in its place: the old one, the new one.
-    pub(crate) fn better(&self, all: &[usize], named: &[usize]) -> Option<(usize, usize)> {
+    /// Effects not named that explain clearly more than one named does, in its place: the old one, the new one; those that
+    /// gain most come first.
+    pub(crate) fn better(&self, all: &[usize], named: &[usize]) -> Vec<(usize, usize)> {
         let others: Vec<usize> = self.effects().into_iter().filter(|effect| !all.contains(effect)).collect();
         let tries = named.iter().flat_map(|&old| others.iter().map(move |&new| (old, new)));
         let gains = tries.filter_map(|(old, new)| {
@@ -201,7 +223,9 @@ impl Naming<'_> {
             let replaces = gain.score() > TELLS_APART && !self.adds(old, new, &without, others.len());
             replaces.then_some((gain.value, (old, new)))
         });
-        gains.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, pair)| pair)
+        let mut gains: Vec<(f64, (usize, usize))> = gains.collect();
+        gains.sort_by(|a, b| b.0.total_cmp(&a.0));
+        gains.into_iter().map(|(_, pair)| pair).collect()
     }
 
     /// Other effects that explain as much as one of those named does, in its place.
@@ -239,12 +263,43 @@ impl Naming<'_> {
     }
 }
 
-/// Whether one of these effects is another thing at another time.
+/// The least p-value of several tests, corrected for their number.
+fn best_of(tests: [Option<f64>; 3]) -> f64 {
+    let made = tests.iter().flatten();
+    made.clone().count() as f64 * made.fold(1.0, |least: f64, p_value| least.min(*p_value))
+}
+
+/// Whether one of these effects is another thing at another time: a course in pictures, not a rate.
 fn changes_over_time(effects: &[usize]) -> bool {
-    effects.iter().any(|&effect| library()[effect].covariates().contains(&Covariate::Time))
+    let changes = |effect: usize| {
+        let effect = library()[effect];
+        effect.stage() != Stage::Odometry && effect.covariates().contains(&Covariate::Time)
+    };
+    effects.iter().any(|&effect| changes(effect))
 }
 
 /// Where a model is, in the columns' coordinates.
 pub(crate) fn base(columns: &[Column], model: &reality_sim_sensor::Model) -> DVector<f64> {
     DVector::from_iterator(columns.len(), columns.iter().map(|column| column.coordinate_in(model)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_of_several_tests_is_corrected_for_their_number() {
+        assert_eq!(best_of([Some(0.25), None, None]), 0.25);
+        assert_eq!(best_of([Some(0.25), Some(0.125), None]), 0.25);
+        assert_eq!(best_of([Some(0.25), Some(0.125), Some(0.5)]), 0.375);
+    }
+
+    #[test]
+    fn only_the_exposures_course_is_another_thing_at_another_time() {
+        let changing: Vec<&str> = (0..library().len())
+            .filter(|&effect| changes_over_time(&[effect]))
+            .map(|effect| library()[effect].id())
+            .collect();
+        assert_eq!(changing, ["exposure_drift"]);
+    }
 }

@@ -13,6 +13,7 @@ use crate::{
     measure::MeasureError,
     recording::Recording,
     search::search,
+    split::Split,
     starting::{starting_values, with_value},
 };
 
@@ -38,8 +39,9 @@ pub(crate) fn placing(
     recording: &Recording<'_>,
     model: &Model,
     columns: &[Column],
+    split: &Split,
 ) -> Result<Option<Model>, MeasureError> {
-    let pictures = Pictures::of(recording)?;
+    let pictures = Pictures::of(recording, split)?;
     let Some(mut best) = pictures.placed(model) else { return Ok(None) };
     let mut better: Option<Model> = None;
     for _ in 0..ROUNDS {
@@ -94,14 +96,15 @@ struct Pictures<'a> {
 }
 
 impl<'a> Pictures<'a> {
-    fn of(recording: &'a Recording<'a>) -> Result<Self, MeasureError> {
-        let every = recording.frames.len().div_ceil(PICTURES);
+    /// Of those that are fitted: no others are looked at before the end.
+    fn of(recording: &'a Recording<'a>, split: &Split) -> Result<Self, MeasureError> {
+        let every = split.fitted().count().div_ceil(PICTURES).max(1);
         let picture = |index: usize| {
-            let frame = &recording.frames[index * every];
+            let frame = &recording.frames[index];
             Ok((frame.time_s, Texture::pack(&luma(&recording.picture(frame)?.0))))
         };
-        let count = recording.frames.len().div_ceil(every);
-        Ok(Self { recording, pictures: (0..count).map(picture).collect::<Result<_, MeasureError>>()? })
+        let pictures = split.fitted().step_by(every).map(picture).collect::<Result<_, MeasureError>>()?;
+        Ok(Self { recording, pictures })
     }
 
     /// The model with other values of one parameter, or of both of an effect that has two.

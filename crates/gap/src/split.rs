@@ -30,6 +30,11 @@ impl Split {
         self.judged.iter().enumerate().filter(|(_, judged)| !**judged).map(|(frame, _)| frame)
     }
 
+    /// Not where there is no such frame.
+    pub(crate) fn is_judged(&self, frame: usize) -> bool {
+        self.judged.get(frame).copied().unwrap_or(false)
+    }
+
     pub(crate) fn judged(&self) -> impl Iterator<Item = usize> {
         self.judged.iter().enumerate().filter(|(_, judged)| **judged).map(|(frame, _)| frame)
     }

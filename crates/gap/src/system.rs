@@ -45,6 +45,17 @@ pub(crate) struct FrameRows {
     pub(crate) pose: Vec<Vector6<f64>>,
 }
 
+impl FrameRows {
+    /// Compares nothing of a channel.
+    pub(crate) fn leave_out(&mut self, channel: Channel) {
+        for (row, residual) in self.rows.iter().zip(&mut self.residuals) {
+            if row.group.channel == channel {
+                *residual = f64::NAN;
+            }
+        }
+    }
+}
+
 /// Whether poses were measured by something else than the pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Reference {
@@ -176,9 +187,12 @@ fn by_view(frames: &[Sums], views: &[usize]) -> Vec<Sums> {
     (0..count).map(of_view).filter(|sums| !sums.is_empty()).collect()
 }
 
+/// Frames, by their indices, with some of their rows.
+type RowsOfFrames = Vec<(usize, Vec<usize>)>;
+
 fn by_cell(frames: &[&FrameRows], weights: &[Vec<f64>], projections: &[Projection]) -> Vec<Sums> {
     // In each cell the frames that see it, with their rows.
-    let mut members: BTreeMap<(i32, i32), Vec<(usize, Vec<usize>)>> = BTreeMap::new();
+    let mut members: BTreeMap<(i32, i32), RowsOfFrames> = BTreeMap::new();
     for (index, frame) in frames.iter().enumerate() {
         for (row, _) in frame.rows.iter().enumerate().filter(|(_, row)| row.group.channel != Channel::Motion)
         {
@@ -190,7 +204,7 @@ fn by_cell(frames: &[&FrameRows], weights: &[Vec<f64>], projections: &[Projectio
             }
         }
     }
-    let of_cell = |lists: Vec<(usize, Vec<usize>)>| {
+    let of_cell = |lists: RowsOfFrames| {
         let part = |(index, rows): (usize, Vec<usize>)| Part {
             frame: frames[index],
             weights: &weights[index],
@@ -283,7 +297,7 @@ fn sums_of(parts: &[Part<'_>]) -> Sums {
 }
 
 /// Weights by Tukey's biweight of what a fit leaves.
-fn weigh(frame: &FrameRows, residuals: &[f64], sigmas: &BTreeMap<(Channel, u8), f64>) -> Vec<f64> {
+pub(crate) fn weigh(frame: &FrameRows, residuals: &[f64], sigmas: &BTreeMap<(Channel, u8), f64>) -> Vec<f64> {
     let weight = |(row, residual): (&Row, &f64)| {
         let Some(&sigma) = sigmas.get(&key(row.group)) else { return 0.0 };
         let variance = sigma * sigma + row.sigma * row.sigma;

@@ -97,8 +97,6 @@ impl Pattern {
 const LEAST_FRAMES: usize = 6;
 /// A bin's mean is no chance below this, all bins considered; it has to be large besides.
 const LIKELY_CHANCE: f64 = 0.02;
-/// All bins of all patterns, about: what p-values are corrected for.
-const BINS: f64 = 500.0;
 
 /// A frame's residuals after the fit.
 pub(crate) struct Residuals<'a> {
@@ -134,12 +132,13 @@ pub(crate) fn patterns(
     let material = |channel: Channel| material(channel, scale) + explained.most_off(channel);
     let loci = [Locus::Picture, Locus::Field, Locus::Time];
     let pairs = SOURCES.into_iter().flat_map(|source| loci.map(|locus| (source, locus)));
-    pairs
-        .filter_map(|(source, locus)| {
-            pattern(frames, sigmas, (source, locus), material(source.channel), from_s)
-        })
-        .filter(Pattern::is_significant)
-        .collect()
+    let binned: Vec<Binned> =
+        pairs.map(|(source, locus)| Binned::new(frames, sigmas, (source, locus), from_s)).collect();
+    let tested = binned.iter().map(Binned::tested).sum::<usize>() as f64;
+    let found = binned.iter().filter_map(|binned| {
+        binned.pattern(usual_sigma(frames, sigmas, binned.source), material(binned.source.channel), tested)
+    });
+    found.filter(Pattern::is_significant).collect()
 }
 
 /// Rows that are binned together.
@@ -199,75 +198,106 @@ impl std::ops::AddAssign for Bin {
     }
 }
 
-fn pattern(
-    frames: &[Residuals<'_>],
-    sigmas: &BTreeMap<(Channel, u8), f64>,
-    (source, locus): (Source, Locus),
-    material: f64,
-    from_s: f64,
-) -> Option<Pattern> {
-    let channel = source.channel;
-    let binned: Vec<BTreeMap<(i32, i32), Bin>> =
-        frames.iter().map(|frame| bins(frame, sigmas, source, locus, from_s)).collect();
-    let count = frames.len();
-    // Sharper than the mean of a group: patterns are measured in its standard deviations.
-    let sigma = sigmas
-        .iter()
-        .filter(|((group, _), _)| *group == channel)
-        .map(|(_, sigma)| *sigma)
-        .fold(0.0, f64::max);
-    let mut gains = Vec::with_capacity(count);
-    for (index, frame) in binned.iter().enumerate() {
+type Place = (i32, i32);
+
+/// Residuals in bins, frame by frame.
+struct Binned {
+    source: Source,
+    locus: Locus,
+    frames: Vec<BTreeMap<Place, Bin>>,
+    /// All frames together.
+    all: BTreeMap<Place, Bin>,
+}
+
+impl Binned {
+    fn new(
+        frames: &[Residuals<'_>],
+        sigmas: &BTreeMap<(Channel, u8), f64>,
+        (source, locus): (Source, Locus),
+        from_s: f64,
+    ) -> Self {
+        let frames: Vec<BTreeMap<Place, Bin>> =
+            frames.iter().map(|frame| bins(frame, sigmas, source, locus, from_s)).collect();
+        let all = together(frames.iter());
+        Self { source, locus, frames, all }
+    }
+
+    /// How many bins are seen often enough to be tested.
+    fn tested(&self) -> usize {
+        let seen = |place: &&Place| self.frames.iter().filter(|frame| frame.contains_key(place)).count();
+        self.all.keys().filter(|place| seen(place) >= LEAST_FRAMES).count()
+    }
+
+    /// What a frame gains by the means of others.
+    fn gain(&self, index: usize) -> f64 {
+        let count = self.frames.len();
         let fold = stretch(index, count, FOLDS);
-        let mut others: BTreeMap<(i32, i32), Bin> = BTreeMap::new();
-        for (other, bins) in binned.iter().enumerate() {
-            let is_other = match locus {
-                // A time's pattern is judged by the frames next to it, not by other times.
-                Locus::Time => other % 2 != index % 2,
-                _ => stretch(other, count, FOLDS) != fold,
-            };
-            if is_other {
-                bins.iter().for_each(|(place, bin)| *others.entry(*place).or_default() += *bin);
-            }
-        }
-        let gain = frame.iter().map(|(place, bin)| {
+        let others = self.frames.iter().enumerate().filter(|(other, _)| match self.locus {
+            // A time's pattern is judged by the frames next to it, not by other times.
+            Locus::Time => other % 2 != index % 2,
+            _ => stretch(*other, count, FOLDS) != fold,
+        });
+        let others = together(others.map(|(_, bins)| bins));
+        let gain = |(place, bin): (&Place, &Bin)| {
             let mean = others.get(place).map_or(DVec2::ZERO, |others| others.mean(SHRINK));
             mean.dot(bin.score) - 0.5 * mean.dot(bin.information * mean)
-        });
-        gains.push(gain.sum::<f64>());
+        };
+        self.frames[index].iter().map(gain).sum()
     }
-    let mut all: BTreeMap<(i32, i32), Bin> = BTreeMap::new();
-    for bins in &binned {
+
+    /// Root mean square of the tenth of the rows with the largest means, in standard deviations.
+    fn largest(&self) -> f64 {
+        let mut means: Vec<(f64, f64)> =
+            self.all.values().map(|bin| (bin.mean(SHRINK).length(), bin.rows)).collect();
+        means.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let wanted = 0.1 * means.iter().map(|(_, rows)| rows).sum::<f64>();
+        let (mut squares, mut rows) = (0.0, 0.0);
+        for (mean, count) in means {
+            if rows < wanted {
+                squares += mean * mean * count;
+                rows += count;
+            }
+        }
+        f64::sqrt(squares / f64::max(rows, 1.0))
+    }
+
+    /// `tested` bins in all are what p-values are corrected for.
+    fn pattern(&self, sigma: f64, material: f64, tested: f64) -> Option<Pattern> {
+        // Of the places that are no chance the one with the largest mean; where all may be chance, the least likely.
+        let places = self.all.iter().filter_map(|(place, bin)| {
+            let p_value = (tested * p_value(&self.frames, *place)?).min(1.0);
+            let rank = if p_value < LIKELY_CHANCE { 1.0 + bin.mean(SHRINK).length() } else { 1.0 - p_value };
+            Some((rank, p_value, *place))
+        });
+        let (_, p_value, strongest) = places.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let gains: Vec<f64> = (0..self.frames.len()).map(|index| self.gain(index)).collect();
+        Some(Pattern {
+            channel: self.source.channel,
+            locus: self.locus,
+            gain: sum_of(&gains),
+            size: sigma * self.largest(),
+            strongest,
+            p_value,
+            material,
+            strongest_size: sigma * self.all[&strongest].mean(SHRINK).length(),
+        })
+    }
+}
+
+fn together<'a>(frames: impl Iterator<Item = &'a BTreeMap<Place, Bin>>) -> BTreeMap<Place, Bin> {
+    let mut all: BTreeMap<Place, Bin> = BTreeMap::new();
+    for bins in frames {
         bins.iter().for_each(|(place, bin)| *all.entry(*place).or_default() += *bin);
     }
-    let mut means: Vec<(f64, f64, (i32, i32))> =
-        all.iter().map(|(place, bin)| (bin.mean(SHRINK).length(), bin.rows, *place)).collect();
-    means.sort_by(|a, b| b.0.total_cmp(&a.0));
-    // Of the places that are no chance the one with the largest mean; where all may be chance, the least likely.
-    let places = all.iter().filter_map(|(place, bin)| {
-        let p_value = (BINS * p_value(&binned, *place)?).min(1.0);
-        let rank = if p_value < LIKELY_CHANCE { 1.0 + bin.mean(SHRINK).length() } else { 1.0 - p_value };
-        Some((rank, p_value, *place))
-    });
-    let (_, p_value, strongest) = places.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let wanted = 0.1 * means.iter().map(|mean| mean.1).sum::<f64>();
-    let (mut squares, mut rows) = (0.0, 0.0);
-    for (mean, count, _) in &means {
-        if rows < wanted {
-            squares += mean * mean * count;
-            rows += count;
-        }
-    }
-    Some(Pattern {
-        channel,
-        locus,
-        gain: sum_of(&gains),
-        size: sigma * (squares / rows.max(1.0)).sqrt(),
-        strongest,
-        p_value,
-        material,
-        strongest_size: sigma * all[&strongest].mean(SHRINK).length(),
-    })
+    all
+}
+
+/// Residuals are counted in standard deviations of their own groups: that of all rows together, root mean square.
+fn usual_sigma(frames: &[Residuals<'_>], sigmas: &BTreeMap<(Channel, u8), f64>, source: Source) -> f64 {
+    let rows = frames.iter().flat_map(|frame| frame.rows).filter(|row| source.has(row));
+    let squares = rows.filter_map(|row| Some(sigmas.get(&(row.group.channel, row.group.part))?.powi(2)));
+    let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+    f64::sqrt(sum / f64::max(count, 1.0))
 }
 
 /// The median of a channel's measurements.

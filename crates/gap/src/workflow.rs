@@ -75,7 +75,7 @@ pub(crate) fn find(
     }
     // Lines that are not where the model has them are looked for elsewhere; all is compared from there.
     let as_given = measured.model.clone();
-    if let Some(placed) = placing(recording, &as_given, &columns)? {
+    if let Some(placed) = placing(recording, &as_given, &columns, &split)? {
         measured = Measured::new(recording, placed, &columns, &split, SEARCH[0])?;
     }
     // Sets that were tried: swapping must not go round in circles.
@@ -83,8 +83,7 @@ pub(crate) fn find(
     let mut ties = Vec::new();
     while named.len() < MOST_EFFECTS {
         progress(Stage::Testing);
-        let mut sets = finder.next_sets(&measured, &given, &named);
-        sets.retain(|set| !tried.contains(&sorted(set)));
+        let sets = finder.next_sets(&measured, &given, &named, |set| !tried.contains(&sorted(set)));
         let swaps = sets.iter().any(|set| set.len() == named.len());
         let mut closest = finder.closest(&measured, &given, sets)?.into_iter();
         let Some((set, settled)) = closest.next() else { break };

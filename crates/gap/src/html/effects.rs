@@ -5,7 +5,6 @@ use reality_sim_sensor::effect as library_effect;
 use super::text::{capital, cell, channel_title, effect_cell, escape, number, table};
 use crate::{
     report::{EffectReport, Estimate, Limit, NotFoundReport, Report, Unexplained, Unobservable},
-    rows::Channel,
     words::{digits, in_channel, percent, probability, with_sigma},
 };
 
@@ -33,11 +32,9 @@ fn effects(title: &str, effects: &[EffectReport]) -> String {
 
 /// Two rows: the numbers, and below them on what the name rests.
 fn effect(effect: &EffectReport) -> String {
-    // The floor of odometry is what is left of it: to say how much is closed would say nothing.
     let closes: Vec<String> = effect
         .closes
         .iter()
-        .filter(|(channel, _)| *channel != Channel::Motion.name())
         .map(|(channel, part)| format!("<span class=\"one\">{} {}</span>", escape(channel), percent(*part)))
         .collect();
     format!(

@@ -3,7 +3,6 @@
 use super::text::{cell, channel_title, escape, number, table};
 use crate::{
     report::Gap,
-    rows::Channel,
     words::{closed, digits, in_channel, percent},
 };
 
@@ -34,9 +33,8 @@ pub(super) fn section(gap: &Gap) -> String {
 
 fn row(class: &str, channel: &str, sizes: [f64; 3], (factor, unit): (f64, &str)) -> String {
     let [before, after, floor] = sizes;
-    // The floor of odometry is what is left of it: to say how much is closed would say nothing.
     let part = closed(before, after, floor)
-        .filter(|_| channel != Channel::Motion.name() && (before - after).abs() > MOVED * before)
+        .filter(|_| (before - after).abs() > MOVED * before)
         .map_or_else(|| "–".to_owned(), |part| percent(part).replace("−0", "0"));
     let numbers: String = sizes.iter().map(|size| number(&digits(factor * size, 3))).collect();
     format!(

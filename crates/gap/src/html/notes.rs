@@ -18,8 +18,7 @@ its size is sure to be one that matters.</li>\
 this one.</li>\
 <li><b>Gap</b>: measured minus simulated, on frames kept for judging, which no fit has seen. The noise floor is what \
 neighbouring measurements in one picture scatter by, with what errors of the reference poses make; where less is left, it is \
-what is left. Odometry has no neighbours in a picture: its floor is what is left, and no part of it is said to be \
-closed; metres and radians are taken together.</li>\
+what is left. That of the odometry is what neighbouring steps scatter by; metres and radians are taken together.</li>\
 <li>Photometry and noise are in percent: 100 times a difference of natural logarithms.</li></ul>\n";
 
 pub(super) fn section(report: &Report) -> String {

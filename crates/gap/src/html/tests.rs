@@ -224,7 +224,7 @@ fn what_was_not_measured_is_a_dash() {
 #[test]
 fn the_channel_whose_gap_closed_most_is_not_folded() {
     let page = page(&report(), &pictures());
-    assert!(page.contains("<h2>Where and when they differ: photometry</h2>"));
+    assert!(page.contains("<h2>Where and when they differ: Photometry</h2>"));
     assert!(page.contains("<details><summary>Geometry</summary>"));
 }
 
