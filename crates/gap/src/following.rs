@@ -11,6 +11,7 @@ use crate::{
     report::Unexplained,
     rows::{Channel, Group},
     split::stretch,
+    steps::around,
     unknown::Residuals,
 };
 
@@ -24,12 +25,10 @@ const LEAST_GAIN: f64 = 8.0;
 const LEAST_PART: f64 = 0.5;
 /// And this many times what the model may be off by beside what it explains.
 const BEYOND: f64 = 2.0;
-/// Steps so many before and after one stand for it.
-const AROUND: std::ops::RangeInclusive<usize> = 2..=3;
 /// The odometry's increments.
 const PARTS: [(&str, &str); 3] = [("steps forward", "m"), ("steps to the left", "m"), ("turns", "rad")];
 
-/// What these may follow, in the order of [`movement`].
+/// What these may follow, in the order of [`movements`].
 const FOLLOWED: [&str; 3] = ["as the robot walks ahead", "as it turns", "as time goes by"];
 
 /// What a number may follow, and the number, both in its standard deviation.
@@ -67,27 +66,14 @@ pub(crate) fn following(
     all
 }
 
-/// What each step of the odometry may follow: how far the robot walks ahead at about that time, turns, and for how long.
-/// The poses' errors are in the step's own movement and in what it is compared with: those before and after it stand for
-/// it. To the left the camera sways: no odometry knows of that.
+/// What each step of the odometry may follow: how far the robot walks ahead at about that time, turns, and for how long. To
+/// the left the camera sways: no odometry knows of that.
 fn movements(recording: &Recording<'_>, frames: &[&Frame]) -> Vec<Option<[f64; 3]>> {
-    let own: Vec<Option<[f64; 3]>> = frames.iter().map(|frame| movement(recording, frame)).collect();
-    let around = |index: usize| {
-        own[index].as_ref()?;
-        let near = (0..own.len()).filter(|&other| AROUND.contains(&other.abs_diff(index)));
-        let steps: Vec<&[f64; 3]> = near.filter_map(|other| own[other].as_ref()).collect();
-        let mean = |axis: usize| steps.iter().map(|step| step[axis]).sum::<f64>() / steps.len() as f64;
-        (!steps.is_empty()).then(|| [mean(0), mean(1), mean(2)])
+    let followed = |(motion, frame): (Option<Motion2>, &&Frame)| {
+        let Motion2 { forward_m, turn_rad, .. } = motion?;
+        Some([forward_m, turn_rad, frame.step?.until_s - frame.time_s])
     };
-    (0..own.len()).map(around).collect()
-}
-
-/// Forward, turn, and time.
-fn movement(recording: &Recording<'_>, frame: &Frame) -> Option<[f64; 3]> {
-    let step = frame.step?;
-    let at = |time_s: f64| recording.trajectory.at(time_s).planar();
-    let Motion2 { forward_m, turn_rad, .. } = at(frame.time_s).motion_to(at(step.until_s));
-    Some([forward_m, turn_rad, step.until_s - frame.time_s])
+    around(recording, frames).into_iter().zip(frames).map(followed).collect()
 }
 
 /// What the odometry's steps of one kind follow most, in words, and how large that is in their standard deviations.

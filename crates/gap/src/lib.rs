@@ -35,6 +35,7 @@ mod rows;
 mod search;
 mod split;
 mod starting;
+mod steps;
 mod sums;
 mod surroundings;
 mod system;

@@ -2,16 +2,17 @@
 
 use nalgebra::Vector6;
 use rayon::prelude::*;
-use reality_sim_core::sequence::SequenceError;
-use reality_sim_sensor::{Chain, Model, ModelError};
+use reality_sim_core::{pose::Motion2, sequence::SequenceError};
+use reality_sim_sensor::{Chain, Model, ModelError, Stage};
 
 use crate::{
     columns::Column,
     look::{Look, Looking, View, look},
-    predict::{Rounding, pose_gradient},
+    predict::{Rounding, pose_gradient, reported},
     recording::{Frame, Recording},
     rows::{Channel, Context, expected, measured},
     starting::{starting_values, with_value},
+    steps::around,
     system::FrameRows,
     tolerance::Tolerance,
 };
@@ -67,7 +68,8 @@ pub(crate) fn linearise(
         noise: photometry.is_some_and(|p| p.noise_shot.is_some() || p.noise_read.is_some()),
         sharpness: photometry.is_some_and(|p| p.psf_sigma_px.is_some()),
     };
-    let one = |(frame, look): (&Frame, &Look)| {
+    let steps = around(recording, &recording.frames.iter().collect::<Vec<_>>());
+    let one = |((frame, look), about): ((&Frame, &Look), &Option<Motion2>)| {
         let rows = measured(look, frame.step, context);
         let rounding = Rounding::new(&look.noise_steps);
         let expect =
@@ -81,6 +83,17 @@ pub(crate) fn linearise(
             }
         };
         for (column, shifted) in shifted.iter().enumerate() {
+            if columns[column].effect().stage() == Stage::Odometry {
+                if let (Some(step), Some(about)) = (frame.step, about) {
+                    let reported = |chain: &Chain| reported(chain, *about, step.until_s - frame.time_s);
+                    let changes = reported(&shifted.chain).into_iter().zip(reported(&chain));
+                    // Behind all that was seen in the picture.
+                    for (row, (then, now)) in (rows.len() - reported(&chain).len()..).zip(changes) {
+                        put(column, row, (then - now) / shifted.step);
+                    }
+                }
+                continue;
+            }
             // Noise moves the mean of dark places a little: too little to be told from anything else.
             let noise_only = columns[column].effect().id() == "sensor_noise";
             let is_used = |row: usize| !noise_only || rows[row].group.channel == Channel::Noise;
@@ -106,7 +119,7 @@ pub(crate) fn linearise(
             .collect();
         FrameRows { rows, residuals, jacobian, pose }
     };
-    Ok(recording.frames.par_iter().zip(looks).map(one).collect())
+    Ok(recording.frames.par_iter().zip(looks).zip(&steps).map(one).collect())
 }
 
 /// The model with one parameter changed a little.

@@ -122,8 +122,12 @@ impl Rounding {
 /// The odometry that is expected between two times: forward, left, turn.
 pub(crate) fn odometry(view: &View<'_>, until_s: f64) -> [f64; 3] {
     let at = |time_s: f64| view.trajectory.at(time_s + view.chain.clock_s()).planar();
-    let motion = at(view.time_s).motion_to(at(until_s));
-    let Motion2 { forward_m, left_m, turn_rad } = view.chain.odometry(motion, until_s - view.time_s);
+    reported(view.chain, at(view.time_s).motion_to(at(until_s)), until_s - view.time_s)
+}
+
+/// What the odometry makes of a movement: forward, left, turn.
+pub(crate) fn reported(chain: &Chain, motion: Motion2, duration_s: f64) -> [f64; 3] {
+    let Motion2 { forward_m, left_m, turn_rad } = chain.odometry(motion, duration_s);
     [forward_m, left_m, turn_rad]
 }
 
