@@ -145,6 +145,16 @@ fn nulls(text: &mut String, runs: &[&Outcome]) {
     line(text, "| | runs |\n|---|---|");
     line(text, &format!("| a name is given | {} |", rate(false_names, runs.len())));
     line(text, &format!("| unknown is said | {} |", rate(unknown, runs.len())));
+    let inconclusive = runs.iter().filter(|run| run.verdict == Verdict::Inconclusive).count();
+    line(
+        text,
+        &format!(
+            "| nothing is found, and of some effects nothing can be said (inconclusive) | {} |",
+            rate(inconclusive, runs.len())
+        ),
+    );
+    let none = runs.iter().filter(|run| run.verdict == Verdict::None).count();
+    line(text, &format!("| nothing is missing | {} |", rate(none, runs.len())));
     let mut wrong: BTreeMap<&str, usize> = BTreeMap::new();
     for id in runs.iter().flat_map(|run| named(run)) {
         *wrong.entry(id).or_default() += 1;
@@ -242,7 +252,7 @@ fn unknowns(text: &mut String, title: &str, runs: &[&Outcome]) {
     line(
         text,
         &format!(
-            "\n### {title}\n\n| hidden | unknown or inconclusive | a wrong name for sure | nothing said |\n|---|---|---|---|"
+            "\n### {title}\n\n| hidden | unknown or inconclusive | a wrong name for sure | either … or … | nothing said | a name beside unknown |\n|---|---|---|---|---|---|"
         ),
     );
     let mut groups: BTreeMap<&str, Vec<&Outcome>> = BTreeMap::new();
@@ -255,7 +265,10 @@ fn unknowns(text: &mut String, title: &str, runs: &[&Outcome]) {
         let silent = |run: &Outcome| matches!(run.verdict, Verdict::None);
         let count =
             |kind: &dyn Fn(&Outcome) -> bool| rate(runs.iter().filter(|run| kind(run)).count(), runs.len());
-        format!("| {name} | {} | {} | {} |", count(&is_unknown), count(&is_sure), count(&silent))
+        let either = |run: &Outcome| matches!(run.verdict, Verdict::Confusable);
+        let beside = |run: &Outcome| is_unknown(run) && !run.named.is_empty();
+        let cells = [count(&is_unknown), count(&is_sure), count(&either), count(&silent), count(&beside)];
+        format!("| {name} | {} |", cells.join(" | "))
     };
     for (id, runs) in &groups {
         line(text, &row(id, runs));

@@ -42,6 +42,10 @@ pub struct Analysis {
 
 /// Runs the whole workflow: finds the effects that a model misses, adds them, and judges the result. `progress` hears
 /// of every stage.
+///
+/// # Errors
+///
+/// A picture that cannot be read, or a model that is no camera.
 pub fn analyse(
     recording: &Recording<'_>,
     model: &Model,
@@ -111,6 +115,7 @@ pub fn analyse(
         verdict,
         effects: &report.effects,
         in_model: &report.in_model,
+        given: model,
         unexplained: &report.unexplained,
         gap: &report.gap,
         not_found: &report.not_found,
@@ -119,7 +124,12 @@ pub fn analyse(
     Ok(Analysis { report, model: found.measured.model.clone() })
 }
 
-/// The gap of a model as it is, nothing added: what a simulation that has these effects would get wrong.
+/// The gap of a model as it is, nothing added: what a simulation that has these effects would get wrong, in noise floors; on
+/// the frames that [`analyse`] judges on.
+///
+/// # Errors
+///
+/// As of [`analyse`].
 pub fn gap_of(recording: &Recording<'_>, model: &Model, options: &Options) -> Result<Gap, MeasureError> {
     let found = as_given(recording, model, options)?;
     let judged = Judged::new(recording, &found, model)?;
@@ -191,8 +201,7 @@ fn effect_report(
     let plain: Vec<(&'static str, f64, f64)> =
         estimates.iter().map(|(name, estimate)| (*name, estimate.value, estimate.sigma)).collect();
     let rivals = found.rivals(case.effect);
-    let values: Vec<f64> = plain.iter().map(|(_, value, _)| *value).collect();
-    let (name, because) = words::directed(effect, &values);
+    let (name, because) = words::directed(effect, &plain);
     EffectReport {
         id: effect.id().to_owned(),
         name: name.to_owned(),

@@ -27,7 +27,7 @@ pub enum PicturesError {
     #[error(transparent)]
     Model(#[from] ModelError),
     /// The reference pose.
-    #[error("frame {index} cannot be drawn: {source}")]
+    #[error("frame {index} cannot be drawn")]
     Pose {
         /// Of the frame in the recording.
         index: usize,

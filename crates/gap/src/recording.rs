@@ -12,7 +12,7 @@ use reality_sim_sensor::{Trajectory, TrajectoryError};
 
 use crate::{predict::Scene, rows::Step, system::Reference};
 
-/// Fewer frames than this tell nothing: there are as many again for judging.
+/// Fewer frames than this tell nothing: a quarter of them is kept for judging.
 pub const LEAST_FRAMES: usize = 12;
 /// More frames than this are not looked at, but every so many are taken.
 const MOST_FRAMES: usize = 240;
@@ -53,7 +53,7 @@ pub enum RecordingError {
         to: usize,
     },
     /// The reference poses are no way of a camera.
-    #[error("{name}: the reference poses are no way of a camera: {source}")]
+    #[error("{name}: the reference poses are no way of a camera")]
     Trajectory {
         /// The recording.
         name: String,

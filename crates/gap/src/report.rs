@@ -148,7 +148,7 @@ pub struct Unobservable {
     pub recording_that_would_decide: String,
 }
 
-/// Means of residuals on a grid, row by row; not a number (`null`) where nothing was measured.
+/// Medians of residuals on a grid, row by row; not a number (`null`) where nothing was measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Map {
     /// Cells along x.
@@ -163,7 +163,7 @@ pub struct Map {
     pub after: Vec<Option<f64>>,
 }
 
-/// Root mean squares of a channel frame by frame.
+/// Sizes of a channel's residuals frame by frame: 1.4826 times the median of their absolute values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Course {
     /// Times, seconds.

@@ -13,6 +13,10 @@ use crate::light::Light;
 const LEAST_STEPS: usize = 16;
 /// A pixel beyond this many standard deviations there is next to no light.
 const REACH_SIGMAS: f64 = 5.0;
+/// Kernels of more variance are Gaussians: heat would take too many steps.
+const HEAT_PX2: f64 = 100.0;
+/// No kernel reaches farther: pictures end before.
+const LONGEST_REACH: usize = 4096;
 
 /// The picture with each pixel blurred by the variance at its place, pixels² along each axis. Beyond the picture's sides
 /// the light is taken to go on as on them.
@@ -54,22 +58,9 @@ struct Kernel {
 
 impl Kernel {
     fn new(variance_px2: f64) -> Self {
-        let steps = LEAST_STEPS.max((2.0 * variance_px2).ceil() as usize);
-        // Each step moves this share of the light by a pixel to either side.
-        let share = variance_px2 / (2.0 * steps as f64);
-        let reach = (1 + (REACH_SIGMAS * variance_px2.sqrt()).ceil() as usize).min(steps);
-        let mut weights = vec![0.0; reach + 2];
-        weights[0] = 1.0;
-        for _ in 0..steps {
-            let before = weights.clone();
-            for offset in 0..=reach {
-                let inner = before[offset.abs_diff(1)];
-                weights[offset] += share * (inner - 2.0 * before[offset] + before[offset + 1]);
-            }
-        }
-        let sum = weights[0] + 2.0 * weights[1..=reach].iter().sum::<f64>();
-        let weights = weights[..=reach].iter().map(|weight| (weight / sum) as f32).collect();
-        Self { variance_px2, weights }
+        let weights = if variance_px2 > HEAT_PX2 { gaussian(variance_px2) } else { heat(variance_px2) };
+        let sum = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();
+        Self { variance_px2, weights: weights.into_iter().map(|weight| (weight / sum) as f32).collect() }
     }
 
     fn weigh(&self, at: impl Fn(isize) -> Vec3) -> Vec3 {
@@ -78,6 +69,30 @@ impl Kernel {
             sum + weight * (at(offset as isize) + at(-(offset as isize)))
         })
     }
+}
+
+/// What is left of heat in a pixel after it has spread to this variance, and what has come to its neighbours.
+fn heat(variance_px2: f64) -> Vec<f64> {
+    let steps = LEAST_STEPS.max((2.0 * variance_px2).ceil() as usize);
+    // Each step moves this share of the light by a pixel to either side.
+    let share = variance_px2 / (2.0 * steps as f64);
+    let reach = (1 + (REACH_SIGMAS * variance_px2.sqrt()).ceil() as usize).min(steps);
+    let mut weights = vec![0.0; reach + 2];
+    weights[0] = 1.0;
+    for _ in 0..steps {
+        let before = weights.clone();
+        for offset in 0..=reach {
+            let inner = before[offset.abs_diff(1)];
+            weights[offset] += share * (inner - 2.0 * before[offset] + before[offset + 1]);
+        }
+    }
+    weights.truncate(reach + 1);
+    weights
+}
+
+fn gaussian(variance_px2: f64) -> Vec<f64> {
+    let reach = ((REACH_SIGMAS * variance_px2.sqrt()).ceil() as usize).min(LONGEST_REACH);
+    (0..=reach).map(|offset| (-0.5 * (offset * offset) as f64 / variance_px2).exp()).collect()
 }
 
 #[cfg(test)]
@@ -96,6 +111,15 @@ mod tests {
             prop_assert!((sum - 1.0).abs() < 1e-5);
             prop_assert!((second - variance_px2).abs() < 1e-3 * variance_px2 + 1e-6, "{second}");
         }
+    }
+
+    #[test]
+    fn kernels_go_on_where_heat_ends() {
+        let [heat, gaussian] = [HEAT_PX2, HEAT_PX2 + 1e-6].map(Kernel::new);
+        for (heat, gaussian) in heat.weights.iter().zip(&gaussian.weights) {
+            assert!((heat - gaussian).abs() < 2e-4, "{heat} {gaussian}");
+        }
+        assert_eq!(Kernel::new(1e12).weights.len(), LONGEST_REACH + 1);
     }
 
     #[test]

@@ -52,7 +52,7 @@ impl Stage {
 pub enum Role {
     /// The size of the effect: decides whether it is there.
     Size,
-    /// Only changes the effect's form: means nothing where the size is neutral.
+    /// Changes the effect's form, and alone decides nothing.
     Shape,
     /// Given by the recording, never fitted.
     Fixed,

@@ -6,7 +6,7 @@ mod text;
 
 use std::{fs, path::Path};
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
 
@@ -25,10 +25,11 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
     let sequence = Sequence::open(&args.sequence)?;
     let given = args.model.as_deref().map_or_else(|| Ok(Model::default()), Model::read)?;
     // The model may lie where the last report was written: it is read before the folder is written to.
-    create_output_folder(&args.out, &sequence.files)?;
+    refuse_held(args, &given)?;
+    let pictures = sequence.frames.first().map(|_| sequence.image_path(0)).transpose()?;
+    create_output_folder(&args.out, &[sequence.files.clone(), Vec::from_iter(pictures)].concat())?;
     let poses = poses::reference(args, &sequence)?;
-    let recording = Recording::new(&sequence, &poses.poses, poses.source, args.frames.clone())
-        .with_context(|| args.sequence.display().to_string())?;
+    let recording = Recording::new(&sequence, &poses.poses, poses.source, args.frames.clone())?;
     let progress = stages()?;
     let options = Options { seed: args.seed, without: args.without.clone() };
     let analysis = analyse(&recording, &given, &options, &|stage| progress.set_message(words(stage)));
@@ -37,6 +38,14 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
     let pictures = Pictures::new(&recording, &given, &analysis)?;
     write(&args.out, &analysis, &pictures)?;
     if args.json { print_json(&analysis.report) } else { print(&text::text(&analysis.report, &args.out)) }
+}
+
+/// An effect cannot be in the model and out of the library.
+fn refuse_held(args: &GapArgs, given: &Model) -> anyhow::Result<()> {
+    match args.without.iter().find(|id| given.values(id).is_some()) {
+        Some(id) => bail!("--without {id}: the model of --model has it: take it out of that file"),
+        None => Ok(()),
+    }
 }
 
 /// The report's files; `report.json`, by which others know the folder, comes last.

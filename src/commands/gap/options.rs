@@ -20,7 +20,7 @@ pub struct GapArgs {
     /// Only these frames, from 0, the last one not included
     #[arg(long, value_name = "A..B", value_parser = frames)]
     pub frames: Option<Range<usize>>,
-    /// Seed: chooses the frames that are kept for judging
+    /// Seed: chooses which quarter of the frames is kept for judging (0 to 3, then again)
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
     /// Poses that were found in the pictures, as `tag --out` writes them, in place of the sequence's own

@@ -16,6 +16,9 @@ pub fn text(report: &Report, folder: &Path) -> String {
         let rivals: String = effect.confusable_with.iter().map(|rival| format!(", or {rival}")).collect();
         lines.push(("found", format!("{}{rivals}: {}", effect.id, effect.size)));
     }
+    for effect in &report.in_model {
+        lines.push(("in model", format!("{}: {}", effect.id, effect.size)));
+    }
     for unexplained in &report.unexplained {
         lines.push(("unknown", format!("{}: {}", unexplained.channel, unexplained.r#where)));
     }

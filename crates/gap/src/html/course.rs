@@ -74,8 +74,8 @@ const KEY: &str = "<path class=\"before\" d=\"M60 193H85\"/><text x=\"90\" y=\"1
 fn caption(channel: &str, unit: &str) -> String {
     let unit = if unit.is_empty() { String::new() } else { format!(", {unit}") };
     escape(&format!(
-        "{} over time: root mean square of each frame's residuals{unit}",
-        super::text::capital(channel)
+        "{} over time: usual size of each frame's residuals (1.48 times their median){unit}",
+        super::text::channel_title(channel)
     ))
 }
 

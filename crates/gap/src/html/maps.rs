@@ -154,7 +154,7 @@ fn legend(limit: f64, subject: Subject<'_>) -> String {
     svg.push_str(&text(WIDTH, "end", limit));
     let axes = if subject.field.is_some() { " x points to the right, y up." } else { "" };
     format!(
-        "{svg}</svg></figure><figure><p class=\"quiet\">Mean of measured − expected. Beyond the ends the colours stay; \
+        "{svg}</svg></figure><figure><p class=\"quiet\">Middle (median) of measured − expected. Beyond the ends the colours stay; \
          blank: nothing was measured.{axes}</p></figure></div>\n"
     )
 }

@@ -2,7 +2,7 @@
 
 use reality_sim_sensor::Effect;
 
-use super::number::digits;
+use super::number::{Quantity, digits};
 
 /// An effect whose name and signature in the library are those of positive values, with those of negative ones.
 struct Opposite {
@@ -44,10 +44,18 @@ const OPPOSITES: [Opposite; 6] = [
     },
 ];
 
-/// An effect's name and signature with the direction that its values have, in the order of its parameters: "the camera
-/// looks higher than the robot believes" where the library's "lower" is negative.
-pub(crate) fn directed(effect: &dyn Effect, values: &[f64]) -> (&'static str, &'static str) {
-    let negative = values.iter().find(|value| **value != 0.0).is_some_and(|value| *value < 0.0);
+/// An effect's name and signature with the direction of the first of its values that stands out: "the camera looks higher
+/// than the robot believes" where the library's "lower" is negative. Values come with their parameters and standard
+/// deviations.
+pub(crate) fn directed(
+    effect: &dyn Effect,
+    values: &[(&'static str, f64, f64)],
+) -> (&'static str, &'static str) {
+    let stands_out =
+        |(_, value, sigma): &&(&str, f64, f64)| Quantity { value: *value, sigma: *sigma }.stands_out();
+    let decides =
+        values.iter().find(stands_out).or_else(|| values.iter().find(|(_, value, _)| *value != 0.0));
+    let negative = decides.is_some_and(|(_, value, _)| *value < 0.0);
     let opposite = OPPOSITES.iter().find(|opposite| negative && opposite.id == effect.id());
     opposite.map_or((effect.name(), effect.because()), |opposite| (opposite.name, opposite.because))
 }
@@ -115,11 +123,14 @@ mod tests {
     #[test]
     fn names_follow_the_sign() {
         let pitch = effect("mount_pitch").unwrap();
-        assert_eq!(directed(pitch, &[0.01]), (pitch.name(), pitch.because()));
-        assert_eq!(directed(pitch, &[-0.01]).0, "the camera looks higher than the robot believes");
-        assert!(directed(pitch, &[-0.01]).1.starts_with("lines lie too low"));
+        assert_eq!(directed(pitch, &[("pitch_rad", 0.01, 0.001)]), (pitch.name(), pitch.because()));
+        assert_eq!(
+            directed(pitch, &[("pitch_rad", -0.01, 0.001)]).0,
+            "the camera looks higher than the robot believes"
+        );
+        assert!(directed(pitch, &[("pitch_rad", -0.01, 0.001)]).1.starts_with("lines lie too low"));
         let roll = effect("mount_roll").unwrap();
-        assert_eq!(directed(roll, &[-0.01]).0, roll.name());
+        assert_eq!(directed(roll, &[("roll_rad", -0.01, 0.001)]).0, roll.name());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The verdict in a sentence.
 
-use reality_sim_sensor::effect;
+use reality_sim_sensor::{Model, Role, effect};
 
 use super::{
     names::{limit_in_words, noun},
@@ -19,8 +19,9 @@ pub(crate) struct Findings<'a> {
     pub(crate) verdict: Verdict,
     /// Effects that were found.
     pub(crate) effects: &'a [EffectReport],
-    /// Effects that the model had before.
+    /// Effects that the model had before, refitted, and as they were.
     pub(crate) in_model: &'a [EffectReport],
+    pub(crate) given: &'a Model,
     pub(crate) unexplained: &'a [Unexplained],
     pub(crate) gap: &'a Gap,
     pub(crate) not_found: &'a [NotFoundReport],
@@ -29,13 +30,39 @@ pub(crate) struct Findings<'a> {
 
 /// The verdict as one to a few sentences.
 pub(crate) fn summary(findings: Findings<'_>) -> String {
-    match findings.verdict {
+    let verdict = match findings.verdict {
         Verdict::None => nothing(findings),
         Verdict::Named | Verdict::Confusable => named(findings),
         Verdict::Unknown if findings.effects.is_empty() => unknown(findings.unexplained),
-        Verdict::Unknown => format!("{} {}", unknown(findings.unexplained), named(findings)),
+        Verdict::Unknown => format!("{} {UNSURE} {}", unknown(findings.unexplained), named(findings)),
         Verdict::Inconclusive => inconclusive(findings.unobservable),
+    };
+    let refitted = findings.in_model.iter().filter_map(|effect| refitted(effect, findings.given));
+    std::iter::once(verdict).chain(refitted).collect::<Vec<String>>().join(" ")
+}
+
+/// What is not explained may be a part of what was named.
+const UNSURE: &str = "Effects of the library explain a part of it, not for sure while the rest is unknown:";
+/// Sizes that are this many standard deviations from what they were are others.
+const MOVED: f64 = 3.0;
+/// An effect shows where it is no chance below this.
+const SHOWS: f64 = 0.05;
+
+/// An effect of the given model that these frames do not show, or show in another size.
+fn refitted(report: &EffectReport, given: &Model) -> Option<String> {
+    let known = effect(&report.id)?;
+    let (name, size) = (&report.name, &report.size);
+    if report.p_value > SHOWS {
+        return Some(format!("An effect of the model does not show in these frames, {name}: {size}."));
     }
+    let was = given.values(&report.id)?;
+    let moved = known.parameters().iter().zip(was).filter(|(parameter, _)| parameter.role == Role::Size).any(
+        |(parameter, was)| {
+            let now = report.parameters.get(parameter.name);
+            now.is_some_and(|now| (now.value - was).abs() > (MOVED * now.sigma).max(parameter.material))
+        },
+    );
+    moved.then(|| format!("An effect of the model has another size than was given, {name}: {size}."))
 }
 
 /// A sentence for each effect, and what they close.
@@ -289,6 +316,7 @@ mod tests {
             verdict,
             effects,
             in_model: &[],
+            given: &Model::default(),
             unexplained,
             gap: &gap,
             not_found: &[],
@@ -364,11 +392,12 @@ mod tests {
             limit("mount_pitch", 0.0014, "rad"),
             limit("vignetting", 0.03, "1"),
         ];
-        let gap = gap();
+        let (gap, given) = (gap(), Model::default());
         let findings = Findings {
             verdict: Verdict::None,
             effects: &[],
             in_model: &[],
+            given: &given,
             unexplained: &[],
             gap: &gap,
             not_found: &limits,
@@ -403,6 +432,19 @@ mod tests {
     }
 
     #[test]
+    fn effects_of_the_model_that_do_not_show_or_come_out_otherwise_are_told() {
+        let given = Model::default().with(effect("vignetting").unwrap(), [0.42]);
+        let told = |strength: f64, p_value: f64| {
+            let estimate = Estimate { value: strength, sigma: 0.01, unit: None };
+            let parameters = BTreeMap::from([("strength".to_owned(), estimate)]);
+            refitted(&EffectReport { parameters, p_value, ..vignetting() }, &given)
+        };
+        assert_eq!(told(0.43, 1e-9), None);
+        assert!(told(0.55, 1e-9).unwrap().contains("another size"));
+        assert!(told(0.0, 0.7).unwrap().contains("does not show"));
+    }
+
+    #[test]
     fn what_cannot_be_told_comes_with_a_remedy() {
         let shutter = Unobservable {
             id: "rolling_shutter".to_owned(),
@@ -410,11 +452,12 @@ mod tests {
             reason: "the camera hardly moves".to_owned(),
             recording_that_would_decide: "walk with quick turns of the head".to_owned(),
         };
-        let gap = gap();
+        let (gap, given) = (gap(), Model::default());
         let findings = Findings {
             verdict: Verdict::Inconclusive,
             effects: &[],
             in_model: &[],
+            given: &given,
             unexplained: &[],
             gap: &gap,
             not_found: &[],
