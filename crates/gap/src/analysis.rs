@@ -207,7 +207,7 @@ fn effect_report(
         name: name.to_owned(),
         size: words::size_in_words(effect.id(), &plain),
         parameters: estimates.into_iter().map(|(name, estimate)| (name.to_owned(), estimate)).collect(),
-        p_value: case.p_value,
+        p_value: found.p_value(case),
         held_out_gain: gain(case.gain),
         confusable_with: rivals.iter().map(|&rival| library()[rival].id().to_owned()).collect(),
         recording_that_would_decide: rivals

@@ -8,7 +8,7 @@ use crate::{
     columns::Column,
     measure::MeasureError,
     measured::{Measured, SEARCH},
-    naming::{Case, Naming, TELLS_APART},
+    naming::{Naming, TELLS_APART},
     progress::Stage,
     recording::Recording,
     rows::Channel,
@@ -25,8 +25,13 @@ const SETTLED: f64 = 1.0;
 
 /// What a model leaves is off by this part of what it explains.
 const INEXACT: f64 = 0.03;
+/// An effect is missed where the model leaves so much more without it, in log-likelihood: chi-square of three numbers that is
+/// chance in one of 5,000, the level of one of 22 tests.
+const MISSED: f64 = 10.0;
 /// Residuals beyond this many standard deviations are no measurements.
 const CUT_OFF: f64 = 5.0;
+/// What a piece of line that is lost leaves at least.
+const LOST: f64 = 0.5 * INDEPENDENT * CUT_OFF * CUT_OFF;
 /// Rows of a channel in the pictures that a mean residual stands for.
 const PICTURE_ROWS: f64 = 3000.0;
 /// Rows of the odometry that it stands for.
@@ -47,8 +52,55 @@ pub(crate) struct Finder<'a> {
 }
 
 impl Finder<'_> {
-    /// The next sets of effects to try, one of which is to be taken: one dropped that no longer holds, one replaced by a
-    /// better one, or one more. `is_new` are sets that were not tried: those to which nothing leads but a drop may be again.
+    /// The model without an effect that no longer holds, settled, where it leaves hardly more than with it. Large effects may
+    /// seem not to hold once they have settled, as Wald's test loses its power far from none (Hauck and Donner 1977).
+    pub(crate) fn dropped(
+        &self,
+        measured: &Measured,
+        given: &[usize],
+        named: &[usize],
+    ) -> Result<Option<(Vec<usize>, Measured)>, MeasureError> {
+        let evidence = measured.evidence(self.columns);
+        let naming = Naming { evidence: &evidence, columns: self.columns };
+        let all: Vec<usize> = given.iter().chain(named).copied().collect();
+        let tested = naming.effects().len();
+        let falls = |effect: &&usize| naming.case(**effect, &all, tested).is_none_or(|case| !case.holds());
+        for fallen in named.iter().filter(falls) {
+            let others: Vec<usize> = named.iter().copied().filter(|effect| effect != fallen).collect();
+            let without: Vec<usize> = given.iter().chain(&others).copied().collect();
+            let settled = self.settle(measured.clone(), &without)?;
+            // A line that is no longer found is off by more than anything that is.
+            let lost = self.lines(measured) - self.lines(&settled);
+            let left = self.left(&settled, &measured.system) + LOST * lost.max(0.0);
+            if left < self.left(measured, &measured.system) + MISSED {
+                return Ok(Some((others, settled)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Pieces of line that are found.
+    fn lines(&self, measured: &Measured) -> f64 {
+        let pieces = |frame: usize| measured.looks[frame].lines.len();
+        self.split.fitted().map(pieces).sum::<usize>() as f64
+    }
+
+    /// How unlikely an effect that is not in the model is chance.
+    pub(crate) fn p_value(
+        &self,
+        measured: &Measured,
+        given: &[usize],
+        named: &[usize],
+        effect: usize,
+    ) -> Option<f64> {
+        let evidence = measured.evidence(self.columns);
+        let naming = Naming { evidence: &evidence, columns: self.columns };
+        let all: Vec<usize> = given.iter().chain(named).copied().collect();
+        Some(naming.case(effect, &all, naming.effects().len())?.p_value)
+    }
+
+    /// The next sets of effects to try, one of which is to be taken: one replaced by a better one, or one more. `is_new` are
+    /// sets that were not tried.
     pub(crate) fn next_sets(
         &self,
         measured: &Measured,
@@ -59,14 +111,6 @@ impl Finder<'_> {
         let evidence = measured.evidence(self.columns);
         let naming = Naming { evidence: &evidence, columns: self.columns };
         let all: Vec<usize> = given.iter().chain(named).copied().collect();
-        let tested = naming.effects().len();
-        // One alone was the best there is: it has to lose more to be dropped.
-        let keeps = |case: &Case| case.holds() || (named.len() == 1 && case.stands());
-        let fallen =
-            named.iter().find(|&&effect| naming.case(effect, &all, tested).is_none_or(|case| !keeps(&case)));
-        if let Some(fallen) = fallen {
-            return vec![named.iter().copied().filter(|effect| effect != fallen).collect()];
-        }
         let swapped = |(old, new): (usize, usize)| -> Vec<usize> {
             named.iter().map(|&effect| if effect == old { new } else { effect }).collect()
         };

@@ -10,7 +10,7 @@ use crate::{
     total::Fit,
 };
 
-/// Sizes that matter are no chance below this; nor is an effect that is the only one once it has settled.
+/// Sizes that matter are no chance below this.
 const LARGE_BY_CHANCE: f64 = 0.05;
 /// An effect is named where it is this unlikely to be chance, corrected for all effects tested.
 pub(crate) const ALPHA: f64 = 0.005;
@@ -46,13 +46,6 @@ impl Case {
     pub(crate) fn holds(&self) -> bool {
         let gains = self.gain.value > LEAST_GAIN && self.gain.score() > LEAST_SCORE;
         self.material && self.p_value < ALPHA && gains
-    }
-}
-
-impl Case {
-    /// Whether it still speaks for itself, if less than it takes to be named.
-    pub(crate) fn stands(&self) -> bool {
-        self.material && self.p_value < LARGE_BY_CHANCE && self.gain.value > 0.0
     }
 }
 

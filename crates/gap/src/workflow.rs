@@ -1,5 +1,7 @@
 //! Detect, name, add, until nothing more is found.
 
+use std::collections::BTreeMap;
+
 use reality_sim_sensor::{Model, library};
 
 use crate::{
@@ -8,6 +10,7 @@ use crate::{
     finder::Finder,
     measure::MeasureError,
     measured::{Measured, SEARCH},
+    naming::Case,
     placing::placing,
     progress::Stage,
     recording::Recording,
@@ -35,6 +38,8 @@ pub(crate) struct Found {
     /// Indices into the library of the effects that the model had, and of those found, in the order of finding.
     pub(crate) given: Vec<usize>,
     pub(crate) named: Vec<usize>,
+    /// How unlikely named effects were chance when they were not yet in the model.
+    p_values: BTreeMap<usize, f64>,
     /// A named effect, and another that leaves as little in its place.
     rivals: Vec<(usize, usize)>,
 }
@@ -47,6 +52,11 @@ impl Found {
 
     pub(crate) fn evidence(&self) -> Evidence<'_> {
         self.measured.evidence(&self.columns)
+    }
+
+    /// How unlikely an effect is chance: by the model without it, or by that with it.
+    pub(crate) fn p_value(&self, case: &Case) -> f64 {
+        self.p_values.get(&case.effect).copied().unwrap_or(1.0).min(case.p_value)
     }
 
     /// Effects not in the model that stand for one that is as well.
@@ -81,8 +91,13 @@ pub(crate) fn find(
     // Sets that were tried: swapping must not go round in circles.
     let mut tried: Vec<Vec<usize>> = vec![Vec::new()];
     let mut ties = Vec::new();
+    let mut p_values = BTreeMap::new();
     while named.len() < MOST_EFFECTS {
         progress(Stage::Testing);
+        if let Some((set, settled)) = finder.dropped(&measured, &given, &named)? {
+            (named, measured) = (set, settled);
+            continue;
+        }
         let sets = finder.next_sets(&measured, &given, &named, |set| !tried.contains(&sorted(set)));
         let swaps = sets.iter().any(|set| set.len() == named.len());
         let mut closest = finder.closest(&measured, &given, sets)?.into_iter();
@@ -96,13 +111,17 @@ pub(crate) fn find(
             tried.push(sorted(&other));
             ties.extend(differing(&set, &other));
         }
+        let new = set.iter().copied().filter(|effect| !named.contains(effect));
+        p_values.extend(
+            new.filter_map(|effect| Some((effect, finder.p_value(&measured, &given, &named, effect)?))),
+        );
         (named, measured) = (set, settled);
     }
     if named.is_empty() && measured.model != as_given {
         measured = Measured::new(recording, as_given, &columns, &split, SEARCH[1])?;
     }
     let rivals = finder.rivals(&measured, &given, &named, &ties)?;
-    Ok(Found { columns, split, measured, given, named, rivals })
+    Ok(Found { columns, split, measured, given, named, p_values, rivals })
 }
 
 /// A recording measured with a model as it is.
@@ -114,7 +133,8 @@ pub(crate) fn as_given(
     let columns = columns(&options.without);
     let split = Split::new(recording.frames.len(), options.seed);
     let measured = Measured::new(recording, model.clone(), &columns, &split, SEARCH[1])?;
-    Ok(Found { columns, split, measured, given: Vec::new(), named: Vec::new(), rivals: Vec::new() })
+    let (given, named, p_values, rivals) = Default::default();
+    Ok(Found { columns, split, measured, given, named, p_values, rivals })
 }
 
 /// The one effect of a set that another set has something else for.
