@@ -10,12 +10,15 @@ use crate::{
     look::{Look, Looking, View, look},
     predict::{Rounding, pose_gradient, reported},
     recording::{Frame, Recording},
-    rows::{Channel, Context, expected, measured},
+    rows::{Channel, Context, Row, expected, measured},
     starting::{starting_values, with_value},
     steps::around,
     system::FrameRows,
     tolerance::Tolerance,
 };
+
+/// Numbers of a step of the odometry: forward, left, turn.
+const STEP: usize = 3;
 
 /// Why a recording cannot be measured.
 #[derive(Debug, thiserror::Error)]
@@ -57,24 +60,48 @@ pub(crate) fn linearise(
     tolerances: &[Tolerance],
 ) -> Result<Vec<FrameRows>, MeasureError> {
     let setup = &recording.sequence.setup;
-    let field = &recording.sequence.field;
-    let chain = Chain::new(setup, field, model)?;
-    let shifted: Vec<Shifted> =
-        columns.iter().map(|column| Shifted::new(recording, model, column)).collect::<Result<_, _>>()?;
     let photometry = setup.photometry;
-    let context = Context {
-        gamma: recording.gamma(),
-        scene: recording.scene.as_ref(),
-        noise: photometry.is_some_and(|p| p.noise_shot.is_some() || p.noise_read.is_some()),
-        sharpness: photometry.is_some_and(|p| p.psf_sigma_px.is_some()),
+    let linear = Linear {
+        recording,
+        chain: Chain::new(setup, &recording.sequence.field, model)?,
+        columns,
+        shifted: columns
+            .iter()
+            .map(|column| Shifted::new(recording, model, column))
+            .collect::<Result<_, _>>()?,
+        tolerances,
+        context: Context {
+            gamma: recording.gamma(),
+            scene: recording.scene.as_ref(),
+            noise: photometry.is_some_and(|p| p.noise_shot.is_some() || p.noise_read.is_some()),
+            sharpness: photometry.is_some_and(|p| p.psf_sigma_px.is_some()),
+        },
     };
     let steps = around(recording, &recording.frames.iter().collect::<Vec<_>>());
-    let one = |((frame, look), about): ((&Frame, &Look), &Option<Motion2>)| {
-        let rows = measured(look, frame.step, context);
+    let frames = recording.frames.par_iter().zip(looks).zip(&steps);
+    Ok(frames.map(|((frame, look), about)| linear.frame(frame, look, *about)).collect())
+}
+
+/// What frames are compared with.
+struct Linear<'a> {
+    recording: &'a Recording<'a>,
+    chain: Chain,
+    columns: &'a [Column],
+    /// For each column.
+    shifted: Vec<Shifted>,
+    tolerances: &'a [Tolerance],
+    context: Context<'a>,
+}
+
+impl Linear<'_> {
+    /// `about` is how the robot moves at about this time.
+    fn frame(&self, frame: &Frame, look: &Look, about: Option<Motion2>) -> FrameRows {
+        let rows = measured(look, frame.step, self.context);
         let rounding = Rounding::new(&look.noise_steps);
-        let expect =
-            |chain: &Chain| expected(&view(chain, recording, frame), look, &rounding, frame.step, context);
-        let now = expect(&chain);
+        let expect = |chain: &Chain| {
+            expected(&view(chain, self.recording, frame), look, &rounding, frame.step, self.context)
+        };
+        let now = expect(&self.chain);
         let residuals = rows.iter().zip(&now).map(|(row, now)| row.measured - now).collect();
         let mut jacobian: Vec<Vec<(usize, f64)>> = vec![Vec::new(); rows.len()];
         let mut put = |column: usize, row: usize, change: f64| {
@@ -82,44 +109,49 @@ pub(crate) fn linearise(
                 jacobian[row].push((column, change));
             }
         };
-        for (column, shifted) in shifted.iter().enumerate() {
-            if columns[column].effect().stage() == Stage::Odometry {
-                if let (Some(step), Some(about)) = (frame.step, about) {
-                    let reported = |chain: &Chain| reported(chain, *about, step.until_s - frame.time_s);
-                    let changes = reported(&shifted.chain).into_iter().zip(reported(&chain));
-                    // Behind all that was seen in the picture.
-                    for (row, (then, now)) in (rows.len() - reported(&chain).len()..).zip(changes) {
-                        put(column, row, (then - now) / shifted.step);
-                    }
+        for (index, (column, shifted)) in self.columns.iter().zip(&self.shifted).enumerate() {
+            if column.effect().stage() == Stage::Odometry {
+                let changes = about.and_then(|about| self.odometry_change(shifted, frame, about));
+                // Behind all that was seen in the picture.
+                for (part, change) in changes.into_iter().flatten().enumerate() {
+                    put(index, rows.len() - STEP + part, change);
                 }
                 continue;
             }
             // Noise moves the mean of dark places a little: too little to be told from anything else.
-            let noise_only = columns[column].effect().id() == "sensor_noise";
-            let is_used = |row: usize| !noise_only || rows[row].group.channel == Channel::Noise;
-            for (row, (then, now)) in
-                expect(&shifted.chain).iter().zip(&now).enumerate().filter(|(row, _)| is_used(*row))
-            {
-                put(column, row, (then - now) / shifted.step);
+            let noise_only = column.effect().id() == "sensor_noise";
+            for (row, (then, now)) in expect(&shifted.chain).iter().zip(&now).enumerate() {
+                if !noise_only || rows[row].group.channel == Channel::Noise {
+                    put(index, row, (then - now) / shifted.step);
+                }
             }
         }
-        for (index, tolerance) in tolerances.iter().enumerate() {
+        for (index, tolerance) in self.tolerances.iter().enumerate() {
             for (row, now) in now.iter().enumerate() {
-                put(columns.len() + index, row, tolerance.change(&rows[row], *now));
+                put(self.columns.len() + index, row, tolerance.change(&rows[row], *now));
             }
         }
-        let here = view(&chain, recording, frame);
-        let pose = rows
-            .iter()
-            .map(|row| {
-                let gradient = (row.group.channel == Channel::Geometry)
-                    .then(|| pose_gradient(&here, row.ground, row.normal));
-                gradient.flatten().map_or_else(Vector6::zeros, Vector6::from)
-            })
-            .collect();
+        let pose = self.pose_changes(frame, &rows);
         FrameRows { rows, residuals, jacobian, pose }
-    };
-    Ok(recording.frames.par_iter().zip(looks).zip(&steps).map(one).collect())
+    }
+
+    /// Change of the three numbers of a frame's step with a column of the odometry.
+    fn odometry_change(&self, shifted: &Shifted, frame: &Frame, about: Motion2) -> Option<[f64; STEP]> {
+        let duration_s = frame.step?.until_s - frame.time_s;
+        let [now, then] = [&self.chain, &shifted.chain].map(|chain| reported(chain, about, duration_s));
+        Some(std::array::from_fn(|part| (then[part] - now[part]) / shifted.step))
+    }
+
+    /// See [`FrameRows::pose`].
+    fn pose_changes(&self, frame: &Frame, rows: &[Row]) -> Vec<Vector6<f64>> {
+        let here = view(&self.chain, self.recording, frame);
+        let change = |row: &Row| {
+            let is_line = row.group.channel == Channel::Geometry;
+            let gradient = is_line.then(|| pose_gradient(&here, row.ground, row.normal));
+            gradient.flatten().map_or_else(Vector6::zeros, Vector6::from)
+        };
+        rows.iter().map(change).collect()
+    }
 }
 
 /// The model with one parameter changed a little.

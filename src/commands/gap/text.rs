@@ -1,13 +1,22 @@
 //! The report in a terminal.
 
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path};
 
-use reality_sim::gap::report::{Report, size_in_words};
+use reality_sim::gap::report::{Report, Unobservable, size_in_words};
 
 use crate::commands::output::aligned;
 
 /// What is left less this part of what was is no change.
 const MOVED: f64 = 0.02;
+
+/// Effects that cannot be seen, by why.
+fn by_reason(unobservable: &[Unobservable]) -> BTreeMap<&str, Vec<&str>> {
+    let mut reasons: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for effect in unobservable {
+        reasons.entry(&effect.reason).or_default().push(&effect.id);
+    }
+    reasons
+}
 
 /// The verdict, the gap, and where the rest is to be read.
 pub fn text(report: &Report, folder: &Path) -> String {
@@ -33,8 +42,8 @@ pub fn text(report: &Report, folder: &Path) -> String {
     if !limits.is_empty() {
         lines.push(("not found", format!("would have been from: {}", limits.join(", "))));
     }
-    for effect in &report.unobservable {
-        lines.push(("not seen", format!("{}: {}", effect.id, effect.reason)));
+    for (reason, effects) in by_reason(&report.unobservable) {
+        lines.push(("not seen", format!("{}: {reason}", effects.join(", "))));
     }
     if !report.poses.absorbed.is_empty() {
         lines.push(("poses", report.poses.absorbed.clone()));
