@@ -25,13 +25,8 @@ const SETTLED: f64 = 1.0;
 
 /// What a model leaves is off by this part of what it explains.
 const INEXACT: f64 = 0.03;
-/// An effect is missed where the model leaves so much more without it, in log-likelihood: chi-square of three numbers that is
-/// chance in one of 5,000, the level of one of 22 tests.
-const MISSED: f64 = 10.0;
 /// Residuals beyond this many standard deviations are no measurements.
 const CUT_OFF: f64 = 5.0;
-/// What a piece of line that is lost leaves at least.
-const LOST: f64 = 0.5 * INDEPENDENT * CUT_OFF * CUT_OFF;
 /// Rows of a channel in the pictures that a mean residual stands for.
 const PICTURE_ROWS: f64 = 3000.0;
 /// Rows of the odometry that it stands for.
@@ -52,7 +47,7 @@ pub(crate) struct Finder<'a> {
 }
 
 impl Finder<'_> {
-    /// The model without an effect that no longer holds, settled, where it leaves hardly more than with it. Large effects may
+    /// The model without an effect that no longer holds, settled, where it does not hold beside that, either. Large effects may
     /// seem not to hold once they have settled, as Wald's test loses its power far from none (Hauck and Donner 1977).
     pub(crate) fn dropped(
         &self,
@@ -69,20 +64,13 @@ impl Finder<'_> {
             let others: Vec<usize> = named.iter().copied().filter(|effect| effect != fallen).collect();
             let without: Vec<usize> = given.iter().chain(&others).copied().collect();
             let settled = self.settle(measured.clone(), &without)?;
-            // A line that is no longer found is off by more than anything that is.
-            let lost = self.lines(measured) - self.lines(&settled);
-            let left = self.left(&settled, &measured.system) + LOST * lost.max(0.0);
-            if left < self.left(measured, &measured.system) + MISSED {
+            let evidence = settled.evidence(self.columns);
+            let naming = Naming { evidence: &evidence, columns: self.columns };
+            if naming.case(*fallen, &without, tested).is_none_or(|case| !case.holds()) {
                 return Ok(Some((others, settled)));
             }
         }
         Ok(None)
-    }
-
-    /// Pieces of line that are found.
-    fn lines(&self, measured: &Measured) -> f64 {
-        let pieces = |frame: usize| measured.looks[frame].lines.len();
-        self.split.fitted().map(pieces).sum::<usize>() as f64
     }
 
     /// How unlikely an effect that is not in the model is chance.

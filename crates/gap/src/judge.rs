@@ -110,7 +110,9 @@ impl Squares {
     fn gap(&self, channel: Channel) -> ChannelGap {
         let mean = |sum: f64| sum / self.count.max(1.0);
         let (before, after) = (mean(self.before).sqrt(), mean(self.after).sqrt());
-        let noise = (self.steps / self.pairs.max(1.0) + mean(self.poses)).sqrt();
+        // Where nothing has a neighbour, what is left is all that is known of the noise.
+        let noise =
+            if self.pairs > 0.0 { (self.steps / self.pairs + mean(self.poses)).sqrt() } else { after };
         ChannelGap { before, after, floor: noise.min(after), unit: channel.unit().to_owned() }
     }
 }
