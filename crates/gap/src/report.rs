@@ -122,8 +122,7 @@ impl NotFoundReport {
 
 /// A size of a channel's residuals, in its unit, as a person says it: "0.13 px²", "7.4 %".
 pub fn size_in_words(channel: &str, size: f64, unit: &str) -> String {
-    let (factor, unit) = words::in_channel(channel, unit);
-    format!("{} {unit}", words::digits(factor * size, 3)).trim_end().to_owned()
+    words::amount(channel, size, unit, 3)
 }
 
 /// A size with its unit.

@@ -5,7 +5,7 @@ use reality_sim_sensor::effect as library_effect;
 use super::text::{capital, cell, channel_title, effect_cell, escape, number, table};
 use crate::{
     report::{EffectReport, Estimate, Limit, NotFoundReport, Report, Unexplained, Unobservable},
-    words::{digits, in_channel, percent, probability, with_sigma},
+    words::{amount, digits, percent, probability, with_sigma},
 };
 
 /// More are folded.
@@ -142,12 +142,11 @@ pub(super) fn unexplained(patterns: &[Unexplained]) -> String {
         return "<h2>Unexplained</h2>\n<p>Nothing significant is left.</p>\n".to_owned();
     }
     let row = |pattern: &Unexplained| {
-        let (factor, unit) = in_channel(&pattern.channel, &pattern.unit);
         format!(
             "<tr>{}{}{}{}</tr>",
             cell(&channel_title(&pattern.channel)),
             cell(&pattern.r#where),
-            number(format!("{} {unit}", digits(factor * pattern.size, 2)).trim_end()),
+            number(&amount(&pattern.channel, pattern.size, &pattern.unit, 2)),
             number(&pattern.p_value.map_or_else(String::new, probability))
         )
     };

@@ -6,10 +6,7 @@ use glam::DVec2;
 use reality_sim_core::field::{Curve, FieldDimensions};
 
 use super::text::escape;
-use crate::{
-    report::Map,
-    words::{digits, in_channel},
-};
+use crate::{report::Map, words::amount};
 
 /// Width of a map in the drawing's units.
 const WIDTH: f64 = 340.0;
@@ -160,8 +157,7 @@ fn legend(limit: f64, subject: Subject<'_>) -> String {
 }
 
 fn value_text(value: f64, subject: Subject<'_>) -> String {
-    let (factor, unit) = in_channel(subject.channel, subject.unit);
-    format!("{} {unit}", digits(factor * value, 2)).trim_end().to_owned()
+    amount(subject.channel, value, subject.unit, 2)
 }
 
 /// Of a value from −1 to 1.

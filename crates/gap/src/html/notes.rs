@@ -9,7 +9,7 @@ use crate::{
 
 const READING: &str = "<h2>How to read this page</h2>\n<ul>\
 <li><b>p</b>: how likely chance alone would show as much of an effect. It is corrected for the number of effects that were \
-tested, and its scatter is that from frame to frame: samples of one frame are not independent.</li>\
+tested, and its scatter is that from view to view: samples of one frame are not independent.</li>\
 <li><b>Held-out gain</b>: by how much the logarithm of the likelihood grows on frames that the fit has not seen; ± is one \
 standard deviation. Below 0, what some frames suggest fails on others.</li>\
 <li><b>Named</b> is an effect where p is below 0.005, the gain is above 4 and more than 2.5 standard deviations above 0, and \

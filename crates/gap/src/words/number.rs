@@ -149,6 +149,12 @@ pub(crate) fn in_channel<'a>(channel: &str, unit: &'a str) -> (f64, &'a str) {
     }
 }
 
+/// A size of a channel's residuals with so many significant digits: "0.13 px²", "7.4 %".
+pub(crate) fn amount(channel: &str, size: f64, unit: &str, significant: i32) -> String {
+    let (factor, unit) = in_channel(channel, unit);
+    format!("{} {unit}", digits(factor * size, significant)).trim_end().to_owned()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,7 +4,7 @@ use reality_sim_sensor::{Model, Role, effect};
 
 use super::{
     names::{limit_in_words, noun},
-    number::{closed, digits, in_channel, percent},
+    number::{amount, closed, percent},
 };
 use crate::report::{EffectReport, Gap, Limit, NotFoundReport, Unexplained, Unobservable, Verdict};
 
@@ -146,14 +146,9 @@ fn unknown(unexplained: &[Unexplained]) -> String {
 /// "sharpness: in the picture left of the middle, in the lower part (0.13 px²)"; without its size where its place has a number.
 fn said(pattern: &Unexplained) -> String {
     let place = &pattern.r#where;
-    let amount = if place.contains(" %") { String::new() } else { format!(" ({})", amount(pattern)) };
+    let amount = amount(&pattern.channel, pattern.size, &pattern.unit, 2);
+    let amount = if place.contains(" %") { String::new() } else { format!(" ({amount})") };
     format!("{}: {place}{amount}", channel_noun(&pattern.channel))
-}
-
-/// "0.13 px²", "8 %".
-fn amount(pattern: &Unexplained) -> String {
-    let (factor, unit) = in_channel(&pattern.channel, &pattern.unit);
-    format!("{} {unit}", digits(factor * pattern.size, 2)).trim_end().to_owned()
 }
 
 /// What is not missing, from which size on, and how many effects nobody could tell of.
