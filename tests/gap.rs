@@ -105,6 +105,20 @@ fn two_effects_are_both_named() {
 }
 
 #[test]
+fn two_large_effects_that_hide_each_other_are_both_named() {
+    // Neither foretells anything for sure while the other is not in the model.
+    let effects =
+        [Hidden::RadialDistortion { k: [0.006, 0.0, 0.0, 0.0] }, Hidden::MountRoll { angle_rad: -0.019 }];
+    let (_folder, sequence) = recorded(&Recipe { frames: 40, effects: effects.to_vec(), ..small(30_042) });
+    let options = Options { seed: 30_042, ..Options::default() };
+    let report = analysed(&sequence, &Model::default(), &options).report;
+    let found: BTreeSet<&str> = named(&report).into_iter().collect();
+    assert_eq!(found, BTreeSet::from(["radial_distortion", "mount_roll"]), "{}", report.summary);
+    assert_size(&report, "radial_distortion", "k1", 0.006);
+    assert_size(&report, "mount_roll", "roll_rad", -0.019);
+}
+
+#[test]
 fn a_lens_far_out_of_focus_is_found_by_lines_that_are_spread_over_many_pixels() {
     let truth = 2.7;
     let (_folder, sequence) = record(22, &[Hidden::Defocus { sigma_px: truth }]);

@@ -3,6 +3,7 @@
 //!
 //! `cargo run --release --example gap_study -- --out FOLDER` adds its runs to `FOLDER/runs.jsonl` (a run that is there is
 //! not repeated) and writes `FOLDER/study.md`; `--page docs/gap.md` puts that between the page's marks, too.
+//! `--draw N` makes other recordings.
 //! `--part nulls|singles|pairs|removed|foreign|full`, `--effect ID` and `--runs N` make a part of it.
 
 mod limits;
@@ -33,6 +34,9 @@ struct Args {
     /// Folder for runs.jsonl and study.md
     #[arg(long)]
     out: PathBuf,
+    /// Which draw of recordings and effects: the rules were made on draw 0
+    #[arg(long, default_value_t = 1)]
+    draw: u64,
     /// Only these parts
     #[arg(long, value_enum)]
     part: Vec<Part>,
@@ -61,7 +65,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut log = OpenOptions::new().create(true).append(true).open(&file)?;
         let mut limits = Limits::default();
         for part in parts {
-            let mut tasks = plan::tasks(part);
+            let mut tasks = plan::tasks(part, args.draw);
             if !args.effect.is_empty() {
                 tasks.retain(|task| task.effects.iter().any(|id| args.effect.contains(id)));
             }

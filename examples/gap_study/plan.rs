@@ -35,6 +35,7 @@ impl Part {
 pub const SIZES: [f64; 3] = [3.0, 6.0, 1.0];
 /// From here on an effect has to be named.
 pub const CLEAR: f64 = 3.0;
+const SEEDS_OF_A_DRAW: u64 = 1_000_000;
 const NULLS: u64 = 220;
 const SEEDS: u64 = 3;
 const PAIRS: u64 = 48;
@@ -121,8 +122,13 @@ fn foreign_multiple(id: &str) -> f64 {
     }
 }
 
-/// All runs of a part.
-pub fn tasks(part: Part) -> Vec<Task> {
+/// All runs of a part, on recordings that no other draw has.
+pub fn tasks(part: Part, draw: u64) -> Vec<Task> {
+    let of_draw = |task: Task| Task { seed: task.seed + draw * SEEDS_OF_A_DRAW, ..task };
+    planned(part, draw).into_iter().map(of_draw).collect()
+}
+
+fn planned(part: Part, draw: u64) -> Vec<Task> {
     match part {
         Part::Nulls => (0..NULLS).map(|seed| Task::small(part, 10_000 + seed)).collect(),
         Part::Singles => singles(part, &SIZES),
@@ -130,7 +136,7 @@ pub fn tasks(part: Part) -> Vec<Task> {
             let without = |task: Task| Task { without: task.effects.first().cloned(), ..task };
             singles(part, &[LARGE]).into_iter().map(without).collect()
         }
-        Part::Pairs => pairs(),
+        Part::Pairs => pairs(draw),
         Part::Foreign => {
             let of_seed = |seed| FOREIGN.iter().map(move |id| Task::single(part, 40_000 + seed, id, 0.0));
             (0..FOREIGN_SEEDS).flat_map(of_seed).collect()
@@ -154,8 +160,8 @@ fn singles(part: Part, sizes: &[f64]) -> Vec<Task> {
     tasks
 }
 
-fn pairs() -> Vec<Task> {
-    let mut random = Random::new(7);
+fn pairs(draw: u64) -> Vec<Task> {
+    let mut random = Random::new(7 + draw);
     let mut pair = |seed| {
         let count = LIBRARY.len() as u64;
         let first = random.below(count);

@@ -61,17 +61,9 @@ pub fn analyse(
     let after = Judged::new(recording, &found, &found.measured.model)?;
     let channels = gaps(&found, &before, &after);
     let gap = whole_gap(&channels);
-    let cases: Vec<Case> =
-        all.iter().filter_map(|&effect| naming.case(effect, &all, naming.effects().len())).collect();
-    let mut effects = Vec::new();
-    let mut in_model = Vec::new();
-    for case in &cases {
-        let alone = without(&found.measured.model, case.effect);
-        let closes = closed(&gaps(&found, &Judged::new(recording, &found, &alone)?, &after));
-        let report = effect_report(&naming, case, &found, closes);
-        if found.named.contains(&case.effect) { effects.push(report) } else { in_model.push(report) }
-    }
+    let mut effects = effect_reports(recording, &naming, &found, &found.named, &after)?;
     effects.sort_by(|a, b| b.held_out_gain.value.total_cmp(&a.held_out_gain.value));
+    let in_model = effect_reports(recording, &naming, &found, &found.given, &after)?;
     // What is odd in one view may be the place's.
     let unexplained = if evidence.views() < LEAST_VIEWS {
         Vec::new()
@@ -172,6 +164,24 @@ fn whole_gap(gaps: &BTreeMap<Channel, ChannelGap>) -> Gap {
     }
 }
 
+/// Effects of the model, each with what would be closed less without it.
+fn effect_reports(
+    recording: &Recording<'_>,
+    naming: &Naming<'_>,
+    found: &Found,
+    effects: &[usize],
+    after: &Judged,
+) -> Result<Vec<EffectReport>, MeasureError> {
+    let all = found.all();
+    let cases = effects.iter().filter_map(|&effect| naming.case(effect, &all, naming.effects().len()));
+    let report = |case: Case| {
+        let alone = without(&found.measured.model, case.effect);
+        let closes = closed(&gaps(found, &Judged::new(recording, found, &alone)?, after));
+        Ok(effect_report(naming, &case, found, closes))
+    };
+    cases.map(report).collect()
+}
+
 fn gain(gain: Gain) -> Estimate {
     Estimate { value: gain.value, sigma: gain.sigma, unit: None }
 }
@@ -200,12 +210,20 @@ fn effect_report(
         .collect();
     let plain: Vec<(&'static str, f64, f64)> =
         estimates.iter().map(|(name, estimate)| (*name, estimate.value, estimate.sigma)).collect();
+    let correlation = |one: &str, other: &str| {
+        let column = |name: &str| {
+            let mut columns = naming.columns_of(&[case.effect]).into_iter();
+            columns.find(|&column| naming.columns[column].parameter().name == name)
+        };
+        let both = column(one).zip(column(other));
+        both.map_or(0.0, |(one, other)| naming.evidence.correlation(&case.fit, [one, other]))
+    };
     let rivals = found.rivals(case.effect);
     let (name, because) = words::directed(effect, &plain);
     EffectReport {
         id: effect.id().to_owned(),
         name: name.to_owned(),
-        size: words::size_in_words(effect.id(), &plain),
+        size: words::size_in_words(effect.id(), &plain, &correlation),
         parameters: estimates.into_iter().map(|(name, estimate)| (name.to_owned(), estimate)).collect(),
         p_value: found.p_value(case),
         held_out_gain: gain(case.gain),

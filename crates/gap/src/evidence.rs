@@ -200,7 +200,7 @@ impl<'a> Evidence<'a> {
         }
         let counts = [self.degrees() + 1, self.system.cells.len()];
         let covariances = self.covariances(fit);
-        let place = |column: &usize| fit.free.iter().position(|free| free == column);
+        let place = |column: &usize| fit.place(*column);
         // What is not seen on the field has no scatter there: the odometry.
         let seen = |covariance: &DMatrix<f64>| {
             let on_field =
@@ -212,8 +212,7 @@ impl<'a> Evidence<'a> {
     }
 
     fn p_of(&self, fit: &Fit, tested: &[usize], covariance: &DMatrix<f64>, count: usize) -> f64 {
-        let places: Vec<usize> =
-            tested.iter().filter_map(|column| fit.free.iter().position(|free| free == column)).collect();
+        let places: Vec<usize> = tested.iter().filter_map(|&column| fit.place(column)).collect();
         let number = places.len();
         if number == 0 || count <= number + 1 {
             return 1.0;
@@ -232,10 +231,19 @@ impl<'a> Evidence<'a> {
     /// Standard deviation of a free column. What is held by its prior alone scatters little from frame to frame, and is as
     /// unknown as before.
     pub(crate) fn sigma(&self, fit: &Fit, column: usize) -> f64 {
-        let Some(place) = fit.free.iter().position(|&free| free == column) else { return 0.0 };
+        let Some(place) = fit.place(column) else { return 0.0 };
         let variances = self.covariances(fit).map(|covariance| covariance[(place, place)]);
         let of_prior = PRIOR * fit.inverse.column(place).norm_squared();
         (variances.into_iter().fold(0.0, f64::max) + of_prior).sqrt()
+    }
+
+    /// Correlation of the errors of two free columns: of their scatter from frame to frame, and of what is not known of them.
+    pub(crate) fn correlation(&self, fit: &Fit, columns: [usize; 2]) -> f64 {
+        let [Some(i), Some(j)] = columns.map(|column| fit.place(column)) else { return 0.0 };
+        let [scatter, _] = self.covariances(fit);
+        let covariance = scatter + &fit.inverse * &fit.inverse * PRIOR;
+        let scale = (covariance[(i, i)] * covariance[(j, j)]).sqrt();
+        if scale > 0.0 { (covariance[(i, j)] / scale).clamp(-1.0, 1.0) } else { 0.0 }
     }
 }
 

@@ -87,8 +87,8 @@ impl Finder<'_> {
         Some(naming.case(effect, &all, naming.effects().len())?.p_value)
     }
 
-    /// The next sets of effects to try, one of which is to be taken: one replaced by a better one, or one more. `is_new` are
-    /// sets that were not tried.
+    /// The next sets of effects to try, one of which is to be taken: one replaced by a better one, one more, or
+    /// two more. `is_new` are sets that were not tried.
     pub(crate) fn next_sets(
         &self,
         measured: &Measured,
@@ -105,8 +105,8 @@ impl Finder<'_> {
         if let Some(swap) = naming.better(&all, named).into_iter().map(swapped).find(|set| is_new(set)) {
             return vec![swap];
         }
-        let added = naming.next(&all).into_iter().map(|next| named.iter().copied().chain([next]).collect());
-        added.filter(|set: &Vec<usize>| is_new(set)).collect()
+        let with = |added: &[usize]| -> Vec<usize> { named.iter().chain(added).copied().collect() };
+        naming.next(&all).iter().map(|added| with(added)).filter(|set| is_new(set)).collect()
     }
 
     /// Settles each of several sets: first the one to take, then those that leave as little. The set to take is the one

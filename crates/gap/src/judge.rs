@@ -12,6 +12,7 @@ use crate::{
     report::Unexplained,
     rows::Channel,
     system::{FrameRows, Left, weigh},
+    words::has_moved,
     workflow::Found,
 };
 
@@ -35,6 +36,13 @@ pub struct ChannelGap {
     pub floor: f64,
     /// Of the three.
     pub unit: String,
+}
+
+impl ChannelGap {
+    /// Whether what was added changes it.
+    pub fn has_moved(&self) -> bool {
+        has_moved(self.before, self.after)
+    }
 }
 
 impl Judged {

@@ -1,6 +1,7 @@
 //! Which effects are missing: one after the other is added while the frames that a fit has not seen get more likely.
 
 use nalgebra::DVector;
+use rayon::prelude::*;
 use reality_sim_sensor::{Covariate, Stage, library};
 
 use crate::{
@@ -18,6 +19,10 @@ pub(crate) const ALPHA: f64 = 0.005;
 pub(crate) const LEAST_SCORE: f64 = 2.5;
 /// And is at least this large: a factor of fifty in likelihood.
 const LEAST_GAIN: f64 = 4.0;
+/// An effect this unlikely to be chance is looked at beside others.
+const CONSPICUOUS: f64 = 0.05;
+/// No more of them are.
+const MOST_LEADS: usize = 3;
 /// Parameters of an effect with no more sizes than this are tried one by one, too.
 const TRIED_ALONE: usize = 12;
 /// Effects whose gains are this many standard deviations of their difference apart can be told apart.
@@ -91,6 +96,11 @@ impl Naming<'_> {
             material: p_value < ALPHA && self.is_material(effect, &with, &fit, &sizes),
             fit,
         })
+    }
+
+    /// What speaks for each of these effects, all tried beside others.
+    fn cases(&self, effects: &[usize], beside: &[usize]) -> Vec<Case> {
+        effects.par_iter().filter_map(|&effect| self.case(effect, beside, effects.len())).collect()
     }
 
     /// Fits effects, no parameter outside its range: one that would be is held at the range's end, and the others are
@@ -182,25 +192,50 @@ impl Naming<'_> {
             || (sizes.len() <= TRIED_ALONE && sizes.iter().any(alone))
     }
 
-    /// The effect that speaks most for itself beside those already named, if one does, and behind it those that may stand
-    /// for it: the linearised model cannot tell for sure which of them is closest to what is large.
-    pub(crate) fn next(&self, named: &[usize]) -> Vec<usize> {
+    /// What to add to what is named: the effect that speaks most for itself, and behind it those that may stand for it, as
+    /// the linearised model cannot tell for sure which of them is closest to what is large. Where none does, two that do
+    /// together.
+    pub(crate) fn next(&self, named: &[usize]) -> Vec<Vec<usize>> {
         if self.evidence.views() < LEAST_VIEWS {
             return Vec::new();
         }
         let others: Vec<usize> =
             self.effects().into_iter().filter(|effect| !named.contains(effect)).collect();
-        let mut cases: Vec<Case> =
-            others.iter().filter_map(|&effect| self.case(effect, named, others.len())).collect();
-        cases.retain(Case::holds);
+        let tested = self.cases(&others, named);
+        let mut cases: Vec<&Case> = tested.iter().filter(|case| case.holds()).collect();
         cases.sort_by(|a, b| b.gain.value.total_cmp(&a.gain.value));
-        let Some(best) = cases.first() else { return Vec::new() };
-        let stands_for = |case: &&Case| {
+        let Some(best) = cases.first() else {
+            return Vec::from_iter(self.two(&tested, &others, named).map(Vec::from));
+        };
+        let stands_for = |case: &&&Case| {
             case.gain.value > STANDS_FOR * best.gain.value
                 && !self.adds(best.effect, case.effect, named, others.len())
         };
         let alternatives = cases[1..].iter().filter(stands_for).take(MOST_ALTERNATIVES);
-        std::iter::once(best).chain(alternatives).map(|case| case.effect).collect()
+        std::iter::once(best).chain(alternatives).map(|case| vec![case.effect]).collect()
+    }
+
+    /// Two of the others that speak for themselves beside each other, where none does alone: each hides the other where both
+    /// are large. One of them has to be conspicuous alone.
+    fn two(&self, alone: &[Case], others: &[usize], named: &[usize]) -> Option<[usize; 2]> {
+        let pairs = others.len() * others.len().saturating_sub(1) / 2;
+        let holds = |effect: usize, beside: usize| {
+            let beside: Vec<usize> = named.iter().copied().chain([beside]).collect();
+            self.case(effect, &beside, pairs).is_some_and(|case| case.holds())
+        };
+        let mut leads: Vec<&Case> = alone.iter().filter(|case| case.p_value < CONSPICUOUS).collect();
+        leads.sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
+        let leads = leads.into_iter().take(MOST_LEADS);
+        let tries = leads.flat_map(|lead| others.iter().map(move |&other| [lead.effect, other]));
+        let found = tries
+            .collect::<Vec<[usize; 2]>>()
+            .into_par_iter()
+            .filter(|[lead, other]| lead != other && holds(*lead, *other) && holds(*other, *lead))
+            .filter_map(|two| {
+                let set: Vec<usize> = named.iter().copied().chain(two).collect();
+                Some((self.gain(&set, named)?.value, two))
+            });
+        found.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, two)| two)
     }
 
     /// Effects not named that explain clearly more than one named does, in its place: the old one, the new one; those that
@@ -208,7 +243,8 @@ impl Naming<'_> {
     pub(crate) fn better(&self, all: &[usize], named: &[usize]) -> Vec<(usize, usize)> {
         let others: Vec<usize> = self.effects().into_iter().filter(|effect| !all.contains(effect)).collect();
         let tries = named.iter().flat_map(|&old| others.iter().map(move |&new| (old, new)));
-        let gains = tries.filter_map(|(old, new)| {
+        let tries: Vec<(usize, usize)> = tries.collect();
+        let gains = tries.into_par_iter().filter_map(|(old, new)| {
             let without: Vec<usize> = all.iter().copied().filter(|effect| *effect != old).collect();
             self.case(new, &without, others.len()).filter(Case::holds)?;
             let set: Vec<usize> = without.iter().copied().chain([new]).collect();
@@ -232,7 +268,7 @@ impl Naming<'_> {
                 && self.gain(named, &set).is_some_and(|gain| gain.score() < TELLS_APART)
                 && !self.adds(effect, *other, &without, others.len())
         };
-        others.iter().copied().filter(rivals).collect()
+        others.par_iter().copied().filter(rivals).collect()
     }
 
     /// What one set of effects gains over another, both judged on the same unseen frames.

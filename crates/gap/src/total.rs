@@ -20,10 +20,14 @@ pub(crate) struct Fit {
 }
 
 impl Fit {
+    /// Where a column is among those that are free.
+    pub(crate) fn place(&self, column: usize) -> Option<usize> {
+        self.free.iter().position(|&free| free == column)
+    }
+
     /// What a fit leaves of what was known of a free column before, as a part of its variance: 1 where it tells nothing.
     pub(crate) fn prior_share(&self, column: usize) -> f64 {
-        let place = self.free.iter().position(|&free| free == column);
-        place.map_or(1.0, |place| self.inverse[(place, place)] * PRIOR)
+        self.place(column).map_or(1.0, |place| self.inverse[(place, place)] * PRIOR)
     }
 }
 

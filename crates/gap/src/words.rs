@@ -8,7 +8,7 @@ mod summary;
 
 pub(crate) use self::{
     names::{directed, limit_in_words},
-    number::{amount, closed, digits, in_channel, percent, probability, rounded, with_sigma},
+    number::{amount, closed, digits, has_moved, in_channel, percent, probability, rounded, with_sigma},
     place::{field_place, picture_place},
     size::size_in_words,
     summary::{Findings, summary},

@@ -17,7 +17,7 @@ use crate::{
     split::Split,
 };
 
-/// No more effects than this are added to a model in one go.
+/// Nothing more is added in one go to so many effects.
 const MOST_EFFECTS: usize = 6;
 
 /// How to work.

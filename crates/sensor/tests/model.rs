@@ -34,7 +34,7 @@ proptest! {
 #[test]
 fn the_file_says_what_its_numbers_are() {
     let model = Model::default().with(effect("vignetting").unwrap(), [0.52]);
-    let expected = "# Effects of the simulated camera beside what camera.toml says. Neutral values: no effect.\n\n\
+    let expected = "# Effects of the simulated camera beside what camera.toml says, as positive values have them; neutral values: no effect.\n\n\
         [[effect]]\nid = \"vignetting\"  # the lens darkens towards the corners\n\
         strength = 0.52  # 1\nshape = 0.0  # 1\nbend = 0.0  # 1\n";
     assert_eq!(model.to_toml(), expected);

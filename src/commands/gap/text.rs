@@ -6,9 +6,6 @@ use reality_sim::gap::report::{Report, Unobservable, size_in_words};
 
 use crate::commands::output::aligned;
 
-/// What is left less this part of what was is no change.
-const MOVED: f64 = 0.02;
-
 /// Effects that cannot be seen, by why.
 fn by_reason(unobservable: &[Unobservable]) -> BTreeMap<&str, Vec<&str>> {
     let mut reasons: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
@@ -33,8 +30,7 @@ pub fn text(report: &Report, folder: &Path) -> String {
     }
     for (channel, gap) in &report.gap.channels {
         let size = |size: f64| size_in_words(channel, size, &gap.unit);
-        let moved = (gap.before - gap.after).abs() > MOVED * gap.before;
-        let after = if moved { format!(" → {}", size(gap.after)) } else { String::new() };
+        let after = if gap.has_moved() { format!(" → {}", size(gap.after)) } else { String::new() };
         lines.push((channel, format!("{}{after} (noise {})", size(gap.before), size(gap.floor))));
     }
     let limits = report.not_found.iter().map(|effect| format!("{} {}", effect.id, effect.limit_in_words()));

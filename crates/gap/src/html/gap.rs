@@ -3,11 +3,8 @@
 use super::text::{cell, channel_title, escape, number, table};
 use crate::{
     report::Gap,
-    words::{closed, digits, in_channel, percent},
+    words::{closed, digits, has_moved, in_channel, percent},
 };
-
-/// A channel whose gap got smaller by less than this part has nothing added to it.
-const MOVED: f64 = 0.02;
 
 /// Width and height of a bar.
 const BAR: [f64; 2] = [160.0, 12.0];
@@ -34,7 +31,7 @@ pub(super) fn section(gap: &Gap) -> String {
 fn row(class: &str, channel: &str, sizes: [f64; 3], (factor, unit): (f64, &str)) -> String {
     let [before, after, floor] = sizes;
     let part = closed(before, after, floor)
-        .filter(|_| (before - after).abs() > MOVED * before)
+        .filter(|_| has_moved(before, after))
         .map_or_else(|| "–".to_owned(), |part| percent(part).replace("−0", "0"));
     let numbers: String = sizes.iter().map(|size| number(&digits(factor * size, 3))).collect();
     format!(

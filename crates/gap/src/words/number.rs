@@ -8,6 +8,8 @@ const LEAST_PROBABILITY: f64 = 1e-300;
 const DIGITS: i32 = 3;
 /// Below this an uncertainty is none.
 const LEAST_UNCERTAINTY: f64 = 1e-9;
+/// What differs by less than this part is the same.
+const MOVED: f64 = 0.02;
 /// More digits after the point are never written.
 const MOST_DECIMALS: i32 = 9;
 
@@ -137,6 +139,11 @@ fn superscript(digit: char) -> char {
 pub(crate) fn closed(before: f64, after: f64, floor: f64) -> Option<f64> {
     let part = (before - after) / (before - floor);
     (before > floor && part.is_finite()).then_some(part)
+}
+
+/// Whether a gap is another one than before, not the same up to where lines were found anew.
+pub(crate) fn has_moved(before: f64, after: f64) -> bool {
+    (before - after).abs() > MOVED * before
 }
 
 /// The factor and the unit in which residuals of a channel are shown: logarithms as percent.

@@ -9,9 +9,18 @@ type Values<'a> = &'a [(&'static str, f64, f64)];
 const LIGHT_STEPS: i32 = 20;
 
 /// An effect's size as a person says it, from its parameters' names, values and standard deviations, with 95 %
-/// intervals: "at the corner 42 % of the light is lost (± 1 %)". Of an unknown effect, "name = value ± sigma".
-pub(crate) fn size_in_words(id: &str, values: &[(&'static str, f64, f64)]) -> String {
-    known(id, values).unwrap_or_else(|| listed(values))
+/// intervals: "at the corner 42 % of the light is lost (± 1 %)". Of an unknown effect, "name = value ± sigma". Errors of two
+/// of its values are correlated as `correlation` says.
+pub(crate) fn size_in_words(
+    id: &str,
+    values: &[(&'static str, f64, f64)],
+    correlation: &dyn Fn(&str, &str) -> f64,
+) -> String {
+    let known = match id {
+        "sensor_noise" => sensor_noise(values, correlation("shot", "read_variance")),
+        _ => known(id, values),
+    };
+    known.unwrap_or_else(|| listed(values))
 }
 
 /// None for an unknown effect, or where one of its numbers is missing.
@@ -47,7 +56,6 @@ fn known(id: &str, values: Values<'_>) -> Option<String> {
             let text = one_of(offset, "% of full scale", ["brighter", "darker"]);
             Some(format!("black is {text}"))
         }
-        "sensor_noise" => sensor_noise(values),
         "tone_curve" => tone_curve(values),
         "exposure_drift" => exposure_drift(values),
         "uneven_illumination" => uneven_illumination(values),
@@ -162,17 +170,26 @@ fn rolling_shutter(values: Values<'_>) -> Option<String> {
     Some(format!("{way} within {}{}{stamp}", readout.size("ms"), readout.interval("ms")))
 }
 
-fn sensor_noise(values: Values<'_>) -> Option<String> {
+/// Where it shows best: what a sensor adds in the dark and what it adds to light may be hard to tell apart, not their sum.
+fn sensor_noise(values: Values<'_>, correlation: f64) -> Option<String> {
     let (shot, read) = (get(values, "shot")?, get(values, "read_variance")?);
-    let white = Quantity { value: shot.value + read.value, sigma: shot.sigma.hypot(read.sigma) };
-    let places = outstanding(&[("where it is white", white), ("where it is black", read)]);
-    let text = |(place, variance): (&str, Quantity)| {
-        let size = variance.value.abs().sqrt();
-        let noise = Quantity { value: 100.0 * size, sigma: 100.0 * variance.sigma / (2.0 * size) };
-        let word = if variance.value < 0.0 { "is too much" } else { "is missing" };
-        format!("{place}, {} {word}{}", noise.signed("% of full scale"), noise.interval("%"))
+    let at = |tenths: i32| {
+        let light = f64::from(tenths) / 10.0;
+        let (of_light, both) = (light * shot.sigma, 2.0 * correlation * light * shot.sigma * read.sigma);
+        let variance = (of_light.powi(2) + read.sigma.powi(2) + both).max(0.0);
+        (tenths, Quantity { value: light * shot.value + read.value, sigma: variance.sqrt() })
     };
-    Some(places.into_iter().map(text).collect::<Vec<String>>().join("; "))
+    let surely = |quantity: &Quantity| quantity.value.abs() / quantity.sigma.max(f64::MIN_POSITIVE);
+    let (tenths, variance) = (0..=10).map(at).max_by(|a, b| surely(&a.1).total_cmp(&surely(&b.1)))?;
+    let place = match tenths {
+        0 => "where it is black".to_owned(),
+        10 => "where it is white".to_owned(),
+        _ => format!("at {} % of full light", 10 * tenths),
+    };
+    let size = variance.value.abs().sqrt();
+    let noise = Quantity { value: 100.0 * size, sigma: 100.0 * variance.sigma / (2.0 * size) };
+    let word = if variance.value < 0.0 { "is too much" } else { "is missing" };
+    Some(format!("{place}, {} {word}{}", noise.signed("% of full scale"), noise.interval("%")))
 }
 
 fn tone_curve(values: Values<'_>) -> Option<String> {
@@ -262,6 +279,10 @@ mod tests {
 
     use super::*;
 
+    fn independent(id: &str, values: Values<'_>) -> String {
+        size_in_words(id, values, &|_, _| 0.0)
+    }
+
     #[test]
     fn effects_with_one_number_are_said_in_the_units_of_people() {
         let degree = 1f64.to_radians();
@@ -303,36 +324,33 @@ mod tests {
             ("no_such_effect", ("strength", 0.52, 0.01), "strength = 0.52 ± 0.01"),
         ];
         for (id, value, text) in cases {
-            assert_eq!(size_in_words(id, &[value]), text);
+            assert_eq!(independent(id, &[value]), text);
         }
     }
 
     #[test]
     fn colours_are_compared_with_green() {
-        let size =
-            size_in_words("white_balance", &[("red_gain", 0.12, 0.0051), ("blue_gain", -0.08, 0.0051)]);
+        let size = independent("white_balance", &[("red_gain", 0.12, 0.0051), ("blue_gain", -0.08, 0.0051)]);
         assert_eq!(size, "red is 12 % brighter (± 1 %) and blue is 8 % darker (± 1 %) than green");
-        let size = size_in_words(
-            "chromatic_aberration",
-            &[("red_scale", 0.002, 0.0001), ("blue_scale", 0.0, 0.0001)],
-        );
+        let size =
+            independent("chromatic_aberration", &[("red_scale", 0.002, 0.0001), ("blue_scale", 0.0, 0.0001)]);
         assert_eq!(size, "red is 0.20 % larger (± 0.02 %) than green");
     }
 
     #[test]
     fn the_lens_bends_in_or_out_only_where_all_its_numbers_agree() {
         let inwards = [("k1", -0.067, 0.002), ("k2", 0.001, 0.002), ("k3", 0.0, 0.001), ("k4", 0.0, 0.001)];
-        let text = size_in_words("radial_distortion", &inwards);
+        let text = independent("radial_distortion", &inwards);
         assert_eq!(text, "k1 = −0.067 (± 0.004), which moves points far from the middle inwards");
         let both_ways = [("k1", -0.05, 0.002), ("k2", 0.09, 0.002), ("k3", 0.0, 0.001), ("k4", 0.0, 0.001)];
-        let text = size_in_words("radial_distortion", &both_ways);
+        let text = independent("radial_distortion", &both_ways);
         assert_eq!(text, "k1 = −0.050 (± 0.004), k2 = 0.090 (± 0.004)");
     }
 
     #[test]
     fn the_row_of_the_time_stamp_is_named_where_it_is_known() {
         let values = [("readout_s", 0.02, 0.000_51), ("reference_s", 0.01, 0.0005)];
-        let text = size_in_words("rolling_shutter", &values);
+        let text = independent("rolling_shutter", &values);
         assert_eq!(
             text,
             "from the top to the bottom within 20 ms (± 1 ms); the time stamp is that of the top row"
@@ -344,7 +362,7 @@ mod tests {
         let values =
             [("from_s", 5.0, 0.0), ("ev_01", -0.3, 0.01), ("ev_02", 0.5, 0.01), ("ev_03", f64::NAN, 0.0)];
         assert_eq!(
-            size_in_words("exposure_drift", &values),
+            independent("exposure_drift", &values),
             "the brightest moment has 74 % more light than the darkest, 0.800 EV (± 0.028 EV)"
         );
     }
@@ -366,7 +384,7 @@ mod tests {
             )
         });
         assert_eq!(
-            size_in_words("uneven_illumination", &values),
+            independent("uneven_illumination", &values),
             "the light is brightest at the end at +x and darkest in the corner at −x and −y, by a factor of 2.2"
         );
     }
@@ -376,7 +394,7 @@ mod tests {
         let values =
             [("length_m", 0.121, 0.01), ("width_m", 0.005, 0.01), ("center_circle_diameter_m", -0.05, 0.01)];
         assert_eq!(
-            size_in_words("field_dimensions", &values),
+            independent("field_dimensions", &values),
             "the field is 12 cm longer (± 2 cm), the centre circle is 5 cm narrower (± 2 cm)"
         );
     }
@@ -384,8 +402,16 @@ mod tests {
     #[test]
     fn noise_is_a_part_of_full_scale() {
         let values = [("shot", 0.0009, 0.000_15), ("read_variance", -1e-7, 1e-6)];
-        let text = size_in_words("sensor_noise", &values);
+        let text = independent("sensor_noise", &values);
         assert_eq!(text, "where it is white, 3.0 % of full scale is missing (± 0.5 %)");
+    }
+
+    #[test]
+    fn noise_is_told_where_it_is_best_known() {
+        // 0.0004 where the light is 0.4, and which part of it comes with light is not known.
+        let values = [("shot", 0.0005, 0.0005), ("read_variance", 0.0002, 0.0002)];
+        let text = size_in_words("sensor_noise", &values, &|_, _| -0.99);
+        assert_eq!(text, "at 40 % of full light, 2.00 % of full scale is missing (± 0.14 %)");
     }
 
     #[test]
@@ -393,7 +419,7 @@ mod tests {
         for effect in library() {
             let values: Vec<(&'static str, f64, f64)> =
                 effect.parameters().iter().map(|parameter| (parameter.name, 0.01, 0.001)).collect();
-            assert!(!size_in_words(effect.id(), &values).contains(" ± 0.001"), "{}", effect.id());
+            assert!(!independent(effect.id(), &values).contains(" ± 0.001"), "{}", effect.id());
         }
     }
 
@@ -404,10 +430,10 @@ mod tests {
             for (value, sigma) in [(f64::NAN, f64::NAN), (0.0, f64::NAN), (f64::INFINITY, 1.0), (0.0, 0.0)] {
                 let values: Vec<(&'static str, f64, f64)> =
                     parameters.iter().map(|parameter| (parameter.name, value, sigma)).collect();
-                let text = size_in_words(effect.id(), &values);
+                let text = independent(effect.id(), &values);
                 assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
             }
-            assert_eq!(size_in_words(effect.id(), &[]), "of unknown size");
+            assert_eq!(independent(effect.id(), &[]), "of unknown size");
         }
     }
 }

@@ -22,8 +22,7 @@ use crate::{
 /// No model is larger, bytes.
 const MAX_BYTES: u64 = 1 << 20;
 
-const HEADER: &str =
-    "# Effects of the simulated camera beside what camera.toml says. Neutral values: no effect.\n";
+const HEADER: &str = "# Effects of the simulated camera beside what camera.toml says, as positive values have them; neutral values: no effect.\n";
 
 /// All text of a regular file that is no larger than a model can be.
 pub(super) fn read(path: &Path) -> Result<String, ModelError> {
