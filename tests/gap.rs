@@ -370,6 +370,8 @@ fn bad_input_is_one_sentence() {
     assert_refused(&["gap", input, "--model", text(&model), "--out", out], &["model.toml", "gremlins"]);
     fs::write(&model, "[[effect]]\nid = \"vignetting\"\nstrength = nan\n").unwrap();
     assert_refused(&["gap", input, "--model", text(&model), "--out", out], &["model.toml", "strength"]);
+    fs::write(&model, "[[effect]]\nid = \"camera_height\"\nheight_m = -2.0\n").unwrap();
+    assert_refused(&["gap", input, "--model", text(&model), "--out", out], &["frame 0", "camera_height"]);
     assert_eq!(program(&["gap", input, "--frames", "9..3", "--out", out]).status.code(), Some(2));
     assert_eq!(program(&["gap", input]).status.code(), Some(2));
 }

@@ -54,8 +54,7 @@ pub fn analyse(
 ) -> Result<Analysis, MeasureError> {
     let found = find(recording, model, options, progress)?;
     progress(Stage::Judging);
-    let evidence = found.evidence();
-    let naming = Naming { evidence: &evidence, columns: &found.columns };
+    let naming = found.naming();
     let all = found.all();
     let before = Judged::new(recording, &found, model)?;
     let after = Judged::new(recording, &found, &found.measured.model)?;
@@ -65,7 +64,7 @@ pub fn analyse(
     effects.sort_by(|a, b| b.held_out_gain.value.total_cmp(&a.held_out_gain.value));
     let in_model = effect_reports(recording, &naming, &found, &found.given, &after)?;
     // What is odd in one view may be the place's.
-    let unexplained = if evidence.views() < LEAST_VIEWS {
+    let unexplained = if naming.evidence.views() < LEAST_VIEWS {
         Vec::new()
     } else {
         let explained = Explained::new(&found, &before, &after);

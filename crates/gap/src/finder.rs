@@ -43,29 +43,33 @@ pub(crate) struct Finder<'a> {
     pub(crate) recording: &'a Recording<'a>,
     pub(crate) columns: &'a [Column],
     pub(crate) split: &'a Split,
+    /// Effects that the model has had from the start.
+    pub(crate) given: &'a [usize],
     pub(crate) progress: &'a dyn Fn(Stage),
 }
 
 impl Finder<'_> {
+    /// The effects of a model in which these are named.
+    fn all(&self, named: &[usize]) -> Vec<usize> {
+        self.given.iter().chain(named).copied().collect()
+    }
+
     /// The model without an effect that no longer holds, settled, where it does not hold beside that, either. Large effects may
     /// seem not to hold once they have settled, as Wald's test loses its power far from none (Hauck and Donner 1977).
     pub(crate) fn dropped(
         &self,
         measured: &Measured,
-        given: &[usize],
         named: &[usize],
     ) -> Result<Option<(Vec<usize>, Measured)>, MeasureError> {
-        let evidence = measured.evidence(self.columns);
-        let naming = Naming { evidence: &evidence, columns: self.columns };
-        let all: Vec<usize> = given.iter().chain(named).copied().collect();
+        let naming = measured.naming(self.columns);
+        let all = self.all(named);
         let tested = naming.effects().len();
         let falls = |effect: &&usize| naming.case(**effect, &all, tested).is_none_or(|case| !case.holds());
         for fallen in named.iter().filter(falls) {
             let others: Vec<usize> = named.iter().copied().filter(|effect| effect != fallen).collect();
-            let without: Vec<usize> = given.iter().chain(&others).copied().collect();
+            let without = self.all(&others);
             let settled = self.settle(measured.clone(), &without)?;
-            let evidence = settled.evidence(self.columns);
-            let naming = Naming { evidence: &evidence, columns: self.columns };
+            let naming = settled.naming(self.columns);
             if naming.case(*fallen, &without, tested).is_none_or(|case| !case.holds()) {
                 return Ok(Some((others, settled)));
             }
@@ -74,16 +78,9 @@ impl Finder<'_> {
     }
 
     /// How unlikely an effect that is not in the model is chance.
-    pub(crate) fn p_value(
-        &self,
-        measured: &Measured,
-        given: &[usize],
-        named: &[usize],
-        effect: usize,
-    ) -> Option<f64> {
-        let evidence = measured.evidence(self.columns);
-        let naming = Naming { evidence: &evidence, columns: self.columns };
-        let all: Vec<usize> = given.iter().chain(named).copied().collect();
+    pub(crate) fn p_value(&self, measured: &Measured, named: &[usize], effect: usize) -> Option<f64> {
+        let naming = measured.naming(self.columns);
+        let all = self.all(named);
         Some(naming.case(effect, &all, naming.effects().len())?.p_value)
     }
 
@@ -92,13 +89,11 @@ impl Finder<'_> {
     pub(crate) fn next_sets(
         &self,
         measured: &Measured,
-        given: &[usize],
         named: &[usize],
         is_new: impl Fn(&[usize]) -> bool,
     ) -> Vec<Vec<usize>> {
-        let evidence = measured.evidence(self.columns);
-        let naming = Naming { evidence: &evidence, columns: self.columns };
-        let all: Vec<usize> = given.iter().chain(named).copied().collect();
+        let naming = measured.naming(self.columns);
+        let all = self.all(named);
         let swapped = |(old, new): (usize, usize)| -> Vec<usize> {
             named.iter().map(|&effect| if effect == old { new } else { effect }).collect()
         };
@@ -114,14 +109,12 @@ impl Finder<'_> {
     pub(crate) fn closest(
         &self,
         measured: &Measured,
-        given: &[usize],
         sets: Vec<Vec<usize>>,
     ) -> Result<Vec<(Vec<usize>, Measured)>, MeasureError> {
         let only = sets.len() == 1;
         let mut settled = Vec::with_capacity(sets.len());
         for set in sets {
-            let all: Vec<usize> = given.iter().chain(&set).copied().collect();
-            let model = self.settle(measured.clone(), &all)?;
+            let model = self.settle(measured.clone(), &self.all(&set))?;
             let left = if only { 0.0 } else { self.left(&model, &measured.system) };
             settled.push((left, set, model));
         }
@@ -141,13 +134,11 @@ impl Finder<'_> {
     pub(crate) fn rivals(
         &self,
         measured: &Measured,
-        given: &[usize],
         named: &[usize],
         ties: &[(usize, usize)],
     ) -> Result<Vec<(usize, usize)>, MeasureError> {
-        let evidence = measured.evidence(self.columns);
-        let naming = Naming { evidence: &evidence, columns: self.columns };
-        let all: Vec<usize> = given.iter().chain(named).copied().collect();
+        let naming = measured.naming(self.columns);
+        let all = self.all(named);
         let left = self.left(measured, &measured.system);
         let mut rivals = Vec::new();
         for &effect in named {
@@ -175,8 +166,7 @@ impl Finder<'_> {
     /// What a settled model leaves, minus log-likelihood: residuals in the standard deviations of one system, cut off
     /// where they are no measurement, and what tolerances have to be.
     pub(crate) fn left(&self, measured: &Measured, system: &System) -> f64 {
-        let evidence = measured.evidence(self.columns);
-        let Some(fit) = evidence.as_it_is() else { return f64::INFINITY };
+        let Some(fit) = measured.naming(self.columns).evidence.as_it_is() else { return f64::INFINITY };
         let strain = 0.5 * fit.delta.norm_squared();
         let mut means: BTreeMap<(Channel, u8), (f64, f64)> = BTreeMap::new();
         for (frame, weights) in self.split.fitted().zip(&measured.system.weights) {
@@ -204,10 +194,9 @@ impl Finder<'_> {
     pub(crate) fn settle(&self, mut measured: Measured, effects: &[usize]) -> Result<Measured, MeasureError> {
         for _ in 0..SETTLING {
             (self.progress)(Stage::Fitting);
-            let evidence = measured.evidence(self.columns);
-            let naming = Naming { evidence: &evidence, columns: self.columns };
+            let naming = measured.naming(self.columns);
             let Some(fit) = naming.fit_in_range(effects) else { break };
-            let still = evidence.improvement(&fit) < SETTLED;
+            let still = naming.evidence.improvement(&fit) < SETTLED;
             let model = self.moved(&measured.model, &naming, &fit, effects);
             (self.progress)(Stage::Measuring);
             measured = Measured::new(self.recording, model, self.columns, self.split, SEARCH[1])?;

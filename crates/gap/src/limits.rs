@@ -163,9 +163,9 @@ mod tests {
     fn limit_and_p(seed: u64, information: f64, size: f64) -> (Option<f64>, f64) {
         let system = system(seed, information, size);
         let evidence = Evidence::new(&system, DVector::zeros(1));
-        let naming = Naming { evidence: &evidence, columns: &[pitch()] };
-        let fit = evidence.fit(&[0]).unwrap();
-        (limit_of(&naming, 0, &[]), evidence.p_value(&fit, &[0]))
+        let naming = Naming { evidence, columns: &[pitch()] };
+        let fit = naming.evidence.fit(&[0]).unwrap();
+        (limit_of(&naming, 0, &[]), naming.evidence.p_value(&fit, &[0]))
     }
 
     #[test]

@@ -29,6 +29,29 @@ pub enum MeasureError {
     /// The model.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// A model that puts the camera under the carpet.
+    #[error(
+        "with the model's effects the camera of frame {index} is {height_m:.3} m high: it must be above 0, the ground; check \
+         its camera_height"
+    )]
+    NotAboveGround {
+        /// Of the frame in the recording.
+        index: usize,
+        /// There, metres.
+        height_m: f64,
+    },
+}
+
+/// Refuses a model that has the camera on the ground or under it.
+pub(crate) fn check(recording: &Recording<'_>, model: &Model) -> Result<(), MeasureError> {
+    let chain = Chain::new(&recording.sequence.setup, &recording.sequence.field, model)?;
+    for frame in &recording.frames {
+        let height_m = chain.pose(&recording.trajectory, frame.time_s, 0.5).height_m;
+        if height_m <= 0.0 {
+            return Err(MeasureError::NotAboveGround { index: frame.index, height_m });
+        }
+    }
+    Ok(())
 }
 
 /// Looks at every frame where the model expects things.

@@ -7,7 +7,7 @@ use crate::{
     evidence::Evidence,
     look::Look,
     measure::{MeasureError, linearise, look_at},
-    naming::base,
+    naming::{Naming, base},
     recording::Recording,
     rows::Channel,
     split::Split,
@@ -53,7 +53,8 @@ impl Measured {
         Ok(Self { model, looks, tolerances, frames, system })
     }
 
-    pub(crate) fn evidence(&self, columns: &[Column]) -> Evidence<'_> {
-        Evidence::new(&self.system, base(columns, &self.model))
+    /// What speaks for each effect, seen from where the model is.
+    pub(crate) fn naming<'a>(&'a self, columns: &'a [Column]) -> Naming<'a> {
+        Naming { evidence: Evidence::new(&self.system, base(columns, &self.model)), columns }
     }
 }

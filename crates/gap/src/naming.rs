@@ -56,7 +56,7 @@ impl Case {
 
 /// The evidence with names.
 pub(crate) struct Naming<'a> {
-    pub(crate) evidence: &'a Evidence<'a>,
+    pub(crate) evidence: Evidence<'a>,
     pub(crate) columns: &'a [Column],
 }
 

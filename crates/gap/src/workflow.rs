@@ -6,11 +6,10 @@ use reality_sim_sensor::{Model, library};
 
 use crate::{
     columns::{Column, columns},
-    evidence::Evidence,
     finder::Finder,
-    measure::MeasureError,
+    measure::{MeasureError, check},
     measured::{Measured, SEARCH},
-    naming::Case,
+    naming::{Case, Naming},
     placing::placing,
     progress::Stage,
     recording::Recording,
@@ -50,8 +49,8 @@ impl Found {
         self.given.iter().chain(&self.named).copied().collect()
     }
 
-    pub(crate) fn evidence(&self) -> Evidence<'_> {
-        self.measured.evidence(&self.columns)
+    pub(crate) fn naming(&self) -> Naming<'_> {
+        self.measured.naming(&self.columns)
     }
 
     /// How unlikely an effect is chance: by the model without it, or by that with it.
@@ -72,11 +71,12 @@ pub(crate) fn find(
     options: &Options,
     progress: &dyn Fn(Stage),
 ) -> Result<Found, MeasureError> {
+    check(recording, model)?;
     let columns = columns(&options.without);
     let split = Split::new(recording.frames.len(), options.seed);
     let index = |id: &str| library().iter().position(|effect| effect.id() == id);
     let given: Vec<usize> = model.effects.iter().filter_map(|used| index(used.effect.id())).collect();
-    let finder = Finder { recording, columns: &columns, split: &split, progress };
+    let finder = Finder { recording, columns: &columns, split: &split, given: &given, progress };
     progress(Stage::Measuring);
     let mut measured = Measured::new(recording, model.clone(), &columns, &split, SEARCH[0])?;
     let mut named: Vec<usize> = Vec::new();
@@ -94,13 +94,13 @@ pub(crate) fn find(
     let mut p_values = BTreeMap::new();
     while named.len() < MOST_EFFECTS {
         progress(Stage::Testing);
-        if let Some((set, settled)) = finder.dropped(&measured, &given, &named)? {
+        if let Some((set, settled)) = finder.dropped(&measured, &named)? {
             (named, measured) = (set, settled);
             continue;
         }
-        let sets = finder.next_sets(&measured, &given, &named, |set| !tried.contains(&sorted(set)));
+        let sets = finder.next_sets(&measured, &named, |set| !tried.contains(&sorted(set)));
         let swaps = sets.iter().any(|set| set.len() == named.len());
-        let mut closest = finder.closest(&measured, &given, sets)?.into_iter();
+        let mut closest = finder.closest(&measured, sets)?.into_iter();
         let Some((set, settled)) = closest.next() else { break };
         tried.push(sorted(&set));
         // What looked better may not be, now that it has settled.
@@ -112,15 +112,13 @@ pub(crate) fn find(
             ties.extend(differing(&set, &other));
         }
         let new = set.iter().copied().filter(|effect| !named.contains(effect));
-        p_values.extend(
-            new.filter_map(|effect| Some((effect, finder.p_value(&measured, &given, &named, effect)?))),
-        );
+        p_values.extend(new.filter_map(|effect| Some((effect, finder.p_value(&measured, &named, effect)?))));
         (named, measured) = (set, settled);
     }
     if named.is_empty() && measured.model != as_given {
         measured = Measured::new(recording, as_given, &columns, &split, SEARCH[1])?;
     }
-    let rivals = finder.rivals(&measured, &given, &named, &ties)?;
+    let rivals = finder.rivals(&measured, &named, &ties)?;
     Ok(Found { columns, split, measured, given, named, p_values, rivals })
 }
 
@@ -130,6 +128,7 @@ pub(crate) fn as_given(
     model: &Model,
     options: &Options,
 ) -> Result<Found, MeasureError> {
+    check(recording, model)?;
     let columns = columns(&options.without);
     let split = Split::new(recording.frames.len(), options.seed);
     let measured = Measured::new(recording, model.clone(), &columns, &split, SEARCH[1])?;
