@@ -339,13 +339,19 @@ fn what_the_camera_file_does_not_tell_is_not_judged() {
         .flat_map(|line| [line, "\n"])
         .collect();
     fs::write(&camera, without).unwrap();
-    let report = reported(&Sequence::open(folder.path()).unwrap());
+    let sequence = Sequence::open(folder.path()).unwrap();
+    let report = reported(&sequence);
     let unseen: Vec<&str> = report.unobservable.iter().map(|effect| effect.id.as_str()).collect();
     for id in ["vignetting", "white_balance", "defocus", "sensor_noise"] {
         assert!(unseen.contains(&id), "{id} is not in {unseen:?}");
     }
     assert_eq!(named(&report), Vec::<&str>::new());
     assert!(report.summary.contains("effects cannot be judged"), "{}", report.summary);
+    // Of a given effect nothing is learnt either: it stays.
+    let vignetting = reality_sim::sensor::effect("vignetting").unwrap();
+    let given = Model::default().with(vignetting, [0.3]);
+    let extended = analysed(&sequence, &given, &Options::default()).model;
+    assert_eq!(extended.values("vignetting"), given.values("vignetting"));
 }
 
 #[test]
@@ -370,6 +376,11 @@ fn bad_input_is_one_sentence() {
     assert_refused(&["gap", input, "--model", text(&model), "--out", out], &["model.toml", "gremlins"]);
     fs::write(&model, "[[effect]]\nid = \"vignetting\"\nstrength = nan\n").unwrap();
     assert_refused(&["gap", input, "--model", text(&model), "--out", out], &["model.toml", "strength"]);
+    fs::write(&model, "[[effect]]\nid = \"focal_length\"\nscale = -1.0\n").unwrap();
+    let fresh = folder.path().join("fresh");
+    let refused = ["gap", input, "--model", text(&model), "--out", text(&fresh)];
+    assert_refused(&refused, &["model.toml", "focal"]);
+    assert!(!fresh.exists(), "nothing is made for what is refused");
     fs::write(&model, "[[effect]]\nid = \"camera_height\"\nheight_m = -2.0\n").unwrap();
     assert_refused(&["gap", input, "--model", text(&model), "--out", out], &["frame 0", "camera_height"]);
     assert_eq!(program(&["gap", input, "--frames", "9..3", "--out", out]).status.code(), Some(2));

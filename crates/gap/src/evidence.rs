@@ -7,14 +7,12 @@ use crate::{
     split::stretch,
     sums::Sums,
     system::{PRIOR, System},
-    total::{Fit, Total},
+    total::{Fit, Total, UNSEEN},
 };
 
 /// Frames one after the other see the same things: scores are taken to be correlated over this many (Newey and West,
 /// 1987).
 const LAG: usize = 3;
-/// Where fitting a parameter leaves this part of what was known of it before, it cannot be seen.
-pub(crate) const UNSEEN: f64 = 0.1;
 /// Parts of the recording that are left out in turn.
 const FOLDS: usize = 6;
 /// Frames in a row that are left out together where an effect changes over time: few, so that it is seen before and

@@ -215,7 +215,9 @@ impl Finder<'_> {
             let mut values = model
                 .values(effect.id())
                 .map_or_else(|| starting_values(effect, self.recording), <[f64]>::to_vec);
-            for column in naming.columns_of(&[index]) {
+            // What these frames do not tell of a given effect stays as it was given.
+            let stays = |column: &usize| self.given.contains(&index) && fit.tells_nothing(*column);
+            for column in naming.columns_of(&[index]).into_iter().filter(|column| !stays(column)) {
                 values[self.columns[column].parameter] = naming.value(fit, column);
             }
             moved = moved.with(effect, values);

@@ -3,7 +3,7 @@
 use reality_sim_sensor::{Effect, Stage, library};
 
 use crate::{
-    evidence::{UNSEEN, student_quantile},
+    evidence::student_quantile,
     naming::{ALPHA, Naming},
     recording::{LEAST_VIEWS, Recording},
 };
@@ -64,8 +64,8 @@ fn limit_of(naming: &Naming<'_>, column: usize, all: &[usize]) -> Option<f64> {
     let mut free = naming.columns_of(all);
     free.insert(0, column);
     let fit = naming.evidence.fit(&free)?;
-    let (unexplained, sigma) = (fit.prior_share(column), naming.evidence.sigma(&fit, column));
-    if unexplained > UNSEEN || sigma <= 0.0 {
+    let sigma = naming.evidence.sigma(&fit, column);
+    if fit.tells_nothing(column) || sigma <= 0.0 {
         return None;
     }
     let tests = naming.effects().len() as f64;

@@ -31,8 +31,8 @@ pub enum MeasureError {
     Model(#[from] ModelError),
     /// A model that puts the camera under the carpet.
     #[error(
-        "with the model's effects the camera of frame {index} is {height_m:.3} m high: it must be above 0, the ground; check \
-         its camera_height"
+        "the camera of frame {index} is {height_m:.3} m high: it must be above 0, the ground; check the reference poses and \
+         the model's camera_height"
     )]
     NotAboveGround {
         /// Of the frame in the recording.

@@ -8,6 +8,9 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::{sums::Sums, system::PRIOR};
 
+/// Where a fit leaves more than this part of what was unknown of a column, it cannot be seen.
+pub(crate) const UNSEEN: f64 = 0.1;
+
 /// A set of columns fitted to some frames; the other effects are held where they vanish.
 #[derive(Debug, Clone)]
 pub(crate) struct Fit {
@@ -20,6 +23,11 @@ pub(crate) struct Fit {
 }
 
 impl Fit {
+    /// Whether a free column is hardly better known than before.
+    pub(crate) fn tells_nothing(&self, column: usize) -> bool {
+        self.place(column).is_some() && self.prior_share(column) > UNSEEN
+    }
+
     /// Where a column is among those that are free.
     pub(crate) fn place(&self, column: usize) -> Option<usize> {
         self.free.iter().position(|&free| free == column)

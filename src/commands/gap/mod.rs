@@ -13,7 +13,7 @@ use std::io::{self, IsTerminal};
 use reality_sim::{
     Sequence,
     gap::{Analysis, Options, Pictures, Recording, Stage, analyse, html},
-    sensor::Model,
+    sensor::{Chain, Model},
     sequence::{save_image, write_atomically},
 };
 
@@ -26,11 +26,14 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
     let given = args.model.as_deref().map_or_else(|| Ok(Model::default()), Model::read)?;
     // The model may lie where the last report was written: it is read before the folder is written to.
     refuse_held(args, &given)?;
+    let model = Chain::new(&sequence.setup, &sequence.field, &given);
+    model.map_err(|error| args.model.iter().fold(error, |error, path| error.in_file(path)))?;
     let pictures = sequence.frames.first().map(|_| sequence.image_path(0)).transpose()?;
     create_output_folder(&args.out, &[sequence.files.clone(), Vec::from_iter(pictures)].concat())?;
     let poses = poses::reference(args, &sequence)?;
-    let recording = Recording::new(&sequence, &poses.poses, poses.source, args.frames.clone())?;
     let progress = stages()?;
+    progress.set_message("reading the pictures");
+    let recording = Recording::new(&sequence, &poses.poses, poses.source, args.frames.clone())?;
     let options = Options { seed: args.seed, without: args.without.clone() };
     let analysis = analyse(&recording, &given, &options, &|stage| progress.set_message(words(stage)));
     progress.finish_and_clear();
