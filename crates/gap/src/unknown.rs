@@ -1,4 +1,4 @@
-//! What is left when all effects are fitted, and is in the shape of none of them.
+//! What the effects in the model leave, with tolerances and poses fitted.
 //!
 //! Residuals are binned by where and when they were measured. Bins that keep their mean from one part of the recording
 //! to the others are no chance: as for effects, frames are judged by the means of the other parts.
