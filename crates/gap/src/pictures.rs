@@ -1,10 +1,11 @@
 //! The picture that convinces: one frame as it was recorded and as the model draws it, without and with what was found.
 
-use image::RgbImage;
+use glam::DVec2;
+use image::{GrayImage, Luma, RgbImage};
 use reality_sim_core::sequence::SequenceError;
-use reality_sim_sensor::{Model, ModelError, PoseError, Renderer, SceneColors};
+use reality_sim_sensor::{Chain, Model, ModelError, PoseError, Renderer, SceneColors};
 
-use crate::{analysis::Analysis, recording::Recording};
+use crate::{analysis::Analysis, look::View, recording::Recording, surroundings::Surroundings};
 
 /// One frame three times.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +16,8 @@ pub struct Pictures {
     pub before: RgbImage,
     /// As the extended model draws it.
     pub after: RgbImage,
+    /// 255 where the extended model sees the field, on which all that is compared lies; else 0.
+    pub field: GrayImage,
 }
 
 /// Why there are no pictures.
@@ -49,10 +52,14 @@ impl Pictures {
                 .draw_at(&recording.trajectory, time_s, None)
                 .map_err(|source| PicturesError::Pose { index, source })
         };
-        Ok(Self {
-            measured: sequence.load_image(index)?,
-            before: drawn(given)?,
-            after: drawn(&analysis.model)?,
-        })
+        let measured = sequence.load_image(index)?;
+        let chain = Chain::new(&sequence.setup, &sequence.field, &analysis.model)?;
+        let view = View::new(&chain, &recording.trajectory, time_s);
+        let surroundings = Surroundings::new(&view);
+        let field = GrayImage::from_fn(measured.width(), measured.height(), |x, y| {
+            let shows_field = surroundings.shows_field(DVec2::new(f64::from(x), f64::from(y)));
+            Luma([if shows_field { u8::MAX } else { 0 }])
+        });
+        Ok(Self { measured, before: drawn(given)?, after: drawn(&analysis.model)?, field })
     }
 }

@@ -90,6 +90,18 @@ impl<'a> Surroundings<'a> {
         (inside && off_lines && off_marks && self.off_posts(center, POST_MARGIN_M, 0.0)).then_some(center)
     }
 
+    /// Whether a pixel shows the field, with its lines and marks: no goal, nothing beyond the carpet.
+    pub(crate) fn shows_field(&self, pixel: DVec2) -> bool {
+        let camera = self.view.chain.camera();
+        let ground = camera.unproject_to_ground(self.view.pose, pixel);
+        camera.check_inside(pixel).is_ok()
+            && ground.is_ok_and(|ground| {
+                ground.abs().cmple(self.half_extent_m).all()
+                    && self.to_nets_m(ground) > 0.0
+                    && self.off_posts(ground, POST_MARGIN_M, 0.0)
+            })
+    }
+
     /// From a point to what may stand behind a goal's line between its posts: nets and bars, of which a field's file does
     /// not tell.
     fn to_nets_m(&self, point: DVec2) -> f64 {

@@ -1,6 +1,6 @@
 //! The pictures, as recorded and as drawn, inside the page.
 
-use image::{ExtendedColorType, ImageEncoder, Rgb, RgbImage, codecs::jpeg::JpegEncoder};
+use image::{ExtendedColorType, GrayImage, ImageEncoder, Rgb, RgbImage, codecs::jpeg::JpegEncoder};
 
 use super::text::escape;
 use crate::{pictures::Pictures, report::Report, rows::Channel};
@@ -9,13 +9,15 @@ use crate::{pictures::Pictures, report::Report, rows::Channel};
 const JPEG_QUALITY: u8 = 88;
 /// Differences are shown this many times as large.
 const AMPLIFIED: u8 = 4;
+/// And by this, where nothing is compared.
+const FAINT: u8 = 1;
 
 /// As recorded, before, after; and what differs. Where nothing was added to the model, before and after are one.
 pub(super) fn section(pictures: &Pictures, report: &Report) -> String {
-    let Pictures { measured, before, after } = pictures;
+    let Pictures { measured, before, after, field } = pictures;
     let difference = |drawn: &RgbImage, when: &str| {
-        let caption = format!("|measured − simulated| × {AMPLIFIED}, {when}");
-        figure(&difference(measured, drawn), &caption)
+        let caption = format!("|measured − simulated| × {AMPLIFIED} on the field, {when}");
+        figure(&difference(measured, drawn, field), &caption)
     };
     let figures = if before == after {
         format!(
@@ -55,14 +57,15 @@ fn figure(picture: &RgbImage, caption: &str) -> String {
     format!("<figure>{shown}<figcaption>{caption}</figcaption></figure>")
 }
 
-/// Amplified; no pixels where the pictures differ in size.
-fn difference(measured: &RgbImage, drawn: &RgbImage) -> RgbImage {
-    if measured.dimensions() != drawn.dimensions() {
+/// Amplified on the field; no pixels where the pictures differ in size.
+fn difference(measured: &RgbImage, drawn: &RgbImage, field: &GrayImage) -> RgbImage {
+    if measured.dimensions() != drawn.dimensions() || measured.dimensions() != field.dimensions() {
         return RgbImage::new(0, 0);
     }
     RgbImage::from_fn(measured.width(), measured.height(), |x, y| {
         let (a, b) = (measured.get_pixel(x, y).0, drawn.get_pixel(x, y).0);
-        Rgb(std::array::from_fn(|color| a[color].abs_diff(b[color]).saturating_mul(AMPLIFIED)))
+        let factor = if field.get_pixel(x, y).0[0] > 0 { AMPLIFIED } else { FAINT };
+        Rgb(std::array::from_fn(|color| a[color].abs_diff(b[color]).saturating_mul(factor)))
     })
 }
 
@@ -96,6 +99,8 @@ fn base64(bytes: &[u8]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use image::Luma;
+
     use super::*;
 
     /// Section 10 of RFC 4648.
@@ -116,16 +121,20 @@ mod tests {
     }
 
     #[test]
-    fn a_difference_is_amplified_up_to_white() {
+    fn a_difference_is_amplified_up_to_white_on_the_field() {
         let [grey, darker] = [100, 90].map(|value| RgbImage::from_pixel(2, 2, Rgb([value, value, 0])));
-        assert_eq!(difference(&grey, &darker).get_pixel(1, 1).0, [40, 40, 0]);
+        let field = GrayImage::from_fn(2, 2, |x, _| Luma([if x > 0 { 255 } else { 0 }]));
+        let shown = difference(&grey, &darker, &field);
+        assert_eq!([shown.get_pixel(1, 1).0, shown.get_pixel(0, 1).0], [[40, 40, 0], [10, 10, 0]]);
         let black = RgbImage::new(2, 2);
-        assert_eq!(difference(&grey, &black).get_pixel(0, 0).0, [255, 255, 0]);
+        assert_eq!(difference(&grey, &black, &field).get_pixel(1, 0).0, [255, 255, 0]);
     }
 
     #[test]
     fn pictures_of_different_sizes_have_no_difference() {
-        assert_eq!(difference(&RgbImage::new(2, 2), &RgbImage::new(3, 2)).dimensions(), (0, 0));
+        let (one, other) = (RgbImage::new(2, 2), RgbImage::new(3, 2));
+        assert_eq!(difference(&one, &other, &GrayImage::new(2, 2)).dimensions(), (0, 0));
+        assert_eq!(difference(&one, &one, &GrayImage::new(3, 2)).dimensions(), (0, 0));
         assert!(figure(&RgbImage::new(0, 0), "empty").contains("no picture"));
     }
 }

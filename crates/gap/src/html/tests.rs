@@ -1,6 +1,6 @@
 use std::collections::BTreeMap;
 
-use image::{Rgb, RgbImage};
+use image::{GrayImage, Luma, Rgb, RgbImage};
 use reality_sim_core::field::FieldDimensions;
 use reality_sim_sensor::{Effect, Parameter, library};
 
@@ -134,6 +134,7 @@ fn pictures() -> Pictures {
         measured: picture(0),
         before: RgbImage::from_pixel(64, 48, Rgb([9, 150, 80])),
         after: picture(0),
+        field: GrayImage::from_pixel(64, 48, Luma([255])),
     }
 }
 
@@ -232,7 +233,8 @@ fn the_channel_whose_gap_closed_most_is_not_folded() {
 fn a_report_without_maps_and_pictures_is_a_page() {
     let report = Report { maps: BTreeMap::new(), effects: Vec::new(), unexplained: Vec::new(), ..hollow() };
     let none = || RgbImage::new(0, 0);
-    let page = page(&report, &Pictures { measured: none(), before: none(), after: none() });
+    let field = GrayImage::new(0, 0);
+    let page = page(&report, &Pictures { measured: none(), before: none(), after: none(), field });
     assert_balanced(&page);
     assert!(page.contains("Nothing significant is left."));
 }
