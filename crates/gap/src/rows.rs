@@ -75,10 +75,29 @@ pub(crate) struct Row {
     pub(crate) ground: DVec2,
     /// Unit vector across the line.
     pub(crate) normal: DVec2,
+    /// How fast what is seen moves along the normal, pixels a second.
+    pub(crate) speed_px_s: f64,
     /// Half the line's width in the picture, pixels.
     pub(crate) half_width_px: f64,
     /// Cosine of the angle at which the ground is seen, 1 from straight above.
     pub(crate) cos_incidence: f64,
+}
+
+impl Row {
+    /// Of no place and across no line.
+    fn nowhere(group: Group, measured: f64, sigma: f64) -> Self {
+        Self {
+            group,
+            measured,
+            sigma,
+            pixel: DVec2::ZERO,
+            ground: DVec2::ZERO,
+            normal: DVec2::ZERO,
+            speed_px_s: 0.0,
+            half_width_px: 0.0,
+            cos_incidence: 1.0,
+        }
+    }
 }
 
 /// The next frame's odometry, as it is in the recording.
@@ -109,9 +128,15 @@ pub(crate) fn measured(look: &Look, step: Option<Step>, context: Context<'_>) ->
         let profile = &line.profile;
         let mut push = |channel, part, measured: f64, sigma: f64| {
             let group = Group { channel, part };
-            let (pixel, ground, normal) = (line.pixel, line.ground, line.normal);
-            let (half_width_px, cos_incidence) = (line.half_width_px, cos(ground));
-            rows.push(Row { group, measured, sigma, pixel, ground, normal, half_width_px, cos_incidence });
+            rows.push(Row {
+                pixel: line.pixel,
+                ground: line.ground,
+                normal: line.normal,
+                speed_px_s: line.speed_px_s,
+                half_width_px: line.half_width_px,
+                cos_incidence: cos(line.ground),
+                ..Row::nowhere(group, measured, sigma)
+            });
         };
         push(Channel::Geometry, 0, profile.offset_px, profile.offset_sigma_px);
         push(Channel::Sharpness, 0, profile.variance_px2, profile.variance_sigma_px2);
@@ -126,9 +151,12 @@ pub(crate) fn measured(look: &Look, step: Option<Step>, context: Context<'_>) ->
     for block in &look.blocks {
         let mut push = |channel, part, measured: f64, sigma: f64| {
             let group = Group { channel, part };
-            let (pixel, ground) = (block.pixel, block.ground);
-            let (normal, half_width_px, cos_incidence) = (DVec2::ZERO, 0.0, cos(ground));
-            rows.push(Row { group, measured, sigma, pixel, ground, normal, half_width_px, cos_incidence });
+            rows.push(Row {
+                pixel: block.pixel,
+                ground: block.ground,
+                cos_incidence: cos(block.ground),
+                ..Row::nowhere(group, measured, sigma)
+            });
         };
         for (part, level) in (3..).zip(block.level) {
             push(Channel::Photometry, part, log_linear(level, context.gamma), 0.0);
@@ -141,9 +169,7 @@ pub(crate) fn measured(look: &Look, step: Option<Step>, context: Context<'_>) ->
         let Motion2 { forward_m, left_m, turn_rad } = step.odometry;
         for (part, measured) in (0..).zip([forward_m, left_m, turn_rad]) {
             let group = Group { channel: Channel::Motion, part };
-            let (pixel, ground, normal) = (DVec2::ZERO, DVec2::ZERO, DVec2::ZERO);
-            let (sigma, half_width_px, cos_incidence) = (0.0, 0.0, 1.0);
-            rows.push(Row { group, measured, sigma, pixel, ground, normal, half_width_px, cos_incidence });
+            rows.push(Row::nowhere(group, measured, 0.0));
         }
     }
     rows

@@ -33,6 +33,7 @@ pub(crate) fn row(channel: Channel, part: u8) -> Row {
         pixel: DVec2::ZERO,
         ground: DVec2::ZERO,
         normal: DVec2::X,
+        speed_px_s: 0.0,
         half_width_px: 2.0,
         cos_incidence: 1.0,
     }

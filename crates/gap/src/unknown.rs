@@ -18,6 +18,8 @@ use crate::{
 
 /// Columns and rows of the picture's grid.
 pub(crate) const GRID: [usize; 2] = [8, 6];
+/// Cells of speed, of the root of the picture's widths a second: narrow ones where it is slow.
+const SPEED_CELL: f64 = 0.2;
 /// Side of a cell of the field, metres.
 pub(crate) const FIELD_CELL_M: f64 = 1.0;
 /// Parts of the recording that are judged by the others.
@@ -38,6 +40,8 @@ pub(crate) enum Locus {
     Field,
     /// When.
     Time,
+    /// How fast what is seen moves across the line.
+    Speed,
 }
 
 /// A pattern that no effect of the library explains.
@@ -75,6 +79,13 @@ impl Pattern {
                 format!("on the field, strongest {}", words::field_place(corner.x, corner.y, FIELD_CELL_M))
             }
             Locus::Time => format!("over time, strongest {} s after the start", self.strongest.0),
+            Locus::Speed => {
+                let widths_per_s = (SPEED_CELL * (f64::from(self.strongest.0) + 0.5)).powi(2);
+                let percent = 100.0 * widths_per_s;
+                format!(
+                    "as the picture moves, strongest where it moves by {percent:.0} % of its width a second"
+                )
+            }
         }
     }
 
@@ -130,8 +141,8 @@ pub(crate) fn patterns(
     // The usual variance of the blur.
     let scale = middle(frames, Channel::Sharpness);
     let material = |channel: Channel| material(channel, scale) + explained.most_off(channel);
-    let loci = [Locus::Picture, Locus::Field, Locus::Time];
-    let pairs = SOURCES.into_iter().flat_map(|source| loci.map(|locus| (source, locus)));
+    let pairs =
+        SOURCES.into_iter().flat_map(|source| source.loci().iter().map(move |&locus| (source, locus)));
     let binned: Vec<Binned> =
         pairs.map(|(source, locus)| Binned::new(frames, sigmas, (source, locus), from_s)).collect();
     let tested = binned.iter().map(Binned::tested).sum::<usize>() as f64;
@@ -152,6 +163,16 @@ struct Source {
 impl Source {
     const fn whole(channel: Channel) -> Self {
         Self { channel, part: None }
+    }
+
+    /// What it is binned by. Where lines are and how sharp they are may change as the picture moves.
+    fn loci(&self) -> &'static [Locus] {
+        match self.channel {
+            Channel::Geometry | Channel::Sharpness => {
+                &[Locus::Picture, Locus::Field, Locus::Time, Locus::Speed]
+            }
+            _ => &[Locus::Picture, Locus::Field, Locus::Time],
+        }
     }
 
     fn has(&self, row: &Row) -> bool {
@@ -349,6 +370,10 @@ fn bins(
                 ((row.ground.x / FIELD_CELL_M).floor() as i32, (row.ground.y / FIELD_CELL_M).floor() as i32)
             }
             Locus::Time => (((frame.time_s - from_s) / 1.0).floor() as i32, 0),
+            Locus::Speed => {
+                let widths_per_s = row.speed_px_s.abs() / f64::from(frame.size[0]);
+                ((widths_per_s.sqrt() / SPEED_CELL).floor() as i32, 0)
+            }
         };
         // Other things on the carpet are no pattern of it; what is odd about a line is.
         if matches!(channel, Channel::Photometry | Channel::Noise) && value.abs() > CLIP * sigma {
@@ -361,6 +386,8 @@ fn bins(
         let residual = (value / sigma).clamp(-CLIP, CLIP);
         let direction = match (channel, locus) {
             (Channel::Geometry | Channel::Color, Locus::Picture) => row.normal,
+            // A line that is seen late is off to where it came from, whichever way its normal points.
+            (Channel::Geometry, Locus::Speed) => DVec2::X * row.speed_px_s.signum(),
             _ => DVec2::X,
         };
         *bins.entry(place).or_default() += Bin {
@@ -448,6 +475,39 @@ mod tests {
         let found = patterns(&frames, &sigmas, &Explained::default(), 0.0);
         let in_picture = found.iter().filter(|pattern| pattern.locus == Locus::Picture);
         assert_eq!(in_picture.count(), 2, "{found:?}");
+    }
+
+    #[test]
+    fn lines_that_are_seen_late_are_off_by_how_fast_the_picture_moves() {
+        // Half of the lines' normals point to where the picture moves, half away; quick ones are seen in turns anywhere.
+        let rows_of = |frame: u32| -> Vec<Row> {
+            (0..300_u32)
+                .map(|index| {
+                    let quick = (index + frame) % 3 == 0;
+                    let speed_px_s =
+                        if quick { 100.0 } else { 10.0 } * if index % 2 == 0 { 1.0 } else { -1.0 };
+                    let pixel = DVec2::new(f64::from(8 * index % 320), f64::from(8 * (index / 40)));
+                    Row { pixel, ground: pixel / 80.0, speed_px_s, ..row(Channel::Geometry, 0) }
+                })
+                .collect()
+        };
+        let all: Vec<Vec<Row>> = (0..24).map(rows_of).collect();
+        let frames: Vec<Residuals<'_>> = (0..)
+            .zip(&all)
+            .map(|(frame, rows)| Residuals {
+                rows,
+                values: rows.iter().map(|row| 0.004 * row.speed_px_s).collect(),
+                time_s: 0.2 * f64::from(frame),
+                size: SIZE,
+            })
+            .collect();
+        let sigmas = BTreeMap::from([((Channel::Geometry, 0), 0.2)]);
+        let found = patterns(&frames, &sigmas, &Explained::default(), 0.0);
+        let loci: Vec<Locus> = found.iter().map(|pattern| pattern.locus).collect();
+        assert_eq!(loci, [Locus::Speed], "{found:?}");
+        assert!((found[0].reported_size() - 0.4).abs() < 0.02, "{}", found[0].reported_size());
+        // Of 320 pixels, 100 are 31 %.
+        assert!(found[0].place().contains("by 25 % of its width a second"), "{}", found[0].place());
     }
 
     #[test]
