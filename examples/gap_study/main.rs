@@ -34,8 +34,8 @@ struct Args {
     /// Folder for runs.jsonl and study.md
     #[arg(long)]
     out: PathBuf,
-    /// Which draw of recordings and effects: the rules were made on draw 0
-    #[arg(long, default_value_t = 1)]
+    /// Which draw of recordings and effects: the rules were made on draws 0 and 1
+    #[arg(long, default_value_t = 2)]
     draw: u64,
     /// Only these parts
     #[arg(long, value_enum)]

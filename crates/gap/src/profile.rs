@@ -15,6 +15,10 @@ pub(crate) const LUMA: [f64; 3] = [0.299, 0.587, 0.114];
 const HALF_LENGTH_PX: f64 = 2.5;
 /// Flank taken beyond the blurred side of the line, pixels.
 const FLANK_PX: f64 = 4.0;
+/// Standard deviation of the blur by colours kept at half the resolution: pixels in pairs, and between pairs drawn.
+const CHROMA_PX: f64 = 0.9;
+/// Flank that is left for colours at least, pixels.
+const LEAST_FLANK_PX: f64 = 1.5;
 /// Steps of Levenberg and Marquardt's method.
 const MAX_STEPS: usize = 12;
 /// Variances outside this are not those of a line's side, pixels squared; the least is a part of the pixel's own.
@@ -245,7 +249,10 @@ fn colors(
     half_width_px: f64,
     sharp_px: f64,
 ) -> Option<(Option<[f64; 2]>, [f64; 3])> {
-    let inner = half_width_px + 2.0 * sharp_px + 1.0;
+    let reach =
+        |side: f64| samples.iter().map(|sample| side * (sample.across_px - center)).fold(0.0, f64::max);
+    let inner = half_width_px + 2.0 * sharp_px.hypot(CHROMA_PX) + 1.0;
+    let inner = inner.min(reach(1.0).min(reach(-1.0)) - LEAST_FLANK_PX);
     let mut flank = [[0.0; 5]; 2];
     for sample in samples {
         let across = sample.across_px - center;
@@ -393,6 +400,54 @@ mod tests {
             prop_assert!((share.iter().sum::<f64>() - 1.0).abs() < 1e-9);
             prop_assert!((red - (red_px - luma)).abs() < 0.05, "{red} for {red_px}");
             prop_assert!((blue - (blue_px - luma)).abs() < 0.05, "{blue} for {blue_px}");
+        }
+    }
+
+    /// As a JPEG file keeps it: red and blue against luma as means of 2 × 2 pixels, drawn again by weights 3 and 1 along
+    /// each axis.
+    fn with_halved_colors(picture: &RgbImage) -> RgbImage {
+        let luma = |rgb: [u8; 3]| {
+            rgb.iter().zip(LUMA).map(|(value, weight)| f64::from(*value) * weight).sum::<f64>()
+        };
+        let against = |u: u32, v: u32, channel: usize| {
+            let rgb = picture.get_pixel(u, v).0;
+            f64::from(rgb[channel]) - luma(rgb)
+        };
+        let half = |column: i64, row: i64, channel: usize| {
+            let corner = [column, row].map(|place| 2 * place.clamp(0, 29) as u32);
+            let pixels = [(0, 0), (1, 0), (0, 1), (1, 1)];
+            pixels.iter().map(|(du, dv)| against(corner[0] + du, corner[1] + dv, channel)).sum::<f64>() / 4.0
+        };
+        RgbImage::from_fn(60, 60, |u, v| {
+            let near = [u, v].map(|place| i64::from(place / 2));
+            let next = [u, v].map(|place| i64::from(place / 2) + if place % 2 == 0 { -1 } else { 1 });
+            let drawn = |channel: usize| {
+                0.5625 * half(near[0], near[1], channel)
+                    + 0.1875 * (half(next[0], near[1], channel) + half(near[0], next[1], channel))
+                    + 0.0625 * half(next[0], next[1], channel)
+            };
+            let luma = luma(picture.get_pixel(u, v).0);
+            let (red, blue) = (luma + drawn(0), luma + drawn(2));
+            let green = (luma - LUMA[0] * red - LUMA[2] * blue) / LUMA[1];
+            Rgb([red, green, blue].map(|value| value.round().clamp(0.0, 255.0) as u8))
+        })
+    }
+
+    #[test]
+    fn colors_kept_at_half_the_resolution_are_where_they_were() {
+        for (red_px, blue_px) in [(0.3, -0.3), (-0.3, 0.3)] {
+            let pieces: Vec<Profile> = (0..32)
+                .filter_map(|step| {
+                    let angle_rad = 0.2 * f64::from(step);
+                    let picture = with_halved_colors(&bar(angle_rad, 0.1, 2.0, 0.6, [red_px, 0.0, blue_px]));
+                    fit(&picture, GAMMA, &piece(angle_rad, 2.0), 0.1)
+                })
+                .collect();
+            let apart = |profile: &Profile| profile.color_offset_px.map(|[red, blue]| red - blue);
+            let apart: Vec<f64> = pieces.iter().filter_map(apart).collect();
+            let mean = apart.iter().sum::<f64>() / apart.len() as f64;
+            assert!(apart.len() > 24, "{}", apart.len());
+            assert!((mean / (red_px - blue_px) - 1.0).abs() < 0.03, "{mean}");
         }
     }
 

@@ -483,9 +483,9 @@ mod tests {
         let rows_of = |frame: u32| -> Vec<Row> {
             (0..300_u32)
                 .map(|index| {
-                    let quick = (index + frame) % 3 == 0;
+                    let quick = (index + frame).is_multiple_of(3);
                     let speed_px_s =
-                        if quick { 100.0 } else { 10.0 } * if index % 2 == 0 { 1.0 } else { -1.0 };
+                        if quick { 100.0 } else { 10.0 } * if index.is_multiple_of(2) { 1.0 } else { -1.0 };
                     let pixel = DVec2::new(f64::from(8 * index % 320), f64::from(8 * (index / 40)));
                     Row { pixel, ground: pixel / 80.0, speed_px_s, ..row(Channel::Geometry, 0) }
                 })
