@@ -208,6 +208,7 @@ fn an_effect_that_is_not_in_the_library_gets_no_other_name() {
         (Hidden::OdometryScale { scale: -0.3 }, "motion"),
         (Hidden::TimeOffset { offset_s: 0.08 }, "geometry"),
         (Hidden::SensorNoise { factor: 1.5 }, "noise"),
+        (Hidden::MotionBlur { exposure_s: 0.05 }, "sharpness"),
     ];
     for (hidden, channel) in cases {
         let (_folder, sequence) = record(51, &[hidden]);

@@ -81,10 +81,7 @@ impl Pattern {
             Locus::Time => format!("over time, strongest {} s after the start", self.strongest.0),
             Locus::Speed => {
                 let widths_per_s = (SPEED_CELL * (f64::from(self.strongest.0) + 0.5)).powi(2);
-                let percent = 100.0 * widths_per_s;
-                format!(
-                    "as the picture moves, strongest where it moves by {percent:.0} % of its width a second"
-                )
+                format!("as the picture moves, strongest where it moves by {widths_per_s:.2} widths a second")
             }
         }
     }
@@ -506,8 +503,8 @@ mod tests {
         let loci: Vec<Locus> = found.iter().map(|pattern| pattern.locus).collect();
         assert_eq!(loci, [Locus::Speed], "{found:?}");
         assert!((found[0].reported_size() - 0.4).abs() < 0.02, "{}", found[0].reported_size());
-        // Of 320 pixels, 100 are 31 %.
-        assert!(found[0].place().contains("by 25 % of its width a second"), "{}", found[0].place());
+        // 100 of 320 pixels are 0.31 widths, in the cell around 0.25.
+        assert!(found[0].place().contains("by 0.25 widths a second"), "{}", found[0].place());
     }
 
     #[test]
