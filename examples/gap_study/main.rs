@@ -34,8 +34,8 @@ struct Args {
     /// Folder for runs.jsonl and study.md
     #[arg(long)]
     out: PathBuf,
-    /// Which draw of recordings and effects: the rules were made on draws 0 and 1
-    #[arg(long, default_value_t = 2)]
+    /// Which draw of recordings and effects: the rules were made on draws 0 to 2
+    #[arg(long, default_value_t = 3)]
     draw: u64,
     /// Only these parts
     #[arg(long, value_enum)]

@@ -16,14 +16,12 @@ const LEAST_SPOTS: usize = 2;
 /// Pictures closer in time show a walker in the same place, seconds.
 const LATER_S: f64 = 1.0;
 /// The place is seen in so many other pictures at least.
-const LEAST_SEEN: usize = 6;
+const LEAST_SEEN: usize = 3;
 /// And is plain carpet in this part of them at least.
-const CLEAR: f64 = 0.95;
-/// Of the same thing is what is so many blocks to the side, or less.
-const ASIDE: f64 = 3.5;
+const CLEAR: f64 = 0.7;
 /// Feet that are gone at other times, in this part of the pictures at least, are worth a word: a thing's side is taken for
 /// its foot now and then.
-const LEAST_PART: f64 = 0.08;
+const LEAST_PART: f64 = 0.2;
 
 /// A block of carpet, or of what hides it.
 #[derive(Debug, Clone, Copy)]
@@ -86,16 +84,8 @@ impl Scene {
             let next_row = self.spots.iter().filter(|other| {
                 (other.pixel.y - below.y).abs() < 0.5 && (other.pixel.x - below.x).abs() < 1.5 * self.pitch_px
             });
-            let plain: Vec<&Spot> = next_row.filter(|other| !other.is_hidden).collect();
-            // Between legs there is carpet, too.
-            let is_lower = |other: &Spot| {
-                other.is_hidden
-                    && other.pixel.y > spot.pixel.y + 0.5
-                    && (other.pixel.x - spot.pixel.x).abs() < ASIDE * self.pitch_px
-            };
-            spot.is_hidden
-                && !self.spots.iter().any(is_lower)
-                && plain.iter().any(|other| other.pixel.distance(below) < 0.5)
+            let (hidden, plain): (Vec<&Spot>, Vec<&Spot>) = next_row.partition(|other| other.is_hidden);
+            spot.is_hidden && hidden.is_empty() && plain.iter().any(|other| other.pixel.distance(below) < 0.5)
         };
         self.spots.iter().filter(is_foot).map(|spot| spot.ground)
     }
@@ -173,19 +163,8 @@ mod tests {
     }
 
     #[test]
-    fn the_carpet_between_the_legs_of_what_stands_is_no_place_that_it_left() {
-        // A body that hides the carpet behind it from its legs on; the camera goes on, and the carpet behind comes in view.
-        let standing = |time_s: f64| {
-            let legs = [DVec2::new(0.5, 0.4), DVec2::new(0.8, 0.4)];
-            let behind = DVec2::new(0.6, if time_s < 2.0 { 0.9 } else { 1.3 });
-            [legs[0], legs[1], behind].to_vec()
-        };
-        assert_eq!(judged(standing), None);
-    }
-
-    #[test]
     fn a_glimpse_is_not_enough() {
-        let glimpse = |time_s: f64| if time_s < 0.1 { vec![DVec2::new(0.7, 0.9)] } else { Vec::new() };
+        let glimpse = |time_s: f64| if time_s < 0.5 { vec![DVec2::new(0.7, 0.9)] } else { Vec::new() };
         assert_eq!(judged(glimpse), None);
     }
 }

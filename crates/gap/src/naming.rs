@@ -81,10 +81,13 @@ impl Naming<'_> {
         let fit = self.evidence.fit(&free)?;
         let sizes: Vec<usize> =
             self.columns_of(&[effect]).into_iter().filter(|&column| self.columns[column].is_size()).collect();
-        let gain = self.gain(&with, &without)?;
+        let [held_out, others] = self.held_out([&with, &without], over_time(&with, &without))?;
+        let gain = held_out.over(&others);
         let p_value = if self.is_possible(&fit, &sizes) {
             let together = Some(self.evidence.p_value(&fit, &sizes));
-            let foretold = changes_over_time(&[effect]).then(|| self.foretold(&with, &without));
+            // Patches of the carpet are where other frames have seen them: they foretell as a place's effect does.
+            let keeps_place = library()[effect].covariates().contains(&Covariate::FieldPosition);
+            let foretold = (!keeps_place).then(|| self.foretold(held_out.surely_over(&others)));
             best_of([together, self.alone(&without, &sizes), foretold])
         } else {
             1.0
@@ -128,12 +131,9 @@ impl Naming<'_> {
         if (coordinate - inside).abs() > 1e-9 { coordinate - inside } else { 0.0 }
     }
 
-    /// How unlikely what an effect gains on unseen frames is chance. What is another at every time has a number for each,
-    /// and each is seen in a few frames: of so many numbers from so few frames a fit's scatter tells little, what it
-    /// foretells does.
-    fn foretold(&self, with: &[usize], without: &[usize]) -> f64 {
-        let Some([with, without]) = self.held_out([with, without], true) else { return 1.0 };
-        let score = with.surely_over(&without);
+    /// How unlikely what an effect gains on unseen frames, so many standard deviations, is chance. Of many numbers from few
+    /// frames, or where another effect is missing, a fit's scatter tells little; what it foretells does.
+    fn foretold(&self, score: f64) -> f64 {
         if score > 0.0 { two_sided(score, self.evidence.degrees() as f64) } else { 1.0 }
     }
 
@@ -273,8 +273,7 @@ impl Naming<'_> {
 
     /// What one set of effects gains over another, both judged on the same unseen frames.
     fn gain(&self, set: &[usize], over: &[usize]) -> Option<Gain> {
-        let over_time = changes_over_time(set) || changes_over_time(over);
-        let [set, over] = self.held_out([set, over], over_time)?;
+        let [set, over] = self.held_out([set, over], over_time(set, over))?;
         Some(set.over(&over))
     }
 
@@ -296,6 +295,11 @@ impl Naming<'_> {
 fn best_of(tests: [Option<f64>; 3]) -> f64 {
     let made = tests.iter().flatten();
     made.clone().count() as f64 * made.fold(1.0, |least: f64, p_value| least.min(*p_value))
+}
+
+/// Whether sets are to be compared on short runs of frames.
+fn over_time(set: &[usize], other: &[usize]) -> bool {
+    changes_over_time(set) || changes_over_time(other)
 }
 
 /// Whether one of these effects is another thing at another time: a course in pictures, not a rate.
