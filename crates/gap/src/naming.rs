@@ -81,7 +81,7 @@ impl Naming<'_> {
         let fit = self.evidence.fit(&free)?;
         let sizes: Vec<usize> =
             self.columns_of(&[effect]).into_iter().filter(|&column| self.columns[column].is_size()).collect();
-        let [held_out, others] = self.held_out([&with, &without], over_time(&with, &without))?;
+        let [held_out, others] = self.held_out([&with, &without])?;
         let gain = held_out.over(&others);
         let p_value = if self.is_possible(&fit, &sizes) {
             let together = Some(self.evidence.p_value(&fit, &sizes));
@@ -273,11 +273,13 @@ impl Naming<'_> {
 
     /// What one set of effects gains over another, both judged on the same unseen frames.
     fn gain(&self, set: &[usize], over: &[usize]) -> Option<Gain> {
-        let [set, over] = self.held_out([set, over], over_time(set, over))?;
+        let [set, over] = self.held_out([set, over])?;
         Some(set.over(&over))
     }
 
-    fn held_out(&self, sets: [&[usize]; 2], over_time: bool) -> Option<[HeldOut; 2]> {
+    /// What two sets gain on the same unseen frames: short runs of them where one changes over time.
+    fn held_out(&self, sets: [&[usize]; 2]) -> Option<[HeldOut; 2]> {
+        let over_time = sets.into_iter().any(changes_over_time);
         let [first, second] = sets.map(|effects| self.columns_of(effects));
         let shared: Vec<usize> = first.iter().copied().filter(|column| second.contains(column)).collect();
         let held_out = |free: &[usize]| self.evidence.held_out(free, &shared, over_time);
@@ -295,11 +297,6 @@ impl Naming<'_> {
 fn best_of(tests: [Option<f64>; 3]) -> f64 {
     let made = tests.iter().flatten();
     made.clone().count() as f64 * made.fold(1.0, |least: f64, p_value| least.min(*p_value))
-}
-
-/// Whether sets are to be compared on short runs of frames.
-fn over_time(set: &[usize], other: &[usize]) -> bool {
-    changes_over_time(set) || changes_over_time(other)
 }
 
 /// Whether one of these effects is another thing at another time: a course in pictures, not a rate.

@@ -415,6 +415,17 @@ mod tests {
     const SIGMA: f64 = 0.05;
     const SIZE: [u32; 2] = [320, 240];
 
+    /// Pictures five a second whose residuals are these, by the picture's number and the row's.
+    fn frames(rows: &[Vec<Row>], residual: impl Fn(u32, u32, &Row) -> f64) -> Vec<Residuals<'_>> {
+        let framed = (0..).zip(rows).map(|(frame, rows)| Residuals {
+            rows,
+            values: (0..).zip(rows).map(|(index, row)| residual(frame, index, row)).collect(),
+            time_s: 0.2 * f64::from(frame),
+            size: SIZE,
+        });
+        framed.collect()
+    }
+
     /// Patterns of the carpet's brightness in 24 pictures, where a block's residual is noise and this, by the picture's
     /// number, the place in the picture and that on the field.
     fn found(residual: impl Fn(u32, DVec2, DVec2) -> f64) -> Vec<Pattern> {
@@ -434,18 +445,9 @@ mod tests {
                 .collect()
         };
         let all: Vec<Vec<Row>> = (0..24).map(rows_of).collect();
-        let frames: Vec<Residuals<'_>> = (0..)
-            .zip(&all)
-            .map(|(frame, rows)| Residuals {
-                rows,
-                values: (0..)
-                    .zip(rows)
-                    .map(|(index, row)| 0.1 * noise(frame, index) + residual(frame, row.pixel, row.ground))
-                    .collect(),
-                time_s: 0.2 * f64::from(frame),
-                size: SIZE,
-            })
-            .collect();
+        let frames = frames(&all, |frame, index, row| {
+            0.1 * noise(frame, index) + residual(frame, row.pixel, row.ground)
+        });
         let sigmas = BTreeMap::from([((Channel::Photometry, 4), SIGMA)]);
         patterns(&frames, &sigmas, &Explained::default(), 0.0)
     }
@@ -489,15 +491,7 @@ mod tests {
                 .collect()
         };
         let all: Vec<Vec<Row>> = (0..24).map(rows_of).collect();
-        let frames: Vec<Residuals<'_>> = (0..)
-            .zip(&all)
-            .map(|(frame, rows)| Residuals {
-                rows,
-                values: rows.iter().map(|row| 0.004 * row.speed_px_s).collect(),
-                time_s: 0.2 * f64::from(frame),
-                size: SIZE,
-            })
-            .collect();
+        let frames = frames(&all, |_, _, row| 0.004 * row.speed_px_s);
         let sigmas = BTreeMap::from([((Channel::Geometry, 0), 0.2)]);
         let found = patterns(&frames, &sigmas, &Explained::default(), 0.0);
         let loci: Vec<Locus> = found.iter().map(|pattern| pattern.locus).collect();

@@ -26,8 +26,9 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
     let given = args.model.as_deref().map_or_else(|| Ok(Model::default()), Model::read)?;
     // The model may lie where the last report was written: it is read before the folder is written to.
     refuse_held(args, &given)?;
-    let model = Chain::new(&sequence.setup, &sequence.field, &given);
-    model.map_err(|error| args.model.iter().fold(error, |error, path| error.in_file(path)))?;
+    if let Some(path) = &args.model {
+        Chain::new(&sequence.setup, &sequence.field, &given).map_err(|error| error.in_file(path))?;
+    }
     let pictures = sequence.frames.first().map(|_| sequence.image_path(0)).transpose()?;
     create_output_folder(&args.out, &[sequence.files.clone(), Vec::from_iter(pictures)].concat())?;
     let poses = poses::reference(args, &sequence)?;
