@@ -319,6 +319,7 @@ fn unexplained(
                 rows: &rows.rows,
                 values: Left::new(rows, weights, &delta, &system.pose_sigmas).residuals,
                 time_s: recording.frames[frame].time_s,
+                camera: found.measured.looks[frame].camera.truncate(),
                 size: [camera.width, camera.height],
             }
         })

@@ -2,7 +2,9 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::{explained::Explained, naming::ALPHA, report::Unexplained, rows::Channel, tolerance::Tolerance};
+use crate::{
+    explained::Explained, report::Unexplained, rows::Channel, tolerance::Tolerance, unknown::LIKELY_CHANCE,
+};
 
 /// Colours in the order of a picture's channels.
 const COLORS: [&str; 3] = ["red", "green", "blue"];
@@ -29,7 +31,7 @@ fn of_channel(channel: Channel, tolerances: &[Tolerance], fitted: &[f64], off: f
     let squares: f64 = nominal.iter().map(|nominal| strain(nominal).powi(2)).sum();
     let p_value = ChiSquared::new(nominal.len().max(1) as f64).ok()?.sf(squares);
     let (farthest, value) = nominal.into_iter().max_by(|a, b| strain(a).abs().total_cmp(&strain(b).abs()))?;
-    (p_value < ALPHA).then(|| Unexplained {
+    (p_value < LIKELY_CHANCE).then(|| Unexplained {
         channel: channel.name().to_owned(),
         r#where: format!(
             "in all pictures, most of all {}: farther from what camera.toml says than that is trusted",
@@ -112,7 +114,7 @@ mod tests {
             panic!()
         };
         assert!(told.r#where.contains("red of carpet"), "{}", told.r#where);
-        assert!((told.size - 0.35_f64.exp_m1()).abs() < 1e-9 && told.p_value.unwrap() < ALPHA);
+        assert!((told.size - 0.35_f64.exp_m1()).abs() < 1e-9 && told.p_value.unwrap() < LIKELY_CHANCE);
     }
 
     #[test]

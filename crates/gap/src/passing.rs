@@ -137,6 +137,7 @@ mod tests {
                     .map(|(index, pixel)| residual(frame, *pixel / size) + texture(frame, index))
                     .collect(),
                 time_s: f64::from(frame),
+                camera: DVec2::ZERO,
                 size: SIZE,
             })
             .collect();

@@ -103,14 +103,16 @@ impl Pattern {
 
 /// A place is seen in so many frames at least.
 const LEAST_FRAMES: usize = 6;
-/// A bin's mean is no chance below this, all bins considered; it has to be large besides.
-const LIKELY_CHANCE: f64 = 0.02;
+/// What no effect explains is no chance below this, all that is tested of its kind considered; it has to be large besides.
+pub(crate) const LIKELY_CHANCE: f64 = 0.02;
 
 /// A frame's residuals after the fit.
 pub(crate) struct Residuals<'a> {
     pub(crate) rows: &'a [Row],
     pub(crate) values: Vec<f64>,
     pub(crate) time_s: f64,
+    /// The place on the field that the camera is above, metres.
+    pub(crate) camera: DVec2,
     pub(crate) size: [u32; 2],
 }
 
@@ -421,6 +423,7 @@ mod tests {
             rows,
             values: (0..).zip(rows).map(|(index, row)| residual(frame, index, row)).collect(),
             time_s: 0.2 * f64::from(frame),
+            camera: DVec2::ZERO,
             size: SIZE,
         });
         framed.collect()
@@ -467,6 +470,7 @@ mod tests {
                 rows: &rows,
                 values: rows.iter().map(off).collect(),
                 time_s: 0.2 * f64::from(frame),
+                camera: DVec2::ZERO,
                 size: SIZE,
             })
             .collect();
