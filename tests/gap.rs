@@ -12,7 +12,7 @@ use std::{
 use reality_sim::{
     Sequence,
     gap::{
-        Analysis, Options, PoseSource, Recording, analyse,
+        Analysis, Options, Pictures, PoseSource, Recording, analyse,
         report::{Report, Verdict},
     },
     sensor::{Model, library},
@@ -37,8 +37,11 @@ fn recorded(recipe: &Recipe) -> (TempDir, Sequence) {
 }
 
 fn analysed(sequence: &Sequence, model: &Model, options: &Options) -> Analysis {
-    let recording = Recording::new(sequence, &sequence.groundtruth, PoseSource::Measured, None).unwrap();
-    analyse(&recording, model, options, &|_| ()).unwrap()
+    analyse(&recording_of(sequence), model, options, &|_| ()).unwrap()
+}
+
+fn recording_of(sequence: &Sequence) -> Recording<'_> {
+    Recording::new(sequence, &sequence.groundtruth, PoseSource::Measured, None).unwrap()
 }
 
 fn reported(sequence: &Sequence) -> Report {
@@ -247,6 +250,24 @@ fn the_same_seed_gives_the_same_report() {
     let twice = analysed(&sequence, &Model::default(), &Options::default());
     assert_eq!(once, twice);
     assert_eq!(named(&once.report), ["focal_length"]);
+}
+
+#[test]
+fn differences_are_shown_where_the_recorded_picture_has_the_field() {
+    let (_folder, sequence) = record(3, &[]);
+    let model = Model::default();
+    let analysis = analysed(&sequence, &model, &Options::default());
+    let Pictures { measured, field, .. } =
+        Pictures::new(&recording_of(&sequence), &model, &analysis).unwrap();
+    // Carpet is the only thing in the hall that is green.
+    let green = |shown: u8| {
+        let shown = measured.pixels().zip(field.pixels()).filter(|(_, mask)| mask.0[0] == shown);
+        let is_green: Vec<bool> =
+            shown.map(|(pixel, _)| pixel.0[1] > pixel.0[0].max(pixel.0[2]) + 15).collect();
+        is_green.iter().filter(|green| **green).count() as f64 / is_green.len() as f64
+    };
+    assert!(green(u8::MAX) > 0.85, "{} of the field", green(u8::MAX));
+    assert!(green(0) < 0.05, "{} of all else", green(0));
 }
 
 fn program(arguments: &[&str]) -> Output {

@@ -16,7 +16,7 @@ use crate::{
     split::Split,
 };
 
-/// Nothing more is added in one go to so many effects.
+/// No more effects are added in one go.
 const MOST_EFFECTS: usize = 6;
 
 /// How to work.
@@ -98,7 +98,8 @@ pub(crate) fn find(
             (named, measured) = (set, settled);
             continue;
         }
-        let sets = finder.next_sets(&measured, &named, |set| !tried.contains(&sorted(set)));
+        let is_new = |set: &[usize]| set.len() <= MOST_EFFECTS && !tried.contains(&sorted(set));
+        let sets = finder.next_sets(&measured, &named, is_new);
         let swaps = sets.iter().any(|set| set.len() == named.len());
         let mut closest = finder.closest(&measured, sets)?.into_iter();
         let Some((set, settled)) = closest.next() else { break };
