@@ -98,6 +98,16 @@ fn a_hidden_effect_is_named_with_its_size_and_the_gap_closes() {
 }
 
 #[test]
+fn in_a_recording_of_yet_another_renderer_the_one_effect_is_named_and_nothing_is_left() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/pitch");
+    let report = reported(&Sequence::open(&folder).unwrap());
+    assert_eq!(named(&report), ["mount_pitch"], "{}", report.summary);
+    assert_eq!(report.unexplained, [], "{}", report.summary);
+    assert_eq!(report.verdict, Verdict::Named);
+    assert!(report.gap.after < 0.5 * report.gap.before);
+}
+
+#[test]
 fn two_effects_are_both_named() {
     let effects = [Hidden::MountRoll { angle_rad: -0.025 }, Hidden::Defocus { sigma_px: 0.9 }];
     let (_folder, sequence) = record(21, &effects);

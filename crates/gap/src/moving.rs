@@ -17,9 +17,9 @@ const LEAST_SPOTS: usize = 2;
 const THERE_M: f64 = 0.1;
 /// Pictures closer in time show a walker in the same place, seconds.
 const LATER_S: f64 = 1.0;
-/// The place is seen in so many other pictures at least.
-const LEAST_SEEN: usize = 3;
-/// And is plain carpet in this part of them at least.
+/// The place is seen in this part of the pictures at least: a line beside a thing that stands hides where it stands from most.
+const LEAST_SEEN: f64 = 0.2;
+/// And is plain carpet in this part of those at least.
 const CLEAR: f64 = 0.95;
 /// Feet that are gone at other times, in this part of the pictures at least, are worth a word: one by mistake is not.
 const LEAST_PART: f64 = 0.09;
@@ -91,7 +91,7 @@ impl Scene {
 
 /// Whether other pictures show plain carpet where a thing stood at a time.
 fn is_left(scenes: &[Scene], time_s: f64, foot: DVec2) -> bool {
-    let (mut seen, mut clear) = (0, 0);
+    let (mut seen, mut clear) = (0_usize, 0_usize);
     for scene in scenes.iter().filter(|scene| (scene.time_s - time_s).abs() > LATER_S) {
         let around: Vec<&Spot> =
             scene.spots.iter().filter(|spot| spot.ground.distance(foot) < NEAR_M).collect();
@@ -101,7 +101,7 @@ fn is_left(scenes: &[Scene], time_s: f64, foot: DVec2) -> bool {
             clear += usize::from(around.iter().all(|spot| !spot.is_hidden));
         }
     }
-    seen >= LEAST_SEEN && clear as f64 >= CLEAR * seen as f64
+    seen as f64 >= LEAST_SEEN * scenes.len() as f64 && clear as f64 >= CLEAR * seen as f64
 }
 
 #[cfg(test)]
