@@ -154,6 +154,8 @@ mod tests {
     #[test]
     fn what_stays_where_it_is_does_not_move_although_other_carpet_is_hidden_from_elsewhere() {
         assert_eq!(judged(|_| vec![DVec2::new(0.7, 0.9), DVec2::new(1.3, 0.2)]), None);
+        // Two legs with one body on them, and carpet between.
+        assert_eq!(judged(|_| vec![DVec2::new(0.6, 0.4), DVec2::new(0.9, 0.4)]), None);
         assert_eq!(judged(|_| Vec::new()), None);
     }
 

@@ -16,7 +16,7 @@ use crate::{
     split::Split,
 };
 
-/// No more effects are added in one go.
+/// No more effects than this are added in one go.
 const MOST_EFFECTS: usize = 6;
 
 /// How to work.
