@@ -4,11 +4,11 @@ use eframe::egui::{Ui, Vec2};
 use egui_plot::{HoverPosition, Line, Plot, PlotPoints, Points};
 use reality_sim_gap::report::Course;
 
-use super::{side::Side, table::words, views::head, words::number};
+use super::{side::Side, table::words, title::title_ui, words::number};
 
 /// Draws both curves; frames that no fit has seen have dots.
 pub fn ui(ui: &mut Ui, course: &Course, unit: &str, room: Vec2) {
-    head(
+    title_ui(
         ui,
         "Over time: without (orange), with (green)",
         "Size of each frame's residuals, robust against robots in the way. Dots: judged frames, which no fit has seen",

@@ -9,7 +9,7 @@ use super::{
     ramp::Ramp,
     side::Side,
     table::words,
-    views::head,
+    title::title_ui,
     words::{number, unit_after},
 };
 use crate::{
@@ -54,7 +54,7 @@ impl MapViews {
     /// Residuals over the picture's shape.
     pub fn picture_ui(&mut self, ui: &mut Ui, loaded: &Loaded, shown: Shown<'_>) {
         let Shown { maps, side, room, .. } = shown;
-        head(ui, &format!("In the picture, {}", side.name()), "Medians of measured minus simulated");
+        title_ui(ui, &format!("In the picture, {}", side.name()), "Medians of measured minus simulated");
         let map = &maps.picture;
         let Some(ramp) = shown.ramp_of(map) else { return nowhere(ui, room) };
         let [left, top, right, bottom] = map.extent;
@@ -86,7 +86,7 @@ impl MapViews {
         };
         let more =
             format!("Medians of measured minus simulated. {lines}. Wheel: zoom · secondary button: move");
-        head(ui, &format!("On the field, {}", side.name()), &more);
+        title_ui(ui, &format!("On the field, {}", side.name()), &more);
         let map = &maps.field;
         let Some(ramp) = shown.ramp_of(map) else { return nowhere(ui, room) };
         let [left, top, right, bottom] = map.extent;

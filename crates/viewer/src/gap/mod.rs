@@ -12,41 +12,22 @@ mod loaded;
 mod maps;
 mod pictures;
 mod ramp;
+mod settings;
 mod side;
 mod table;
+mod title;
 mod views;
 mod words;
 
 use eframe::egui::{self, Ui};
-use serde::{Deserialize, Serialize};
 
-pub use self::loaded::Loaded;
-use self::{side::Side, views::Views};
+use self::views::Views;
+pub use self::{loaded::Loaded, settings::GapSettings};
 use crate::shortcuts::{self, Action, Place};
 
 /// Share of the width that the evidence has, within these widths, points.
 const EVIDENCE_SHARE: f32 = 0.36;
 const EVIDENCE_WIDTHS: std::ops::RangeInclusive<f32> = 270.0..=520.0;
-
-/// What is remembered of the panel.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct GapSettings {
-    /// Which model's pictures and residuals are shown.
-    pub side: Side,
-    /// The difference between the pictures in place of the wipe.
-    pub is_difference: bool,
-    /// Where the line of the wipe is, 0 to 1 from the left.
-    pub wipe_share: f32,
-    /// The comparison whose residuals are shown; where the report has none of this name, the one with the most to see.
-    pub channel: String,
-}
-
-impl Default for GapSettings {
-    fn default() -> Self {
-        Self { side: Side::default(), is_difference: false, wipe_share: 0.5, channel: String::new() }
-    }
-}
 
 /// A report, and what is looked at in it.
 pub struct GapPanel {

@@ -2,7 +2,9 @@
 
 use eframe::egui::{Color32, Ui, Vec2};
 
-use super::{GapSettings, loaded::Loaded, side::Side, table::words, views::head, words::number};
+use super::{
+    loaded::Loaded, settings::GapSettings, side::Side, table::words, title::title_ui, words::number,
+};
 use crate::picture_view::{PictureCanvas, Uploaded};
 
 /// The pictures on the graphics device.
@@ -27,7 +29,7 @@ impl Pictures {
     fn difference_ui(&mut self, ui: &mut Ui, loaded: &Loaded, side: Side, room: Vec2) {
         let limit =
             loaded.difference_ramp.map_or_else(String::new, |ramp| format!(", ±{}", number(ramp.limit())));
-        head(
+        title_ui(
             ui,
             &format!("Difference {}{limit}", side.name()),
             &format!(
@@ -43,7 +45,7 @@ impl Pictures {
     }
 
     fn wipe_ui(&mut self, ui: &mut Ui, loaded: &Loaded, side: Side, share: &mut f32, room: Vec2) {
-        head(
+        title_ui(
             ui,
             &format!("Measured | simulated {}", side.name()),
             &format!("Frame {}: drag the line", loaded.report.shown_frame),

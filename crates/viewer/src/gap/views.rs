@@ -1,22 +1,21 @@
 //! Pictures, maps and course on one page, two beside two.
 
-use eframe::egui::{ComboBox, Layout as Flow, RichText, Ui, Vec2, vec2};
+use eframe::egui::{Align, ComboBox, Layout, Ui, Vec2, vec2};
 
 use super::{
-    GapSettings,
     channels::meaning,
     course,
     loaded::Loaded,
     maps::{MapViews, Shown},
     pictures::Pictures,
     ramp::Ramp,
+    settings::GapSettings,
     side::Side,
+    title::TITLE_HEIGHT,
     words::unit_after,
 };
 use crate::shortcuts::{self, Action};
 
-/// A view's title, points.
-const HEAD: f32 = 20.0;
 /// Width of the legend, points.
 const LEGEND: f32 = 190.0;
 
@@ -40,7 +39,8 @@ impl Views {
         channel_choice_ui(ui, loaded, settings, ramp, &unit);
         let gap = ui.spacing().item_spacing;
         let room = ui.available_size();
-        let view = vec2(0.5 * (room.x - gap.x), 0.5 * (room.y - gap.y) - HEAD - gap.y).max(Vec2::splat(60.0));
+        let view = vec2(0.5 * (room.x - gap.x), 0.5 * (room.y - gap.y) - TITLE_HEIGHT - gap.y)
+            .max(Vec2::splat(60.0));
         let side = settings.side;
         let shown = maps.map(|maps| Shown { maps, side, ramp, room: view });
         row(
@@ -69,9 +69,9 @@ impl Views {
 
 /// Two views beside each other.
 fn row(ui: &mut Ui, view: Vec2, left: impl FnOnce(&mut Ui), right: impl FnOnce(&mut Ui)) {
-    let size = view + vec2(0.0, HEAD + ui.spacing().item_spacing.y);
+    let size = view + vec2(0.0, TITLE_HEIGHT + ui.spacing().item_spacing.y);
     ui.horizontal_top(|ui| {
-        let flow = Flow::top_down(eframe::egui::Align::Min);
+        let flow = Layout::top_down(Align::Min);
         ui.allocate_ui_with_layout(size, flow, |ui| {
             ui.set_min_size(size);
             left(ui);
@@ -81,17 +81,6 @@ fn row(ui: &mut Ui, view: Vec2, left: impl FnOnce(&mut Ui), right: impl FnOnce(&
             right(ui);
         });
     });
-}
-
-/// A view's title.
-pub fn head(ui: &mut Ui, text: &str, more: &str) {
-    ui.allocate_ui_with_layout(
-        vec2(ui.available_width(), HEAD),
-        Flow::left_to_right(eframe::egui::Align::Center),
-        |ui| {
-            ui.add(eframe::egui::Label::new(RichText::new(text).strong()).truncate()).on_hover_text(more);
-        },
-    );
 }
 
 fn nothing(ui: &mut Ui, text: &str) {
