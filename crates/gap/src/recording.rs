@@ -10,7 +10,10 @@ use reality_sim_core::{
 };
 use reality_sim_sensor::{Trajectory, TrajectoryError};
 
-use crate::{predict::Scene, rows::Step, system::Reference};
+use crate::{
+    linear_model::prediction::NominalReflectance, linear_model::residual::Step,
+    linear_model::system::ReferenceKind,
+};
 
 /// Fewer frames than this tell nothing: a quarter of them is kept for judging.
 pub const LEAST_FRAMES: usize = 12;
@@ -88,7 +91,7 @@ pub struct Recording<'a> {
     pub(crate) trajectory: Trajectory,
     pub(crate) frames: Vec<Frame>,
     pub(crate) source: PoseSource,
-    pub(crate) scene: Option<Scene>,
+    pub(crate) scene: Option<NominalReflectance>,
     /// Files of frames whose picture is broken or missing.
     pub(crate) left_out: Vec<PathBuf>,
 }
@@ -169,10 +172,10 @@ impl<'a> Recording<'a> {
         self.sequence.setup.photometry.map_or(2.2, |photometry| photometry.gamma)
     }
 
-    pub(crate) fn reference(&self) -> Reference {
+    pub(crate) fn reference(&self) -> ReferenceKind {
         match self.source {
-            PoseSource::Measured => Reference::Whole,
-            PoseSource::Tagged => Reference::Attitude,
+            PoseSource::Measured => ReferenceKind::Whole,
+            PoseSource::Tagged => ReferenceKind::Attitude,
         }
     }
 
@@ -211,9 +214,9 @@ fn is_same_view(a: &CameraPose, b: CameraPose) -> bool {
 }
 
 /// What the camera's file tells of lines and carpet.
-fn scene(sequence: &Sequence) -> Option<Scene> {
+fn scene(sequence: &Sequence) -> Option<NominalReflectance> {
     let photometry = sequence.setup.photometry?;
-    Some(Scene {
+    Some(NominalReflectance {
         line_linear_rgb: photometry.line_linear_rgb?,
         carpet_linear_rgb: photometry.carpet_linear_rgb?,
     })

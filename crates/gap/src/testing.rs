@@ -6,9 +6,9 @@ use glam::DVec2;
 use nalgebra::{DMatrix, DVector};
 
 use crate::{
-    rows::{Channel, Group, Row},
-    sums::Sums,
-    system::System,
+    linear_model::normal_equations::NormalEquations,
+    linear_model::residual::{Channel, Group, Row},
+    linear_model::system::LinearSystem,
 };
 
 /// Numbers from a fixed linear congruential generator, summed to be nearly normal.
@@ -45,10 +45,11 @@ pub(crate) fn carpet_row(pixel: DVec2, ground: DVec2) -> Row {
 }
 
 /// A system of frames with these normal equations; each is a view and a place on the field of its own.
-pub(crate) fn system_of(frames: Vec<(DMatrix<f64>, DVector<f64>)>) -> System {
+pub(crate) fn system_of(frames: Vec<(DMatrix<f64>, DVector<f64>)>) -> LinearSystem {
     let size = frames[0].1.len();
-    let frames: Vec<Sums> = frames.into_iter().map(|(a, g)| Sums::whole(a, g)).collect();
-    System {
+    let frames: Vec<NormalEquations> =
+        frames.into_iter().map(|(a, g)| NormalEquations::whole(a, g)).collect();
+    LinearSystem {
         size,
         cells: frames.clone(),
         views: frames.clone(),

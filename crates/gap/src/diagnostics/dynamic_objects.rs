@@ -1,0 +1,168 @@
+//! Things that stand on the carpet and walk away: where one stood, other pictures show plain carpet.
+
+use glam::DVec2;
+
+use crate::{
+    diagnostics::passing::{is_green_carpet, is_outlying},
+    diagnostics::residual_patterns::Residuals,
+    linear_model::residual::Channel,
+    report::data::Unexplained,
+};
+
+/// A foot and the carpet around it are one place within this distance, as are a thing and its sides, metres.
+const NEAR_M: f64 = 0.25;
+/// The place is seen in so many blocks at least: from far away a thing hides a part of one.
+const LEAST_SPOTS: usize = 2;
+/// One of them is this close to it, metres: carpet before a thing, where what is behind was not measured, is not its place.
+const THERE_M: f64 = 0.1;
+/// Pictures closer in time show a walker in the same place, seconds.
+const LATER_S: f64 = 1.0;
+/// The place is seen in this part of the pictures at least: a line beside a thing that stands hides where it stands from most.
+const LEAST_SEEN: f64 = 0.2;
+/// And is plain carpet in this part of those at least.
+const CLEAR: f64 = 0.95;
+/// Feet that are gone at other times, in this part of the pictures at least, are worth a word: one by mistake is not.
+const LEAST_PART: f64 = 0.09;
+/// Places closer than this are one, metres.
+const SAME_M: f64 = 0.01;
+
+/// A block of carpet, or of what hides it.
+#[derive(Debug, Clone, Copy)]
+struct Spot {
+    ground: DVec2,
+    is_hidden: bool,
+}
+
+/// What a picture shows of the carpet.
+struct NominalReflectance {
+    time_s: f64,
+    /// The place that the camera is above.
+    camera: DVec2,
+    spots: Vec<Spot>,
+}
+
+/// Things that are not where they were in other pictures. `sigma` is the carpet's standard deviation.
+pub(crate) fn moving(frames: &[Residuals<'_>], sigma: f64) -> Option<Unexplained> {
+    let scenes: Vec<NominalReflectance> =
+        frames.iter().map(|frame| NominalReflectance::new(frame, sigma)).collect();
+    let with_walker =
+        scenes.iter().filter(|scene| scene.feet().any(|foot| is_left(&scenes, scene.time_s, foot))).count();
+    let part = with_walker as f64 / scenes.len().max(1) as f64;
+    (part > LEAST_PART).then(|| Unexplained {
+        channel: Channel::Photometry.name().to_owned(),
+        r#where: format!(
+            "things that move: in {:.0} % of the pictures something stands on the carpet where others show it plain",
+            100.0 * part
+        ),
+        size: part,
+        unit: "1".to_owned(),
+        p_value: None,
+    })
+}
+
+impl NominalReflectance {
+    fn new(frame: &Residuals<'_>, sigma: f64) -> Self {
+        let rows = frame.rows.iter().zip(&frame.values);
+        let spots = rows
+            .filter(|(row, value)| is_green_carpet(row) && value.is_finite())
+            .map(|(row, value)| Spot { ground: row.ground, is_hidden: is_outlying(*value, sigma) });
+        Self { time_s: frame.time_s, camera: frame.camera, spots: spots.collect() }
+    }
+
+    /// Where things touch the carpet: hidden, and between there and the camera there is plain carpet and nothing hidden, a
+    /// thing's sides being in front of what is farther away.
+    fn feet(&self) -> impl Iterator<Item = DVec2> {
+        let is_foot = |spot: &&Spot| {
+            let is_before = |other: &&Spot| self.is_before(other.ground, spot.ground);
+            let mut before = self.spots.iter().filter(is_before).peekable();
+            spot.is_hidden && before.peek().is_some() && before.all(|other| !other.is_hidden)
+        };
+        self.spots.iter().filter(is_foot).map(|spot| spot.ground)
+    }
+
+    /// Whether a place is nearer to the camera than another one, in its direction.
+    fn is_before(&self, place: DVec2, other: DVec2) -> bool {
+        let (to_place, way) = (place - self.camera, other - self.camera);
+        let distance = way.length();
+        let along = to_place.dot(way) / distance.max(1e-9);
+        let beside = to_place.perp_dot(way).abs() / distance.max(1e-9);
+        (0.0..distance - SAME_M).contains(&along) && beside < NEAR_M
+    }
+}
+
+/// Whether other pictures show plain carpet where a thing stood at a time.
+fn is_left(scenes: &[NominalReflectance], time_s: f64, foot: DVec2) -> bool {
+    let (mut seen, mut clear) = (0_usize, 0_usize);
+    for scene in scenes.iter().filter(|scene| (scene.time_s - time_s).abs() > LATER_S) {
+        let around: Vec<&Spot> =
+            scene.spots.iter().filter(|spot| spot.ground.distance(foot) < NEAR_M).collect();
+        let is_there = around.iter().any(|spot| spot.ground.distance(foot) < THERE_M);
+        if is_there && around.len() >= LEAST_SPOTS {
+            seen += 1;
+            clear += usize::from(around.iter().all(|spot| !spot.is_hidden));
+        }
+    }
+    seen as f64 >= LEAST_SEEN * scenes.len() as f64 && clear as f64 >= CLEAR * seen as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{linear_model::residual::Row, testing::carpet_row};
+
+    const SIGMA: f64 = 0.05;
+    const CAMERA_M: f64 = 0.5;
+
+    /// Carpet of 2 m by 2 m in blocks of 10 cm, seen from above a place 1 m before it, with things that stand there: 20 cm
+    /// thick where they touch the carpet, 40 cm above half of the camera's height.
+    fn picture(camera: DVec2, things: &[DVec2]) -> (Vec<Row>, Vec<f64>) {
+        let places = (0..400).map(|i| 0.1 * DVec2::new(f64::from(i % 20), f64::from(i / 20)));
+        let hides = |thing: &DVec2, place: DVec2| {
+            let way = place - camera;
+            let part = ((*thing - camera).dot(way) / way.length_squared()).clamp(0.0, 1.0);
+            let height_m = CAMERA_M * (1.0 - part);
+            (camera + part * way).distance(*thing) < if height_m > 0.5 * CAMERA_M { 0.2 } else { 0.1 }
+        };
+        let seen = places.map(|place| {
+            let is_hidden = things.iter().any(|thing| hides(thing, place));
+            (carpet_row(DVec2::ZERO, place), if is_hidden { -1.0 } else { 0.3 * SIGMA })
+        });
+        seen.unzip()
+    }
+
+    /// Twenty pictures in four seconds, the camera moving past.
+    fn judged(things: impl Fn(f64) -> Vec<DVec2>) -> Option<Unexplained> {
+        let times_s: Vec<f64> = (0..20).map(|i| 0.2 * f64::from(i)).collect();
+        let camera = |time_s: f64| DVec2::new(0.5 * time_s, -1.0);
+        let pictures: Vec<_> = times_s.iter().map(|&t| picture(camera(t), &things(t))).collect();
+        let frames = times_s.iter().zip(&pictures).map(|(&time_s, (rows, values))| Residuals {
+            rows,
+            values: values.clone(),
+            time_s,
+            camera: camera(time_s),
+            size: [160, 160],
+        });
+        moving(&frames.collect::<Vec<_>>(), SIGMA)
+    }
+
+    #[test]
+    fn who_walks_over_the_carpet_is_seen_and_in_how_many_pictures() {
+        let found = judged(|time_s| vec![DVec2::new(0.1 + 0.5 * time_s, 0.9)]).unwrap();
+        assert!(found.size > 0.8, "{}", found.size);
+        assert!(found.r#where.contains("things that move"), "{}", found.r#where);
+    }
+
+    #[test]
+    fn what_stays_where_it_is_does_not_move_although_other_carpet_is_hidden_from_elsewhere() {
+        assert_eq!(judged(|_| vec![DVec2::new(0.7, 0.9), DVec2::new(1.3, 0.2)]), None);
+        // Two legs with one body on them, and carpet between.
+        assert_eq!(judged(|_| vec![DVec2::new(0.6, 0.4), DVec2::new(0.9, 0.4)]), None);
+        assert_eq!(judged(|_| Vec::new()), None);
+    }
+
+    #[test]
+    fn a_glimpse_is_not_enough() {
+        let glimpse = |time_s: f64| if time_s < 0.1 { vec![DVec2::new(0.7, 0.9)] } else { Vec::new() };
+        assert_eq!(judged(glimpse), None);
+    }
+}

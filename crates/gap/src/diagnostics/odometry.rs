@@ -1,0 +1,165 @@
+//! What is left of the odometry and follows the movement.
+//!
+//! As for patterns in the pictures, a part of the recording is judged by what the other parts foretell.
+
+use reality_sim_core::pose::Motion2;
+
+use crate::{
+    diagnostics::residual_patterns::Residuals,
+    inference::evidence::sum_of,
+    inference::model_error::ModelError,
+    inference::split::stretch,
+    linear_model::odometry_steps::around,
+    linear_model::residual::{Channel, Group},
+    recording::{Frame, Recording},
+    report::data::Unexplained,
+};
+
+/// Parts of the recording that are judged by the others.
+const FOLDS: usize = 4;
+/// What is foretold gains so many standard deviations: more than an effect needs to be named.
+const LEAST_SCORE: f64 = 3.5;
+/// And so much, in log-likelihood.
+const LEAST_GAIN: f64 = 8.0;
+/// What is foretold of the odometry is at least this part of what is not, root mean square.
+const LEAST_PART: f64 = 0.5;
+/// And this many times what the model may be off by beside what it explains.
+const BEYOND: f64 = 2.0;
+/// The odometry's increments.
+const PARTS: [(&str, &str); 3] = [("steps forward", "m"), ("steps to the left", "m"), ("turns", "rad")];
+
+/// What these may follow, in the order of [`movements`].
+const FOLLOWED: [&str; 3] = ["as the robot walks ahead", "as it turns", "as time goes by"];
+
+/// What a number may follow, and the number, both in its standard deviation.
+type Pair = (f64, f64);
+
+/// The odometry's residuals, as far as they follow the movement. `sigma` is that of each of the increments.
+pub(crate) fn following(
+    recording: &Recording<'_>,
+    frames: &[&Frame],
+    residuals: &[Residuals<'_>],
+    sigma: impl Fn(u8) -> Option<f64>,
+    explained: &ModelError,
+) -> Vec<Unexplained> {
+    let mut all = Vec::new();
+    let steps = movements(recording, frames);
+    for (part, (name, unit)) in (0..).zip(PARTS) {
+        let Some(sigma) = sigma(part) else { continue };
+        let of_part = |group: Group| group.channel == Channel::Motion && group.part == part;
+        let value = |residuals: &Residuals<'_>| {
+            let mut rows = residuals.rows.iter().zip(&residuals.values);
+            rows.find(|(row, value)| of_part(row.group) && value.is_finite()).map(|(_, value)| value / sigma)
+        };
+        let values: Vec<Option<f64>> = residuals.iter().map(value).collect();
+        let off = explained.off(Channel::Motion, part) / sigma;
+        all.extend(odometry(&steps, &values, name).filter(|(_, rms)| *rms > BEYOND * off).map(
+            |(r#where, rms)| Unexplained {
+                channel: Channel::Motion.name().to_owned(),
+                r#where,
+                size: rms * sigma,
+                unit: unit.to_owned(),
+                p_value: None,
+            },
+        ));
+    }
+    all
+}
+
+/// What each step of the odometry may follow: how far the robot walks ahead at about that time, turns, and for how long. To
+/// the left the camera sways: no odometry knows of that.
+fn movements(recording: &Recording<'_>, frames: &[&Frame]) -> Vec<Option<[f64; 3]>> {
+    let followed = |(motion, frame): (Option<Motion2>, &&Frame)| {
+        let Motion2 { forward_m, turn_rad, .. } = motion?;
+        Some([forward_m, turn_rad, frame.step?.until_s - frame.time_s])
+    };
+    around(recording, frames).into_iter().zip(frames).map(followed).collect()
+}
+
+/// What the odometry's steps of one kind follow most, in words, and how large that is in their standard deviations.
+fn odometry(steps: &[Option<[f64; 3]>], values: &[Option<f64>], name: &str) -> Option<(String, f64)> {
+    let follows = (0..).zip(FOLLOWED).filter_map(|(axis, followed): (usize, &str)| {
+        let pair = |(step, value): (&Option<[f64; 3]>, &Option<f64>)| {
+            Vec::from_iter(step.zip(*value).map(|(step, value)| (step[axis], value)))
+        };
+        let follows = Follows::of(&steps.iter().zip(values).map(pair).collect::<Vec<_>>())?;
+        (follows.rms > LEAST_PART * follows.left).then_some((follows.rms, followed))
+    });
+    let (rms, followed) = follows.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some((format!("in its {name}, {followed}"), rms))
+}
+
+/// Numbers that follow others.
+struct Follows {
+    /// Root mean square of what is foretold.
+    rms: f64,
+    /// And of what is not.
+    left: f64,
+}
+
+impl Follows {
+    /// None where frames do not foretell each other.
+    fn of(frames: &[Vec<Pair>]) -> Option<Self> {
+        let slope = slope(frames.iter());
+        let rms = |of: &dyn Fn(&Pair) -> f64| {
+            let squares = frames.iter().flatten().map(|pair| of(pair).powi(2));
+            let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+            f64::sqrt(sum / f64::max(count, 1.0))
+        };
+        let found = Self { rms: rms(&|(to, _)| to * slope), left: rms(&|(to, value)| value - to * slope) };
+        let count = frames.len();
+        let fold = |frame: usize| stretch(frame, count, FOLDS);
+        let gain = |frame: usize| {
+            let others = (0..count).filter(|&other| fold(other) != fold(frame));
+            let slope = self::slope(others.map(|other| &frames[other]));
+            let gains = frames[frame].iter().map(|(to, value)| {
+                let foretold = to * slope;
+                foretold * value - 0.5 * foretold * foretold
+            });
+            // What a number's standard deviation is taken to be may have what is foretold in it.
+            gains.sum::<f64>() / found.left.powi(2).max(1e-9)
+        };
+        let gain = sum_of(&(0..count).map(gain).collect::<Vec<f64>>());
+        (gain.value > LEAST_GAIN && gain.score() > LEAST_SCORE).then_some(found)
+    }
+}
+
+/// Least squares.
+fn slope<'a>(frames: impl Iterator<Item = &'a Vec<Pair>>) -> f64 {
+    let sums =
+        frames.flatten().fold([0.0; 2], |[both, square], (to, value)| [both + to * value, square + to * to]);
+    if sums[1] > 0.0 { sums[0] / sums[1] } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Noise;
+
+    /// Frames with six numbers each that follow a movement by this slope.
+    fn frames(seed: u64, slope: f64) -> Vec<Vec<Pair>> {
+        let mut noise = Noise(seed);
+        let frame = |index: u32| {
+            (0..6)
+                .map(|axis| {
+                    let rate = (0.7 * f64::from(index) + f64::from(axis)).sin();
+                    (rate, slope * rate + noise.next())
+                })
+                .collect()
+        };
+        (0..40).map(frame).collect()
+    }
+
+    #[test]
+    fn what_follows_the_movement_is_told_with_its_size() {
+        let follows = Follows::of(&frames(1, 1.5)).unwrap();
+        assert!((follows.rms - 1.5 / f64::sqrt(2.0)).abs() < 0.15, "{}", follows.rms);
+        assert!((follows.left - 1.0).abs() < 0.15, "{}", follows.left);
+    }
+
+    #[test]
+    fn scatter_follows_nothing() {
+        let told = (0..300).filter(|&seed| Follows::of(&frames(seed, 0.0)).is_some()).count();
+        assert_eq!(told, 0);
+    }
+}

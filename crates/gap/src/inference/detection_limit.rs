@@ -1,0 +1,194 @@
+//! How large an effect that was not found would have to be to be found, and which cannot be seen at all.
+
+use reality_sim_sensor::{Effect, Stage, library};
+
+use crate::{
+    inference::effect_test::{ALPHA, EffectTests},
+    inference::evidence::student_quantile,
+    recording::{LEAST_VIEWS, Recording},
+};
+
+/// The limit is where an effect is found in nine recordings of ten.
+const POWER: f64 = 0.9;
+
+/// An effect that was not found.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NotFound {
+    /// It would have been found at this size of its first parameter.
+    Limit {
+        /// As in the parameter's unit.
+        value: f64,
+        /// The parameter's.
+        unit: &'static str,
+        /// The parameter's.
+        parameter: &'static str,
+    },
+    /// It cannot be seen in this recording.
+    Unobservable {
+        /// Why.
+        reason: String,
+        /// What to do to see it, as an imperative.
+        remedy: String,
+        /// Whether another recording by the same robot would do; else its files lack something.
+        by_recording: bool,
+    },
+}
+
+/// What can be said of an effect beside those in the model.
+pub(crate) fn limit(
+    recording: &Recording<'_>,
+    naming: &EffectTests<'_>,
+    effect: usize,
+    all: &[usize],
+) -> NotFound {
+    let used = library()[effect];
+    if let Some([reason, remedy]) = missing_input(recording, used) {
+        return unobservable(reason, remedy, false);
+    }
+    let columns = naming.columns_of(&[effect]);
+    let sizes: Vec<usize> = columns.into_iter().filter(|&column| naming.columns[column].is_size()).collect();
+    // The first that can be seen: parameters are listed by their weight.
+    let limit = sizes.iter().find_map(|&column| Some((column, limit_of(naming, column, all)?)));
+    let Some((column, value)) = limit else {
+        return unobservable(unseen_reason(recording, used), used.recording_that_would_decide(), true);
+    };
+    let parameter = naming.columns[column].parameter();
+    NotFound::Limit { value, unit: parameter.unit, parameter: parameter.name }
+}
+
+/// The limit of one column alone beside the effects of the model, in its unit. None where it cannot be seen.
+fn limit_of(naming: &EffectTests<'_>, column: usize, all: &[usize]) -> Option<f64> {
+    if naming.evidence.views() < LEAST_VIEWS {
+        return None;
+    }
+    let mut free = naming.columns_of(all);
+    free.insert(0, column);
+    let fit = naming.evidence.fit(&free)?;
+    let sigma = naming.evidence.sigma(&fit, column);
+    if fit.tells_nothing(column) || sigma <= 0.0 {
+        return None;
+    }
+    let tests = naming.effects().len() as f64;
+    let degrees = naming.evidence.degrees() as f64;
+    let sure = student_quantile(1.0 - ALPHA / (2.0 * tests), degrees);
+    let coordinate = (sure + student_quantile(POWER, degrees)) * sigma;
+    let parameter = naming.columns[column].parameter();
+    let value = naming.columns[column].size(coordinate).max(parameter.material);
+    let reach = (parameter.range[1] - parameter.neutral).max(parameter.neutral - parameter.range[0]);
+    (value < reach).then_some(value)
+}
+
+fn unobservable(reason: &str, remedy: &str, by_recording: bool) -> NotFound {
+    NotFound::Unobservable { reason: reason.to_owned(), remedy: remedy.to_owned(), by_recording }
+}
+
+/// What an effect needs and the recording's files do not have, and how to add it.
+fn missing_input(recording: &Recording<'_>, effect: &dyn Effect) -> Option<[&'static str; 2]> {
+    let sequence = recording.sequence;
+    let photometric = matches!(effect.stage(), Stage::Exposure | Stage::Sensor | Stage::Encoding)
+        || ["vignetting", "uneven_illumination"].contains(&effect.id());
+    let photometry = sequence.setup.photometry;
+    let noise = photometry.is_some_and(|p| p.noise_shot.is_some() || p.noise_read.is_some());
+    let sharpness = photometry.is_some_and(|p| p.psf_sigma_px.is_some());
+    if effect.stage() == Stage::Odometry && sequence.frames.iter().all(|frame| frame.odometry.is_none()) {
+        Some([
+            "there is no odometry in frames.csv",
+            "write odometry_x_m, odometry_y_m and odometry_yaw_rad into frames.csv",
+        ])
+    } else if photometric && recording.scene.is_none() {
+        Some([
+            "nothing in camera.toml says how bright lines and carpet are",
+            "write line_linear_rgb and carpet_linear_rgb into [photometry] of camera.toml",
+        ])
+    } else if effect.id() == "sensor_noise" && !noise {
+        Some([
+            "nothing in camera.toml says how much noise to expect",
+            "write noise_shot and noise_read into [photometry] of camera.toml",
+        ])
+    } else if ["defocus", "motion_blur"].contains(&effect.id()) && !sharpness {
+        Some([
+            "nothing in camera.toml says how sharp the picture should be",
+            "write psf_sigma_px into [photometry] of camera.toml",
+        ])
+    } else {
+        None
+    }
+}
+
+fn unseen_reason(recording: &Recording<'_>, effect: &dyn Effect) -> &'static str {
+    let moves = recording.moves();
+    let views = recording.views().last().map_or(0, |last| last + 1);
+    match effect.stage() {
+        Stage::Motion if !moves => {
+            "the camera hardly moves: nothing depends on when a row or a picture is taken"
+        }
+        Stage::Odometry if !moves => "the robot hardly moves: its odometry has nothing to report",
+        _ if views < LEAST_VIEWS => {
+            "the frames show one and the same view, or a few: what is odd in it may be the place's"
+        }
+        _ => {
+            "what it changes in these pictures, other parts of the model or errors of the poses could change as well"
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+    use crate::{
+        inference::evidence::Evidence,
+        linear_model::parameters::FittedParameter,
+        linear_model::system::LinearSystem,
+        testing::{Noise, system_of},
+    };
+
+    /// Forty frames with this much information each on the one column, in which the effect is this large.
+    fn system(seed: u64, information: f64, size: f64) -> LinearSystem {
+        let mut noise = Noise(seed);
+        let mut frame = || {
+            let score = information * size + information.sqrt() * noise.next();
+            (DMatrix::from_element(1, 1, information), DVector::from_element(1, score))
+        };
+        system_of((0..40).map(|_| frame()).collect())
+    }
+
+    fn pitch() -> FittedParameter {
+        let effect = library().iter().position(|effect| effect.id() == "mount_pitch").unwrap();
+        FittedParameter { effect, parameter: 0 }
+    }
+
+    /// The limit, and how unlikely what is fitted is chance.
+    fn limit_and_p(seed: u64, information: f64, size: f64) -> (Option<f64>, f64) {
+        let system = system(seed, information, size);
+        let evidence = Evidence::new(&system, DVector::zeros(1));
+        let naming = EffectTests { evidence, columns: &[pitch()] };
+        let fit = naming.evidence.fit(&[0]).unwrap();
+        (limit_of(&naming, 0, &[]), naming.evidence.p_value(&fit, &[0]))
+    }
+
+    #[test]
+    fn an_effect_at_its_limit_is_found_in_nine_recordings_of_ten() {
+        let limits: Vec<f64> = (0..200).filter_map(|seed| limit_and_p(seed, 2.0, 0.0).0).collect();
+        assert_eq!(limits.len(), 200);
+        let limit = limits.iter().sum::<f64>() / 200.0;
+        let size = pitch().coordinate(limit);
+        let found = (0..400).filter(|&seed| limit_and_p(1000 + seed, 2.0, size).1 < ALPHA).count();
+        assert!((320..=396).contains(&found), "{found} of 400 at {limit}");
+        let half = (0..400).filter(|&seed| limit_and_p(1000 + seed, 2.0, 0.4 * size).1 < ALPHA).count();
+        assert!(half < 160, "{half} of 400 well below it");
+    }
+
+    #[test]
+    fn more_information_lowers_the_limit_to_what_matters_and_no_farther() {
+        let limit = |information: f64| limit_and_p(3, information, 0.0).0.unwrap();
+        assert!((limit(2.0) / limit(8.0) - 2.0).abs() < 0.2, "{} {}", limit(2.0), limit(8.0));
+        assert_eq!(limit(1e7), pitch().parameter().material);
+    }
+
+    #[test]
+    fn what_the_pictures_hardly_tell_of_has_no_limit() {
+        assert_eq!(limit_and_p(3, 1e-3, 0.0).0, None);
+    }
+}

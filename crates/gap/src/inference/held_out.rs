@@ -1,0 +1,180 @@
+//! The gap before and after, on frames that no fit has seen, beside the noise floor.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DVector, Vector6};
+use reality_sim_sensor::Model;
+
+use crate::{
+    inference::model_error::ModelError,
+    linear_model::linearization::{MeasureError, linearise},
+    linear_model::residual::Channel,
+    linear_model::system::{FittedResiduals, LinearizedFrame, weigh},
+    recording::Recording,
+    report::data::Unexplained,
+    report::text::has_moved,
+    workflow::selection::SelectedModel,
+};
+
+/// Residuals of all frames under a model.
+pub(crate) struct HeldOutResiduals {
+    /// At the reference poses and nominal values, frame by frame, row by row: what a simulator that is given these poses
+    /// gets wrong.
+    pub(crate) residuals: Vec<Vec<f64>>,
+    /// With poses refitted within their errors.
+    refitted: Vec<Vec<f64>>,
+}
+
+/// Sizes of one channel's residuals, root mean square.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct ChannelGap {
+    /// With the model as it was given.
+    pub before: f64,
+    /// With the extended model.
+    pub after: f64,
+    /// What noise alone makes, from neighbouring measurements in one picture, or neighbouring steps of the odometry.
+    pub floor: f64,
+    /// Of the three.
+    pub unit: String,
+}
+
+impl ChannelGap {
+    /// Whether what was added changes it.
+    pub fn has_moved(&self) -> bool {
+        has_moved(self.before, self.after)
+    }
+}
+
+impl HeldOutResiduals {
+    /// Residuals under a model of what was measured with the extended one.
+    pub(crate) fn new(
+        recording: &Recording<'_>,
+        found: &SelectedModel,
+        model: &Model,
+    ) -> Result<Self, MeasureError> {
+        let measured = &found.measured;
+        let frames = linearise(recording, &measured.looks, model, &[], &measured.tolerances)?;
+        let nowhere = DVector::zeros(measured.tolerances.len());
+        let sigmas = &measured.system.pose_sigmas;
+        let residual = |frame: &LinearizedFrame, pose_sigmas: &[f64; 6]| {
+            let weights = weigh(frame, &frame.residuals, &measured.system.sigmas);
+            FittedResiduals::new(frame, &weights, &nowhere, pose_sigmas).residuals
+        };
+        Ok(Self {
+            residuals: frames.iter().map(|frame| residual(frame, &[1e-12; 6])).collect(),
+            refitted: frames.iter().map(|frame| residual(frame, sigmas)).collect(),
+        })
+    }
+}
+
+/// The gap of every channel that was measured, on the judged frames.
+pub(crate) fn gaps(
+    found: &SelectedModel,
+    before: &HeldOutResiduals,
+    after: &HeldOutResiduals,
+) -> BTreeMap<Channel, ChannelGap> {
+    let mut sums: BTreeMap<Channel, Squares> = BTreeMap::new();
+    let mut last: BTreeMap<(Channel, u8), f64> = BTreeMap::new();
+    let mut next = 0;
+    for frame in found.split.judged() {
+        let rows = &found.measured.frames[frame];
+        // Neighbours are measured in one picture; those of a step are the steps before and after it.
+        last.retain(|(channel, _), _| *channel == Channel::Motion && frame == next);
+        next = frame + 1;
+        for (index, row) in rows.rows.iter().enumerate() {
+            let key = (row.group.channel, row.group.part);
+            let (b, a) = (before.residuals[frame][index], after.residuals[frame][index]);
+            let refitted = after.refitted[frame][index];
+            let sigma = found.measured.system.sigmas.get(&key).copied().unwrap_or(0.0);
+            // What is no measurement of a line or of carpet stays out.
+            if !(b.is_finite() && a.is_finite() && refitted.abs() < OUTLYING * sigma) {
+                continue;
+            }
+            let sums = sums.entry(key.0).or_default();
+            sums.before += b * b;
+            sums.after += a * a;
+            sums.count += 1.0;
+            sums.poses += pose_variance(&rows.pose[index], &found.measured.system.pose_sigmas);
+            if let Some(previous) = last.insert(key, refitted) {
+                sums.steps += 0.5 * (refitted - previous).powi(2);
+                sums.pairs += 1.0;
+            }
+        }
+    }
+    sums.into_iter().map(|(channel, sums)| (channel, sums.gap(channel))).collect()
+}
+
+/// What is left is this many times as large as its floor where something is at work in it.
+const RESTLESS: f64 = 1.8;
+/// A row this many standard deviations off is something else.
+const OUTLYING: f64 = 5.0;
+
+/// Sums of squares of a channel.
+#[derive(Debug, Clone, Copy, Default)]
+struct Squares {
+    before: f64,
+    after: f64,
+    count: f64,
+    /// Of what the reference poses' errors make.
+    poses: f64,
+    /// Of half the differences between neighbouring rows.
+    steps: f64,
+    pairs: f64,
+}
+
+impl Squares {
+    fn gap(&self, channel: Channel) -> ChannelGap {
+        let mean = |sum: f64| sum / self.count.max(1.0);
+        let (before, after) = (mean(self.before).sqrt(), mean(self.after).sqrt());
+        // Where nothing has a neighbour, what is left is all that is known of the noise.
+        let noise =
+            if self.pairs > 0.0 { (self.steps / self.pairs + mean(self.poses)).sqrt() } else { after };
+        ChannelGap { before, after, floor: noise.min(after), unit: channel.unit().to_owned() }
+    }
+}
+
+/// Lines that are off by far more than noise and the poses' errors make, although on the whole in no pattern: each picture
+/// in its own way.
+pub(crate) fn restless(gaps: &BTreeMap<Channel, ChannelGap>, explained: &ModelError) -> Option<Unexplained> {
+    let gap = gaps.get(&Channel::Geometry)?;
+    let off = explained.most_off(Channel::Geometry);
+    (gap.after > RESTLESS * gap.floor.hypot(off)).then(|| Unexplained {
+        channel: Channel::Geometry.name().to_owned(),
+        r#where: "in each picture in its own way: by more than noise and the poses' errors make".to_owned(),
+        size: gap.after,
+        unit: gap.unit.clone(),
+        p_value: None,
+    })
+}
+
+fn pose_variance(gradient: &Vector6<f64>, sigmas: &[f64; 6]) -> f64 {
+    gradient.iter().zip(sigmas).map(|(gradient, sigma)| (gradient * sigma).powi(2)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn restless_at(after: f64, explained: &ModelError) -> Option<Unexplained> {
+        let gap = ChannelGap { before: after, after, floor: 0.5, unit: "px".to_owned() };
+        restless(&BTreeMap::from([(Channel::Geometry, gap)]), explained)
+    }
+
+    #[test]
+    fn what_is_far_above_the_floor_is_told_with_its_size() {
+        let nothing = ModelError::default();
+        assert!(restless_at(0.6, &nothing).is_none());
+        assert_eq!(restless_at(1.4, &nothing).unwrap().size, 1.4);
+        // A model that explains 30 pixels may be off by one.
+        assert!(restless_at(1.4, &ModelError::by(Channel::Geometry, 0, 30.0)).is_none());
+    }
+
+    #[test]
+    fn the_floor_is_the_scatter_of_neighbours_and_what_poses_errors_make() {
+        let squares = Squares { before: 40.0, after: 36.0, count: 4.0, poses: 16.0, steps: 10.0, pairs: 2.0 };
+        let gap = squares.gap(Channel::Geometry);
+        assert_eq!((gap.before, gap.after, gap.floor), (10.0_f64.sqrt(), 3.0, 3.0));
+        let quiet = Squares { steps: 2.0, poses: 0.0, ..squares }.gap(Channel::Geometry);
+        assert_eq!(quiet.floor, 1.0);
+    }
+}

@@ -1,0 +1,62 @@
+//! Which frames are fitted to and which are kept for judging.
+
+/// Frames in a row stay together: they see the same things.
+const RUN: usize = 5;
+/// One run of so many is kept for judging.
+const EVERY: usize = 4;
+
+/// Which of so many stretches of a recording, in a row and as long as each other, a frame is in. Frames that are judged by
+/// the others are taken by stretches: those next to each other see the same things, and would tell of each other.
+pub(crate) fn stretch(frame: usize, count: usize, stretches: usize) -> usize {
+    frame * stretches / count
+}
+
+/// Frames by what they are for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct HeldOutSplit {
+    judged: Vec<bool>,
+}
+
+impl HeldOutSplit {
+    /// Every fourth run of frames is kept; the seed says with which the count begins.
+    pub(crate) fn new(frames: usize, seed: u64) -> Self {
+        // Short recordings have shorter runs, so that both kinds are spread over all of them.
+        let run = RUN.min(frames / (2 * EVERY)).max(1);
+        let first = (seed % EVERY as u64) as usize;
+        Self { judged: (0..frames).map(|frame| (frame / run) % EVERY == (first + 2) % EVERY).collect() }
+    }
+
+    pub(crate) fn fitted(&self) -> impl Iterator<Item = usize> {
+        self.judged.iter().enumerate().filter(|(_, judged)| !**judged).map(|(frame, _)| frame)
+    }
+
+    /// Not where there is no such frame.
+    pub(crate) fn is_judged(&self, frame: usize) -> bool {
+        self.judged.get(frame).copied().unwrap_or(false)
+    }
+
+    pub(crate) fn judged(&self) -> impl Iterator<Item = usize> {
+        self.judged.iter().enumerate().filter(|(_, judged)| **judged).map(|(frame, _)| frame)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_frame_is_either_fitted_or_judged_and_both_are_spread_over_the_recording() {
+        for frames in [12, 20, 60, 61, 240] {
+            for seed in 0..9 {
+                let split = HeldOutSplit::new(frames, seed);
+                let (fitted, judged): (Vec<_>, Vec<_>) = (split.fitted().collect(), split.judged().collect());
+                let mut all: Vec<_> = fitted.iter().chain(&judged).copied().collect();
+                all.sort_unstable();
+                assert_eq!(all, (0..frames).collect::<Vec<_>>());
+                let part = judged.len() as f64 / frames as f64;
+                assert!((0.12..0.4).contains(&part), "{frames} {seed}: {part}");
+            }
+        }
+        assert_ne!(HeldOutSplit::new(60, 0), HeldOutSplit::new(60, 1), "the seed chooses");
+    }
+}

@@ -1,0 +1,146 @@
+//! Normal equations of some rows, of those columns only that they change with: of hundreds of patches of carpet a picture shows
+//! a few, and a place on the field one.
+
+use nalgebra::{DMatrix, DVector};
+
+/// `A = J̃ᵀ W J` and `g = J̃ᵀ W r` of some rows, see [`crate::linear_model::system`].
+#[derive(Debug, Clone)]
+pub(crate) struct NormalEquations {
+    /// Of all columns those that are here, in order.
+    columns: Vec<usize>,
+    a: DMatrix<f64>,
+    g: DVector<f64>,
+}
+
+impl NormalEquations {
+    /// Of no rows yet. `columns` are in order.
+    pub(crate) fn zero(columns: Vec<usize>) -> Self {
+        let count = columns.len();
+        Self { columns, a: DMatrix::zeros(count, count), g: DVector::zeros(count) }
+    }
+
+    /// Of several sums together.
+    pub(crate) fn together<'a>(sums: impl Iterator<Item = &'a Self> + Clone) -> Self {
+        let mut columns: Vec<usize> = sums.clone().flat_map(|sums| &sums.columns).copied().collect();
+        columns.sort_unstable();
+        columns.dedup();
+        let mut all = Self::zero(columns);
+        for sums in sums {
+            let places: Vec<usize> = sums.columns.iter().map(|column| all.place(*column)).collect();
+            sums.put(&places, &mut all.a, &mut all.g);
+        }
+        all
+    }
+
+    /// Where a column is in these sums; it has to be among them.
+    pub(crate) fn place(&self, column: usize) -> usize {
+        self.columns.partition_point(|&other| other < column)
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.g.iter().all(|value| *value == 0.0)
+    }
+
+    /// Adds a row: at one place `changed` (with the pose's part taken out) against the row's whole change `plain`.
+    pub(crate) fn add(
+        &mut self,
+        place: usize,
+        changed: f64,
+        plain: &[(usize, f64)],
+        weight: f64,
+        residual: f64,
+    ) {
+        self.g[place] += weight * changed * residual;
+        for &(other, change) in plain {
+            self.a[(place, other)] += weight * changed * change;
+        }
+    }
+
+    /// Adds these sums to those of all columns.
+    pub(crate) fn add_to(&self, a: &mut DMatrix<f64>, g: &mut DVector<f64>) {
+        self.put(&self.columns, a, g);
+    }
+
+    fn put(&self, places: &[usize], a: &mut DMatrix<f64>, g: &mut DVector<f64>) {
+        for (i, &row) in places.iter().enumerate() {
+            g[row] += self.g[i];
+            for (j, &column) in places.iter().enumerate() {
+                a[(row, column)] += self.a[(i, j)];
+            }
+        }
+    }
+
+    /// `g − A δ`, for all columns.
+    pub(crate) fn score(&self, delta: &DVector<f64>) -> DVector<f64> {
+        let left = &self.g - &self.a * self.of(delta);
+        let mut score = DVector::zeros(delta.len());
+        for (&column, value) in self.columns.iter().zip(left.iter()) {
+            score[column] = *value;
+        }
+        score
+    }
+
+    /// `gᵀ δ − ½ δᵀ A δ`: what moving by this gains, in log-likelihood.
+    pub(crate) fn gain(&self, delta: &DVector<f64>) -> f64 {
+        let delta = self.of(delta);
+        self.g.dot(&delta) - 0.5 * delta.dot(&(&self.a * &delta))
+    }
+
+    fn of(&self, delta: &DVector<f64>) -> DVector<f64> {
+        DVector::from_iterator(self.columns.len(), self.columns.iter().map(|&column| delta[column]))
+    }
+
+    /// Of all columns there are.
+    #[cfg(test)]
+    pub(crate) fn whole(a: DMatrix<f64>, g: DVector<f64>) -> Self {
+        Self { columns: (0..g.len()).collect(), a, g }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Noise;
+
+    const SIZE: usize = 7;
+
+    /// Sums of rows with some of the columns, and the same with all.
+    fn pair(seed: u64, columns: &[usize]) -> (NormalEquations, DMatrix<f64>, DVector<f64>) {
+        let mut noise = Noise(seed);
+        let mut sums = NormalEquations::zero(columns.to_vec());
+        let (mut a, mut g) = (DMatrix::zeros(SIZE, SIZE), DVector::zeros(SIZE));
+        for _ in 0..5 {
+            let values: Vec<f64> = columns.iter().map(|_| noise.next()).collect();
+            let (weight, residual) = (noise.next().abs(), noise.next());
+            let plain: Vec<(usize, f64)> = values.iter().copied().enumerate().collect();
+            for &(place, value) in &plain {
+                sums.add(place, value, &plain, weight, residual);
+            }
+            let mut row = DVector::zeros(SIZE);
+            columns.iter().zip(&values).for_each(|(&column, &value)| row[column] = value);
+            a.ger(weight, &row, &row, 1.0);
+            g.axpy(weight * residual, &row, 1.0);
+        }
+        (sums, a, g)
+    }
+
+    #[test]
+    fn some_columns_do_as_all_of_them_would() {
+        for (seed, columns) in [(1, vec![0, 3, 6]), (2, vec![2]), (3, (0..SIZE).collect())] {
+            let (sums, a, g) = pair(seed, &columns);
+            let delta = DVector::from_fn(SIZE, |i, _| 0.3 * i as f64 - 1.0);
+            assert!((sums.score(&delta) - (&g - &a * &delta)).norm() < 1e-12);
+            assert!((sums.gain(&delta) - (g.dot(&delta) - 0.5 * delta.dot(&(&a * &delta)))).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn sums_together_are_those_of_all_rows() {
+        let ((one, a, g), (other, b, h)) = (pair(4, &[0, 2, 5]), pair(5, &[1, 2]));
+        let (mut sum, mut right) = (DMatrix::zeros(SIZE, SIZE), DVector::zeros(SIZE));
+        let together = NormalEquations::together([&one, &other].into_iter());
+        together.add_to(&mut sum, &mut right);
+        assert_eq!(together.columns, [0, 1, 2, 5]);
+        assert!((sum - (a + b)).norm() < 1e-12 && (right - (g + h)).norm() < 1e-12);
+    }
+}

@@ -1,0 +1,195 @@
+//! What the camera's file says is not exact: nominal values are trusted this far, and left free within it in every fit.
+
+use std::collections::BTreeSet;
+
+use glam::DVec2;
+
+use crate::{
+    linear_model::residual::{Channel, Group, Row},
+    measurement::frame::FrameMeasurements,
+};
+
+/// A nominal value that may be a little off.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Nuisance {
+    /// All rows of a group are off by the same.
+    Offset {
+        group: Group,
+        /// Standard deviation, in the rows' unit.
+        sigma: f64,
+    },
+    /// Carpet seen at a grazing angle reflects some of the light as it is, more so to the power given of one less the
+    /// cosine of the angle of incidence: a linear value added to all colours alike.
+    Sheen {
+        power: i32,
+        /// Standard deviation, linear, at grazing incidence.
+        sigma: f64,
+    },
+    /// Broad lines look a little more or less blurred than thin ones: their profile is not quite the one that is fitted.
+    Width {
+        /// Standard deviation for each factor of e in width, pixels squared.
+        sigma: f64,
+    },
+    /// A lens out of focus makes a disc of a point, motion a bar: where a Gaussian is fitted, as here, its variance comes out
+    /// this part larger, wherever it is.
+    Kernel {
+        /// Standard deviation, a part of the variance.
+        sigma: f64,
+    },
+    /// And by this part more for lines thinner than the blur.
+    ThinKernel {
+        /// Standard deviation, a part of the variance.
+        sigma: f64,
+    },
+    /// A patch of carpet is brighter or darker than the rest, in all colours alike.
+    Patch {
+        /// Which square of the field, see [`cell_of`].
+        cell: [i32; 2],
+        /// Standard deviation of the logarithm.
+        sigma: f64,
+    },
+}
+
+/// How white a line is: worn and dusty ones differ by a few percent.
+const LINE: f64 = 0.02;
+/// How bright carpet is: rolls and dirt.
+const CARPET: f64 = 0.07;
+/// The nominal blur's variance, pixels squared.
+const BLUR: f64 = 0.03;
+/// Its change with the width of lines, pixels squared for each factor of e.
+const WIDTH: f64 = 0.02;
+/// What a disc's or a bar's fitted variance is off by: 10 % on broad lines, up to 28 % on the thinnest (a uniform disc's
+/// edge and line spread, fitted as in [`crate::measurement::line_profile`]).
+const KERNEL: f64 = 0.12;
+const THIN_KERNEL: f64 = 0.2;
+/// The nominal noise's variance, of which fine texture of the carpet cannot be told: natural logarithm.
+const NOISE: f64 = 0.2;
+/// The carpet's sheen, linear.
+const SHEEN: f64 = 0.01;
+/// How much patches of carpet differ, logarithm.
+const PATCH: f64 = 0.05;
+/// Side of a patch, metres.
+const PATCH_M: f64 = 0.5;
+
+/// Those that every recording has.
+const COMMON: [Nuisance; 13] = [
+    offset(Channel::Photometry, 0, LINE),
+    offset(Channel::Photometry, 1, LINE),
+    offset(Channel::Photometry, 2, LINE),
+    offset(Channel::Photometry, 3, CARPET),
+    offset(Channel::Photometry, 4, CARPET),
+    offset(Channel::Photometry, 5, CARPET),
+    offset(Channel::Sharpness, 0, BLUR),
+    offset(Channel::Noise, 0, NOISE),
+    Nuisance::Width { sigma: WIDTH },
+    Nuisance::Kernel { sigma: KERNEL },
+    Nuisance::ThinKernel { sigma: THIN_KERNEL },
+    Nuisance::Sheen { power: 1, sigma: SHEEN },
+    Nuisance::Sheen { power: 2, sigma: SHEEN },
+];
+
+const fn offset(channel: Channel, part: u8, sigma: f64) -> Nuisance {
+    Nuisance::Offset { group: Group { channel, part }, sigma }
+}
+
+/// Which square of the field a point of it is in.
+pub(crate) fn cell_of(ground: DVec2) -> [i32; 2] {
+    let cell = (ground / PATCH_M).floor();
+    [cell.x as i32, cell.y as i32]
+}
+
+/// All tolerances of what was looked at.
+pub(crate) fn tolerances(looks: &[FrameMeasurements]) -> Vec<Nuisance> {
+    let blocks = looks.iter().flat_map(|look| &look.blocks);
+    let cells: BTreeSet<[i32; 2]> = blocks.map(|block| cell_of(block.ground)).collect();
+    let patches = cells.into_iter().map(|cell| Nuisance::Patch { cell, sigma: PATCH });
+    COMMON.into_iter().chain(patches).collect()
+}
+
+impl Nuisance {
+    /// Change of a row that is expected to be `expected`, with one standard deviation.
+    pub(crate) fn change(&self, row: &Row, expected: f64) -> f64 {
+        match *self {
+            Self::Offset { group, sigma } if row.group == group => sigma,
+            Self::Width { sigma } if row.group.channel == Channel::Sharpness => {
+                sigma * row.half_width_px.ln()
+            }
+            Self::Kernel { sigma } if is_blur(row, expected) => sigma * expected,
+            Self::ThinKernel { sigma } if is_blur(row, expected) => {
+                sigma * expected * (-row.half_width_px / expected.sqrt()).exp()
+            }
+            Self::Patch { cell, sigma } if is_carpet(row) && cell_of(row.ground) == cell => sigma,
+            Self::Sheen { power, sigma } if is_carpet(row) => {
+                // Rows of photometry are logarithms.
+                let change = sigma * (1.0 - row.cos_incidence).powi(power) * (-expected).exp();
+                if change.is_finite() { change } else { 0.0 }
+            }
+            _ => 0.0,
+        }
+    }
+}
+
+fn is_blur(row: &Row, expected: f64) -> bool {
+    row.group.channel == Channel::Sharpness && expected > 0.0
+}
+
+fn is_carpet(row: &Row) -> bool {
+    row.group.channel == Channel::Photometry && row.group.part >= 3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{carpet_row, row};
+
+    fn sharpness(half_width_px: f64) -> Row {
+        Row { half_width_px, ..row(Channel::Sharpness, 0) }
+    }
+
+    /// What all tolerances of a kernel's shape allow a variance to be off by, as a part of it.
+    fn allowed(half_width_px: f64, variance_px2: f64) -> f64 {
+        let squares = COMMON.iter().map(|tolerance| {
+            let is_shape = matches!(tolerance, Nuisance::Kernel { .. } | Nuisance::ThinKernel { .. });
+            let change = tolerance.change(&sharpness(half_width_px), variance_px2) / variance_px2;
+            if is_shape { change * change } else { 0.0 }
+        });
+        squares.sum::<f64>().sqrt()
+    }
+
+    #[test]
+    fn a_discs_fitted_variance_is_allowed_wherever_it_is_seen() {
+        // Half widths in the disc's standard deviations, and by which part the fitted variance is larger: a bar blurred by
+        // a uniform disc and a narrow Gaussian, fitted by least squares with a Gaussian.
+        for (half_width, off) in
+            [(0.3, 0.28), (0.6, 0.22), (1.0, 0.16), (1.5, 0.12), (3.0, 0.12), (5.0, 0.12)]
+        {
+            let allowed = allowed(half_width * 2.7, 2.7 * 2.7);
+            assert!(off < 2.5 * allowed && off > 0.5 * allowed, "{half_width}: {allowed} for {off}");
+        }
+    }
+
+    #[test]
+    fn shapes_of_kernels_have_nothing_to_do_with_other_rows() {
+        let line = row(Channel::Geometry, 0);
+        for tolerance in [Nuisance::Kernel { sigma: KERNEL }, Nuisance::ThinKernel { sigma: THIN_KERNEL }] {
+            assert_eq!(tolerance.change(&line, 1.0), 0.0);
+        }
+    }
+
+    #[test]
+    fn a_patch_changes_the_carpet_in_its_own_square_only() {
+        let carpet = |ground: DVec2| carpet_row(DVec2::ZERO, ground);
+        let patch = Nuisance::Patch { cell: cell_of(DVec2::new(0.7, -0.2)), sigma: PATCH };
+        assert_eq!(patch.change(&carpet(DVec2::new(0.9, -0.4)), -2.0), PATCH);
+        assert_eq!(patch.change(&carpet(DVec2::new(1.1, -0.4)), -2.0), 0.0);
+    }
+
+    #[test]
+    fn sheen_is_nothing_from_straight_above_and_stronger_on_dark_colours() {
+        let at = |cos_incidence: f64| Row { cos_incidence, ..row(Channel::Photometry, 3) };
+        let sheen = Nuisance::Sheen { power: 1, sigma: SHEEN };
+        assert_eq!(sheen.change(&at(1.0), -3.0), 0.0);
+        assert!(sheen.change(&at(0.2), -3.0) > sheen.change(&at(0.2), -2.0));
+        assert!(sheen.change(&at(0.2), -3.0) > sheen.change(&at(0.6), -3.0));
+    }
+}

@@ -1,0 +1,179 @@
+//! What plain carpet looks like: block by block its colour, and the noise on it.
+
+use glam::DVec2;
+use image::RgbImage;
+
+use crate::{
+    linear_model::system::median,
+    measurement::line_profile::LUMA,
+    measurement::quantization::{BLOCK, cosines},
+};
+
+/// Frequencies of noise that are looked at, as the sum of row and column: texture of carpet is in the lower ones, a
+/// JPEG file keeps little of the higher ones.
+pub(crate) const FREQUENCIES: std::ops::RangeInclusive<usize> = 3..=6;
+/// Coefficients that a file rounds to more than this many grey levels tell little of noise.
+const MAX_STEP: f64 = 12.0;
+
+/// A place is carpet where red and blue against green are those of the carpet within this factor,
+const SAME_HUE: f64 = 1.3;
+/// and green is within this one: the lens darkens corners, lamps are not the same everywhere.
+const SAME_BRIGHTNESS: f64 = 2.0;
+/// Half the side of the square of pixels that is looked at.
+const AROUND_PX: i64 = 1;
+
+/// What was measured of a square of plain carpet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct CarpetBlock {
+    /// Its centre.
+    pub(crate) pixel: DVec2,
+    /// What is seen there, on the ground, metres.
+    pub(crate) ground: DVec2,
+    /// Mean encoded values, 0–1.
+    pub(crate) level: [f64; 3],
+    /// Sum of squares of the coefficients of [`Spectrum`], grey levels squared.
+    pub(crate) energy: f64,
+    /// How many coefficients that are.
+    pub(crate) coefficients: usize,
+}
+
+/// The coefficients of luma that noise is measured in.
+#[derive(Debug, Clone)]
+pub(crate) struct Spectrum {
+    cosines: [[f64; BLOCK]; BLOCK],
+    chosen: Vec<(usize, usize)>,
+    /// The file's rounding of each chosen one, grey levels.
+    pub(crate) steps: Vec<f64>,
+}
+
+impl Spectrum {
+    pub(crate) fn new(steps: &[[f64; BLOCK]; BLOCK]) -> Self {
+        let all = (0..BLOCK).flat_map(|row| (0..BLOCK).map(move |column| (row, column)));
+        let chosen: Vec<_> = all
+            .filter(|&(row, column)| FREQUENCIES.contains(&(row + column)) && steps[row][column] <= MAX_STEP)
+            .collect();
+        let kept = chosen.iter().map(|&(row, column)| steps[row][column]).collect();
+        Self { cosines: cosines(), chosen, steps: kept }
+    }
+
+    /// Sum of squares of the chosen coefficients of the 8 × 8 pixels from a corner.
+    fn energy(&self, luma: &[[f64; BLOCK]; BLOCK]) -> f64 {
+        let mut half = [[0.0; BLOCK]; BLOCK];
+        for (row, values) in luma.iter().enumerate() {
+            for (frequency, waves) in self.cosines.iter().enumerate() {
+                half[row][frequency] = values.iter().zip(waves).map(|(value, wave)| value * wave).sum();
+            }
+        }
+        let coefficient = |&(vertical, horizontal): &(usize, usize)| -> f64 {
+            half.iter().zip(&self.cosines[vertical]).map(|(row, wave)| row[horizontal] * wave).sum()
+        };
+        self.chosen.iter().map(|place| coefficient(place).powi(2)).sum()
+    }
+}
+
+/// Measures the square of `side` pixels (a multiple of 8) from a corner that lies on the file's grid of blocks.
+pub(crate) fn measure(
+    picture: &RgbImage,
+    spectrum: &Spectrum,
+    corner: [u32; 2],
+    side: u32,
+    ground: DVec2,
+) -> CarpetBlock {
+    let mut sum = [0.0; 3];
+    let mut energy = 0.0;
+    let parts = side / BLOCK as u32;
+    for part in 0..parts * parts {
+        let from = [corner[0] + BLOCK as u32 * (part % parts), corner[1] + BLOCK as u32 * (part / parts)];
+        let mut luma = [[0.0; BLOCK]; BLOCK];
+        for (row, values) in luma.iter_mut().enumerate() {
+            for (column, value) in values.iter_mut().enumerate() {
+                let rgb = picture.get_pixel(from[0] + column as u32, from[1] + row as u32).0.map(f64::from);
+                *value = rgb.iter().zip(LUMA).map(|(value, weight)| value * weight).sum();
+                for (sum, value) in sum.iter_mut().zip(rgb) {
+                    *sum += value;
+                }
+            }
+        }
+        energy += spectrum.energy(&luma);
+    }
+    let pixels = f64::from(side * side);
+    let middle = 0.5 * f64::from(side - 1);
+    CarpetBlock {
+        pixel: DVec2::new(f64::from(corner[0]) + middle, f64::from(corner[1]) + middle),
+        ground,
+        level: sum.map(|sum| sum / (255.0 * pixels)),
+        energy,
+        coefficients: (parts * parts) as usize * spectrum.chosen.len(),
+    }
+}
+
+/// What most of a picture's carpet looks like: medians of encoded values. None where no carpet was measured.
+pub(crate) fn usual(blocks: &[CarpetBlock]) -> Option<[f64; 3]> {
+    (!blocks.is_empty()).then(|| {
+        [0, 1, 2]
+            .map(|channel| median(&mut blocks.iter().map(|block| block.level[channel]).collect::<Vec<f64>>()))
+    })
+}
+
+/// Whether a place in the picture looks like the carpet.
+pub(crate) fn is_carpet(picture: &RgbImage, pixel: DVec2, usual: [f64; 3]) -> bool {
+    let mut sums = [0.0; 3];
+    for dv in -AROUND_PX..=AROUND_PX {
+        for du in -AROUND_PX..=AROUND_PX {
+            let (u, v) = (pixel.x.round() as i64 + du, pixel.y.round() as i64 + dv);
+            let at = u32::try_from(u).ok().zip(u32::try_from(v).ok());
+            let Some(color) = at.and_then(|(u, v)| picture.get_pixel_checked(u, v)) else { return false };
+            color.0.iter().zip(&mut sums).for_each(|(value, sum)| *sum += f64::from(*value));
+        }
+    }
+    let within = |ratio: f64, factor: f64| (1.0 / factor..=factor).contains(&ratio);
+    let [red, green, blue] = [0, 1, 2].map(|channel| sums[channel] / usual[channel].max(1e-3));
+    let pixels = 255.0 * ((2 * AROUND_PX + 1) * (2 * AROUND_PX + 1)) as f64;
+    within(red / green, SAME_HUE) && within(blue / green, SAME_HUE) && within(green / pixels, SAME_BRIGHTNESS)
+}
+
+#[cfg(test)]
+mod tests {
+    use image::Rgb;
+
+    use super::*;
+
+    const CARPET: [u8; 3] = [52, 120, 60];
+
+    fn is_carpet_of(color: [u8; 3]) -> bool {
+        let picture = RgbImage::from_pixel(20, 20, Rgb(color));
+        is_carpet(&picture, DVec2::splat(9.0), CARPET.map(|value| f64::from(value) / 255.0))
+    }
+
+    #[test]
+    fn carpet_in_a_dark_corner_is_carpet_and_what_stands_on_it_is_not() {
+        assert!(is_carpet_of(CARPET) && is_carpet_of([33, 78, 37]));
+        for (what, color) in [
+            ("line", [205, 210, 204]),
+            ("robot", [25, 26, 28]),
+            ("ball", [230, 110, 30]),
+            ("blurred line", [95, 148, 100]),
+        ] {
+            assert!(!is_carpet_of(color), "{what}");
+        }
+    }
+
+    #[test]
+    fn beyond_the_picture_is_no_carpet() {
+        let picture = RgbImage::from_pixel(20, 20, Rgb(CARPET));
+        assert!(!is_carpet(&picture, DVec2::new(-3.0, 5.0), [0.2, 0.47, 0.23]));
+    }
+
+    #[test]
+    fn most_of_the_carpet_decides_what_it_looks_like() {
+        let block = |green: f64| CarpetBlock {
+            pixel: DVec2::ZERO,
+            ground: DVec2::ZERO,
+            level: [0.2, green, 0.23],
+            energy: 0.0,
+            coefficients: 0,
+        };
+        assert_eq!(usual(&[block(0.5), block(0.48), block(0.05)]).unwrap()[1], 0.48);
+        assert!(usual(&[]).is_none());
+    }
+}

@@ -1,0 +1,8 @@
+//! What is measured in a picture: pieces of white line and blocks of plain carpet, where a model expects them.
+
+pub(crate) mod carpet;
+pub(crate) mod frame;
+pub(crate) mod line_profile;
+pub(crate) mod line_search;
+pub(crate) mod quantization;
+pub(crate) mod visibility;

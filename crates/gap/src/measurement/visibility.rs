@@ -1,0 +1,123 @@
+//! What else is where something is measured: other lines, marks, goals and the carpet's end.
+
+use glam::{DVec2, DVec3};
+use reality_sim_core::field::{GoalPost, LineSample, VisibleSample};
+
+use crate::measurement::frame::FrameCamera;
+
+/// Blocks of carpet stay this far from lines and the carpet's edge beside what the blur takes, metres.
+const CARPET_MARGIN_M: f64 = 0.03;
+/// And from posts.
+const POST_MARGIN_M: f64 = 0.05;
+/// Sides of marks on the field, metres: lines beside them are left out.
+const MARK_M: f64 = 0.15;
+/// A goal's net is at least this far behind the line, metres.
+const NET_M: f64 = 0.3;
+/// Pixels beyond a line's side that a profile needs, and the standard deviations of the blur with which what is there
+/// reaches into them.
+const FLANK: (f64, f64) = (5.0, 4.5);
+
+/// What stands and lies around, from a view.
+pub(crate) struct Surroundings<'a> {
+    view: &'a FrameCamera<'a>,
+    /// The camera's place.
+    camera: DVec3,
+    half_extent_m: DVec2,
+    line_width_m: f64,
+    /// Half the field's length.
+    half_length_m: f64,
+    /// Half the width of what may stand behind a goal's line.
+    half_net_m: f64,
+    marks: [DVec2; 3],
+    posts: Vec<GoalPost>,
+}
+
+impl<'a> Surroundings<'a> {
+    pub(crate) fn new(view: &'a FrameCamera<'a>) -> Self {
+        let field = view.chain.field();
+        Self {
+            view,
+            camera: view.pose.position_in_world(),
+            half_extent_m: field.carpet_half_extent_m(),
+            line_width_m: field.line_width_m,
+            half_length_m: 0.5 * field.length_m,
+            half_net_m: 0.5 * field.goal_width_m + NET_M,
+            marks: field.marks(),
+            posts: field.goals().into_iter().flat_map(|goal| goal.posts).collect(),
+        }
+    }
+
+    /// Whether nothing else is so near to a line in the picture that it is in the profile: no other line, no mark, not the
+    /// carpet's end, no goal.
+    pub(crate) fn stands_alone(&self, visible: &VisibleSample) -> bool {
+        let LineSample { point_in_world, clearance_m, .. } = visible.sample;
+        let blur_px = self.view.chain.psf_variance_px2(visible.pixel).sqrt();
+        let needed_px = visible.half_width_px + FLANK.0 + FLANK.1 * blur_px;
+        let to_marks = self.marks.into_iter().map(|mark| mark.distance(point_in_world) - MARK_M);
+        let to_edge_m = (self.half_extent_m - point_in_world.abs()).min_element();
+        let nearest_m =
+            to_marks.fold(clearance_m.min(to_edge_m), f64::min).min(self.to_nets_m(point_in_world));
+        let free_m = nearest_m - 0.5 * self.line_width_m;
+        // Beyond a line a metre has fewer pixels than on its near side.
+        let is_free = |offset_m: f64| {
+            let end = point_in_world + offset_m * visible.sample.normal_in_world();
+            self.view.project(end, 1).is_none_or(|pixel| pixel.distance(visible.pixel) > needed_px)
+        };
+        let needed_m = needed_px * 0.5 * self.line_width_m / visible.half_width_px;
+        free_m > 0.0 && is_free(-free_m) && is_free(free_m) && self.off_posts(point_in_world, 0.0, needed_m)
+    }
+
+    /// The ground's point in the middle of a square of pixels, where all of the square shows plain carpet.
+    pub(crate) fn plain_carpet(&self, corner: [u32; 2], side: u32) -> Option<DVec2> {
+        let middle = DVec2::new(f64::from(corner[0]), f64::from(corner[1])) + 0.5 * f64::from(side - 1);
+        let camera = self.view.chain.camera();
+        camera.check_inside(middle).ok()?;
+        let at = |pixel: DVec2| camera.unproject_to_ground(self.view.pose, pixel).ok();
+        let center = at(middle)?;
+        // No line is nearer than the square's farthest corner.
+        let blur_px = self.view.chain.psf_variance_px2(middle).sqrt();
+        let reach_px = 0.5 * f64::from(side) + 2.0 + 2.0 * blur_px;
+        let mut radius_m: f64 = 0.0;
+        for offset in
+            [DVec2::new(-1.0, -1.0), DVec2::new(1.0, -1.0), DVec2::new(-1.0, 1.0), DVec2::new(1.0, 1.0)]
+        {
+            radius_m = radius_m.max(at(middle + reach_px * offset)?.distance(center));
+        }
+        let free_m = radius_m + CARPET_MARGIN_M + 0.5 * self.line_width_m;
+        let inside = (center.abs() + radius_m + CARPET_MARGIN_M).cmple(self.half_extent_m).all();
+        let off_lines = self.view.curves.iter().all(|curve| curve.distance_m(center) > free_m);
+        let off_marks = self.marks.iter().all(|mark| mark.distance(center) > radius_m + MARK_M);
+        (inside && off_lines && off_marks && self.off_posts(center, POST_MARGIN_M, 0.0)).then_some(center)
+    }
+
+    /// Whether a pixel shows the field, with its lines and marks: no goal, nothing beyond the carpet.
+    pub(crate) fn shows_field(&self, pixel: DVec2) -> bool {
+        let camera = self.view.chain.camera();
+        let ground = camera.unproject_to_ground(self.view.pose, pixel);
+        camera.check_inside(pixel).is_ok()
+            && ground.is_ok_and(|ground| {
+                ground.abs().cmple(self.half_extent_m).all()
+                    && self.to_nets_m(ground) > 0.0
+                    && self.off_posts(ground, POST_MARGIN_M, 0.0)
+            })
+    }
+
+    /// From a point to what may stand behind a goal's line between its posts: nets and bars, of which a field's file does
+    /// not tell.
+    fn to_nets_m(&self, point: DVec2) -> f64 {
+        let beyond_m = self.half_length_m + NET_M - point.x.abs();
+        if point.y.abs() < self.half_net_m { beyond_m } else { f64::INFINITY }
+    }
+
+    /// Whether no post, `thicker_m` thicker than it is, stands between the camera and a point of the ground, or so near
+    /// beside that in the picture that it would be `beside_m` away from the point.
+    fn off_posts(&self, ground: DVec2, thicker_m: f64, beside_m: f64) -> bool {
+        let camera = self.camera.truncate();
+        let way = ground - camera;
+        self.posts.iter().all(|post| {
+            let fraction = ((post.center - camera).dot(way) / way.length_squared().max(1e-9)).clamp(0.0, 1.0);
+            let distance_m = (camera + fraction * way).distance(post.center);
+            distance_m >= post.radius_m + thicker_m + fraction * beside_m
+        })
+    }
+}

@@ -1,0 +1,181 @@
+//! A channel's residuals over time, as curves.
+
+use std::fmt::Write;
+
+use super::text::escape;
+use crate::{
+    report::data::Course,
+    report::text::{in_channel, rounded},
+};
+
+/// The drawing's width and height.
+const SIZE: [f64; 2] = [720.0, 200.0];
+/// Left, top, right, bottom of the curves in it.
+const PLOT: [f64; 4] = [54.0, 10.0, 710.0, 162.0];
+/// About as many numbers are at an axis.
+const TICKS: f64 = 5.0;
+
+/// From time and value to the drawing.
+struct Scale {
+    from_s: f64,
+    duration_s: f64,
+    largest: f64,
+}
+
+impl Scale {
+    fn x(&self, time_s: f64) -> f64 {
+        PLOT[0] + (PLOT[2] - PLOT[0]) * (time_s - self.from_s) / self.duration_s
+    }
+
+    fn y(&self, value: f64) -> f64 {
+        PLOT[3] - (PLOT[3] - PLOT[1]) * value / self.largest
+    }
+}
+
+/// The curves before and after, with the frames that no fit has seen, and the noise floor where it is known.
+pub(super) fn drawing(course: &Course, channel: &str, unit: &str, floor: Option<f64>) -> String {
+    let (factor, unit) = in_channel(channel, unit);
+    let scaled = |values: &[Option<f64>]| -> Vec<(f64, f64, bool)> {
+        let judged = course.judged.iter().copied().chain(std::iter::repeat(false));
+        let points = course.time_s.iter().zip(values).zip(judged);
+        points
+            // What was not measured interrupts a curve.
+            .map(|((time_s, value), judged)| (*time_s, factor * value.unwrap_or(f64::NAN), judged))
+            .collect()
+    };
+    let (before, after) = (scaled(&course.before), scaled(&course.after));
+    let floor = floor.map(|floor| factor * floor).filter(|floor| floor.is_finite());
+    let Some(scale) = scale(&before, &after, floor) else {
+        return "<p class=\"quiet\">Nothing was measured over time.</p>\n".to_owned();
+    };
+    let label = format!("{channel} over time, before and after");
+    format!(
+        "<figure><svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">{}{}{}{}{}</svg>\
+         <figcaption>{}</figcaption></figure>\n",
+        SIZE[0],
+        SIZE[1],
+        escape(&label),
+        axes(&scale),
+        floor.map_or_else(String::new, |floor| level(&scale, floor)),
+        // Dashes on top: both are seen where they are the same.
+        curve(&after, &scale, ["after", "judged"]),
+        curve(&before, &scale, ["before", "judged-before"]),
+        KEY,
+        caption(channel, unit),
+    )
+}
+
+const KEY: &str = "<path class=\"before\" d=\"M60 193H85\"/><text x=\"90\" y=\"197\">before</text>\
+                   <path class=\"after\" d=\"M150 193H175\"/><text x=\"180\" y=\"197\">after</text>\
+                   <path class=\"floor\" d=\"M230 193H255\"/><text x=\"260\" y=\"197\">noise floor</text>\
+                   <circle class=\"judged\" cx=\"345\" cy=\"193\" r=\"2.5\"/>\
+                   <text x=\"353\" y=\"197\">frame kept for judging</text>";
+
+fn caption(channel: &str, unit: &str) -> String {
+    let unit = if unit.is_empty() { String::new() } else { format!(", {unit}") };
+    escape(&format!(
+        "{} over time: usual size of each frame's residuals (1.48 times their median){unit}",
+        super::text::channel_title(channel)
+    ))
+}
+
+/// None where nothing was measured.
+fn scale(before: &[(f64, f64, bool)], after: &[(f64, f64, bool)], floor: Option<f64>) -> Option<Scale> {
+    let measured =
+        || before.iter().chain(after).filter(|(time_s, value, _)| time_s.is_finite() && value.is_finite());
+    let from_s = measured().map(|point| point.0).reduce(f64::min)?;
+    let to_s = measured().map(|point| point.0).reduce(f64::max)?;
+    let largest = measured().map(|point| point.1).chain(floor).reduce(f64::max)?;
+    let positive = |length: f64| if length > 0.0 { length } else { 1.0 };
+    Some(Scale { from_s, duration_s: positive(to_s - from_s), largest: 1.05 * positive(largest) })
+}
+
+fn axes(scale: &Scale) -> String {
+    let mut svg = String::new();
+    let [left, top, right, bottom] = PLOT;
+    for (value, text) in ticks(scale.largest) {
+        let y = scale.y(value);
+        let _ = write!(
+            svg,
+            "<path class=\"axis\" d=\"M{left} {y:.1}H{right}\"/><text x=\"{:.0}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
+            left - 5.0,
+            y + 4.0,
+            text
+        );
+    }
+    for (time_s, text) in ticks(scale.duration_s) {
+        let x = scale.x(scale.from_s + time_s);
+        let _ = write!(
+            svg,
+            "<path class=\"axis\" d=\"M{x:.1} {top}V{bottom}\"/><text x=\"{x:.1}\" y=\"{:.0}\" text-anchor=\"middle\">{} s</text>",
+            bottom + 14.0,
+            text
+        );
+    }
+    svg
+}
+
+fn level(scale: &Scale, value: f64) -> String {
+    format!("<path class=\"floor\" d=\"M{} {:.1}H{}\"/>", PLOT[0], scale.y(value), PLOT[2])
+}
+
+/// A curve with gaps, and dots on the frames kept for judging.
+fn curve(points: &[(f64, f64, bool)], scale: &Scale, [line, dot]: [&str; 2]) -> String {
+    let (mut path, mut dots, mut pen_down) = (String::new(), String::new(), false);
+    for &(time_s, value, judged) in points {
+        let (x, y) = (scale.x(time_s), scale.y(value));
+        if !(x.is_finite() && y.is_finite()) {
+            pen_down = false;
+            continue;
+        }
+        let _ = write!(path, "{}{x:.1} {y:.1}", if pen_down { "L" } else { "M" });
+        pen_down = true;
+        if judged {
+            let _ = write!(dots, "<circle class=\"{dot}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.5\"/>");
+        }
+    }
+    format!("<path class=\"{line}\" d=\"{path}\"/>{dots}")
+}
+
+/// Round numbers from 0 to the largest, with their texts.
+fn ticks(largest: f64) -> impl Iterator<Item = (f64, String)> {
+    let rough = largest / TICKS;
+    let magnitude = 10f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * magnitude).into_iter().find(|step| *step >= rough);
+    let step = step.unwrap_or(largest);
+    let decimals = -step.log10().floor().min(0.0) as i32;
+    let values = (0..=TICKS as u32 + 1).map(move |index| step * f64::from(index));
+    values.take_while(move |value| *value <= largest).map(move |value| (value, rounded(value, decimals)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_no_more_than_six() {
+        let texts = |largest| ticks(largest).map(|tick| tick.1).collect::<Vec<String>>();
+        assert_eq!(texts(1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(texts(7.3), ["0", "2", "4", "6"]);
+    }
+
+    #[test]
+    fn a_frame_without_measurement_interrupts_the_curve() {
+        let course = Course {
+            time_s: vec![5.0, 6.0, 7.0, 8.0],
+            judged: vec![false, true, false, true],
+            before: vec![Some(1.0), Some(2.0), None, Some(1.5)],
+            after: vec![Some(1.0); 3],
+        };
+        let svg = drawing(&course, "geometry", "px", None);
+        let path = svg.split("class=\"before\" d=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap();
+        assert_eq!(path.matches('M').count(), 2);
+        assert_eq!(svg.matches("judged-before").count(), 2);
+    }
+
+    #[test]
+    fn a_course_without_frames_says_so() {
+        let course = Course { time_s: Vec::new(), judged: Vec::new(), before: Vec::new(), after: Vec::new() };
+        assert!(drawing(&course, "geometry", "px", Some(1.0)).contains("Nothing was measured"));
+    }
+}

@@ -1,0 +1,69 @@
+//! The gap before and after beside the noise floor, as a table.
+
+use super::text::{cell, channel_title, escape, number, table};
+use crate::{
+    report::data::Gap,
+    report::text::{closed, digits, has_moved, in_channel, percent},
+};
+
+/// Width and height of a bar.
+const BAR: [f64; 2] = [160.0, 12.0];
+
+pub(super) fn section(gap: &Gap) -> String {
+    let rows = gap.channels.iter().map(|(channel, part)| {
+        row("", channel, [part.before, part.after, part.floor], in_channel(channel, &part.unit))
+    });
+    let total = row(
+        "total",
+        "all channels",
+        [gap.before, gap.after, gap.floor],
+        (1.0, if gap.unit == "1" { "" } else { &gap.unit }),
+    );
+    let rows: Vec<String> = rows.chain([total]).collect();
+    format!(
+        "<h2>The gap</h2>\n{}<p class=\"quiet\">Root mean squares on frames that no fit has seen. In the bars, grey is \
+         the noise floor, orange what is left of the gap, green what was closed. Nominal values within their tolerance, patches of carpet and worn lines lie above \
+         the floor as well: only what is listed under Unexplained is more than that.</p>\n",
+        table(&["Channel", ">Before", ">After", ">Noise floor", "Unit", ">Closed", ""], &rows)
+    )
+}
+
+fn row(class: &str, channel: &str, sizes: [f64; 3], (factor, unit): (f64, &str)) -> String {
+    let [before, after, floor] = sizes;
+    let part = closed(before, after, floor)
+        .filter(|_| has_moved(before, after))
+        .map_or_else(|| "–".to_owned(), |part| percent(part).replace("−0", "0"));
+    let numbers: String = sizes.iter().map(|size| number(&digits(factor * size, 3))).collect();
+    format!(
+        "<tr class=\"{class}\">{}{numbers}{}{}<td>{}</td></tr>",
+        cell(&channel_title(channel)),
+        cell(unit),
+        number(&part),
+        bar(before, after, floor)
+    )
+}
+
+/// Floor, what is left, what was closed.
+fn bar(before: f64, after: f64, floor: f64) -> String {
+    let largest = before.max(after).max(floor);
+    if !(before.is_finite() && after.is_finite() && floor.is_finite() && largest > 0.0) {
+        return String::new();
+    }
+    let x = |size: f64| BAR[0] * size.max(0.0) / largest;
+    let part = |class: &str, from: f64, to: f64| {
+        let (from, width) = (x(from), (x(to) - x(from)).max(0.0));
+        format!(
+            "<rect class=\"{class}\" x=\"{from:.1}\" y=\"0\" width=\"{width:.1}\" height=\"{}\"/>",
+            BAR[1]
+        )
+    };
+    let label = escape("noise floor, what is left of the gap, what was closed");
+    format!(
+        "<svg width=\"{}\" height=\"{}\" role=\"img\" aria-label=\"{label}\">{}{}{}</svg>",
+        BAR[0],
+        BAR[1],
+        part("bar-floor", 0.0, floor),
+        part("bar-left", floor, after),
+        part("bar-closed", after, before)
+    )
+}

@@ -1,0 +1,114 @@
+//! The report as a page that needs nothing else: a verdict, pictures, maps and tables.
+
+mod course;
+mod effects;
+mod gap;
+mod maps;
+mod notes;
+mod pictures;
+mod text;
+
+use self::{
+    maps::Subject,
+    text::{channel_title, escape},
+};
+use crate::{
+    inference::held_out::ChannelGap,
+    linear_model::residual::Channel,
+    report::data::{Maps, Report, Verdict},
+    report::pictures::Pictures,
+};
+
+const STYLE: &str = include_str!("style.css");
+
+/// The whole page, UTF-8, with its pictures inside.
+pub fn page(report: &Report, pictures: &Pictures) -> String {
+    let title = escape(&format!("Gap: {}", report.recording));
+    let sections = [
+        verdict(report),
+        pictures::section(pictures, report),
+        channels(report),
+        gap::section(&report.gap),
+        effects::section(report),
+        effects::unexplained(&report.unexplained),
+        notes::section(report),
+    ];
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>{title}</title>\n\
+         <style>\n{STYLE}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
+        sections.concat()
+    )
+}
+
+fn verdict(report: &Report) -> String {
+    let word = match report.verdict {
+        Verdict::None => "nothing missing",
+        Verdict::Named => "named",
+        Verdict::Confusable => "confusable",
+        Verdict::Unknown => "unknown",
+        Verdict::Inconclusive => "inconclusive",
+    };
+    format!(
+        "<h1>Simulation against recording: {}</h1>\n<p class=\"verdict\">{}</p>\n<p class=\"quiet\"><span \
+         class=\"word\">{word}</span> {} frames, {} of them kept for judging</p>\n",
+        escape(&report.recording),
+        // No line starts with a percent sign.
+        escape(&report.summary).replace(" %", "&#160;%"),
+        report.frames,
+        report.judged_frames
+    )
+}
+
+/// Where residuals are: the channel whose gap was closed most, the others folded but for those that an effect closes, too.
+fn channels(report: &Report) -> String {
+    let Some(first) = most_closed(report) else { return String::new() };
+    let others = report.maps.iter().filter(|(channel, _)| **channel != first);
+    let folded = others.map(|(channel, maps)| {
+        let name = escape(&channel_title(channel));
+        let open = if report.effects.iter().any(|effect| effect.closes.contains_key(channel)) {
+            " open"
+        } else {
+            ""
+        };
+        format!("<details{open}><summary>{name}</summary>\n{}</details>\n", drawings(report, channel, maps))
+    });
+    let shown = report.maps.get(first).map(|maps| drawings(report, first, maps)).unwrap_or_default();
+    let title = escape(&channel_title(first));
+    format!("<h2>Where and when they differ: {title}</h2>\n{shown}{}", folded.collect::<String>())
+}
+
+/// By the noise floor; of those that are not closed at all the first.
+fn most_closed(report: &Report) -> Option<&'static str> {
+    let closed = |channel: &str| {
+        let size = |gap: &ChannelGap| (gap.before - gap.after) / gap.floor.max(f64::MIN_POSITIVE);
+        report
+            .gap
+            .channels
+            .get(channel)
+            .map(size)
+            .filter(|size| size.is_finite())
+            .unwrap_or(f64::NEG_INFINITY)
+    };
+    let drawn = Channel::ALL.iter().rev().map(|channel| channel.name());
+    drawn.filter(|channel| report.maps.contains_key(*channel)).max_by(|a, b| closed(a).total_cmp(&closed(b)))
+}
+
+fn drawings(report: &Report, channel: &str, maps: &Maps) -> String {
+    let course = course::drawing(
+        &maps.time,
+        channel,
+        &maps.unit,
+        report.gap.channels.get(channel).map(|gap| gap.floor),
+    );
+    // Odometry is not measured in a place.
+    if channel == Channel::Motion.name() {
+        return course;
+    }
+    let subject = Subject { channel, unit: &maps.unit, place: "in the picture", field: None };
+    let on_field = Subject { place: "on the field", field: Some(&report.field), ..subject };
+    format!("{}{}{course}", maps::pair(&maps.picture, subject), maps::pair(&maps.field, on_field))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,59 @@
+//! Text in HTML.
+
+use crate::linear_model::residual::Channel;
+
+/// Text that stays text, between tags and in attributes.
+pub(super) fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&#39;"),
+            _ => escaped.push(letter),
+        }
+    }
+    escaped
+}
+
+/// With a capital letter.
+pub(super) fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    let first: String = letters.next().map(|letter| letter.to_uppercase().collect()).unwrap_or_default();
+    first + letters.as_str()
+}
+
+/// A channel as a heading.
+pub(super) fn channel_title(channel: &str) -> String {
+    if channel == Channel::Color.name() { "Colour".to_owned() } else { capital(channel) }
+}
+
+/// A table with a row of headings; those that start with `>` are above numbers. Headings are text, rows are HTML.
+pub(super) fn table(headings: &[&str], rows: &[String]) -> String {
+    let heading = |text: &&str| match text.strip_prefix('>') {
+        Some(text) => format!("<th class=\"n\" scope=\"col\">{}</th>", escape(text)),
+        None => format!("<th scope=\"col\">{}</th>", escape(text)),
+    };
+    let headings: String = headings.iter().map(heading).collect();
+    format!(
+        "<div class=\"scroll\"><table><thead><tr>{headings}</tr></thead><tbody>{}</tbody></table></div>\n",
+        rows.concat()
+    )
+}
+
+/// A cell of text.
+pub(super) fn cell(text: &str) -> String {
+    format!("<td>{}</td>", escape(text))
+}
+
+/// A cell with a number.
+pub(super) fn number(text: &str) -> String {
+    format!("<td class=\"n\">{}</td>", escape(text))
+}
+
+/// An effect's name above its id.
+pub(super) fn effect_cell(name: &str, id: &str) -> String {
+    format!("<td>{}<br/><code>{}</code></td>", escape(&capital(name)), escape(id))
+}

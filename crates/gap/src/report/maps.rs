@@ -1,0 +1,118 @@
+//! Where residuals are: in the picture, on the field, over time.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use crate::{
+    inference::held_out::HeldOutResiduals,
+    linear_model::residual::{Channel, Row},
+    recording::Recording,
+    report::data::{Course, Map, Maps},
+    workflow::selection::SelectedModel,
+};
+
+/// Cells of the picture's map along the longer and the shorter side.
+const PICTURE: [usize; 2] = [16, 12];
+/// Side of a cell of the field's map, metres.
+const FIELD_M: f64 = 0.5;
+/// Fewer rows in a cell are no mean.
+const LEAST_ROWS: f64 = 5.0;
+
+/// The maps of every channel that is seen in pictures.
+pub(crate) fn maps(
+    recording: &Recording<'_>,
+    found: &SelectedModel,
+    before: &HeldOutResiduals,
+    after: &HeldOutResiduals,
+) -> BTreeMap<String, Maps> {
+    let camera = &recording.sequence.setup.camera;
+    let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
+    let half = recording.sequence.field.carpet_half_extent_m();
+    let cells = (2.0 * half / FIELD_M).ceil();
+    let field_rows = [cells.x as usize, cells.y as usize];
+    let mut maps = BTreeMap::new();
+    for channel in Channel::ALL {
+        let of = |judged: &HeldOutResiduals| -> Vec<(usize, Row, f64)> { residuals(found, judged, channel) };
+        let (before, after) = (of(before), of(after));
+        if after.is_empty() {
+            continue;
+        }
+        let map = |grid: [usize; 2], extent: [f64; 4], place: &dyn Fn(&Row) -> DVec2| Map {
+            columns: grid[0],
+            rows: grid[1],
+            extent,
+            before: means(&before, grid, place),
+            after: means(&after, grid, place),
+        };
+        let in_picture = |row: &Row| (row.pixel + 0.5) / size;
+        // The field's map begins at the upper left as seen from above: x to the right, y up.
+        let on_field = |row: &Row| {
+            let place = (row.ground + half) / (2.0 * half);
+            DVec2::new(place.x, 1.0 - place.y)
+        };
+        let extent = [0.0, 0.0, size.x, size.y];
+        let field_extent = [-half.x, half.y, half.x, -half.y];
+        maps.insert(
+            channel.name().to_owned(),
+            Maps {
+                unit: channel.unit().to_owned(),
+                picture: map(PICTURE, extent, &in_picture),
+                field: map(field_rows, field_extent, &on_field),
+                time: course(recording, found, &before, &after),
+            },
+        );
+    }
+    maps
+}
+
+/// Residuals of what is a measurement of line or carpet: frame, row, value.
+fn residuals(found: &SelectedModel, judged: &HeldOutResiduals, channel: Channel) -> Vec<(usize, Row, f64)> {
+    let frames = found.measured.frames.iter().zip(&judged.residuals).enumerate();
+    frames
+        .flat_map(|(frame, (rows, residuals))| {
+            rows.rows.iter().zip(residuals).map(move |(row, residual)| (frame, *row, *residual))
+        })
+        .filter(|(_, row, residual)| row.group.channel == channel && residual.is_finite())
+        .collect()
+}
+
+fn means(rows: &[(usize, Row, f64)], grid: [usize; 2], place: &dyn Fn(&Row) -> DVec2) -> Vec<Option<f64>> {
+    let mut values: Vec<Vec<f64>> = vec![Vec::new(); grid[0] * grid[1]];
+    for (_, row, residual) in rows {
+        let cell = place(row) * DVec2::new(grid[0] as f64, grid[1] as f64);
+        if cell.cmpge(DVec2::ZERO).all() && cell.x < grid[0] as f64 && cell.y < grid[1] as f64 {
+            values[cell.y as usize * grid[0] + cell.x as usize].push(*residual);
+        }
+    }
+    // Medians: a robot in the way is no pattern.
+    let median = |values: &mut Vec<f64>| {
+        (values.len() as f64 >= LEAST_ROWS).then(|| crate::linear_model::system::median(values))
+    };
+    values.iter_mut().map(median).collect()
+}
+
+fn course(
+    recording: &Recording<'_>,
+    found: &SelectedModel,
+    before: &[(usize, Row, f64)],
+    after: &[(usize, Row, f64)],
+) -> Course {
+    let count = recording.frames.len();
+    let mut judged = vec![false; count];
+    found.split.judged().for_each(|frame| judged[frame] = true);
+    let sizes = |rows: &[(usize, Row, f64)]| -> Vec<Option<f64>> {
+        let mut values: Vec<Vec<f64>> = vec![Vec::new(); count];
+        rows.iter().for_each(|(frame, _, residual)| values[*frame].push(residual.abs()));
+        let robust = |values: &mut Vec<f64>| {
+            (!values.is_empty()).then(|| 1.4826 * crate::linear_model::system::median(values))
+        };
+        values.iter_mut().map(robust).collect()
+    };
+    Course {
+        time_s: recording.frames.iter().map(|frame| frame.time_s).collect(),
+        judged,
+        before: sizes(before),
+        after: sizes(after),
+    }
+}

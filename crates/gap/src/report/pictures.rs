@@ -1,0 +1,68 @@
+//! The picture that convinces: one frame as it was recorded and as the model draws it, without and with what was found.
+
+use glam::DVec2;
+use image::{GrayImage, Luma, RgbImage};
+use reality_sim_core::sequence::SequenceError;
+use reality_sim_sensor::{Chain, Model, ModelError, PoseError, Renderer, SceneColors};
+
+use crate::{
+    measurement::frame::FrameCamera, measurement::visibility::Surroundings, recording::Recording,
+    workflow::analysis::Analysis,
+};
+
+/// One frame three times.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pictures {
+    /// As recorded.
+    pub measured: RgbImage,
+    /// As the model that was given draws it.
+    pub before: RgbImage,
+    /// As the extended model draws it.
+    pub after: RgbImage,
+    /// 255 where the extended model sees the field, on which all that is compared lies; else 0.
+    pub field: GrayImage,
+}
+
+/// Why there are no pictures.
+#[derive(Debug, thiserror::Error)]
+pub enum PicturesError {
+    /// The recording.
+    #[error(transparent)]
+    Sequence(#[from] SequenceError),
+    /// The model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The reference pose.
+    #[error("frame {index} cannot be drawn")]
+    Pose {
+        /// Of the frame in the recording.
+        index: usize,
+        /// What is wrong with it.
+        source: PoseError,
+    },
+}
+
+impl Pictures {
+    /// Of the frame that the report shows.
+    pub fn new(recording: &Recording<'_>, given: &Model, analysis: &Analysis) -> Result<Self, PicturesError> {
+        let sequence = recording.sequence;
+        let index = analysis.report.shown_frame;
+        let time_s = sequence.frames.get(index).map_or(0.0, |frame| frame.timestamp_s);
+        let colors = SceneColors::new(&sequence.setup, &sequence.field);
+        let drawn = |model: &Model| -> Result<RgbImage, PicturesError> {
+            let renderer = Renderer::with_model(&sequence.setup, &sequence.field, colors, model)?;
+            renderer
+                .draw_at(&recording.trajectory, time_s, None)
+                .map_err(|source| PicturesError::Pose { index, source })
+        };
+        let measured = sequence.load_image(index)?;
+        let chain = Chain::new(&sequence.setup, &sequence.field, &analysis.model)?;
+        let view = FrameCamera::new(&chain, &recording.trajectory, time_s);
+        let surroundings = Surroundings::new(&view);
+        let field = GrayImage::from_fn(measured.width(), measured.height(), |x, y| {
+            let shows_field = surroundings.shows_field(DVec2::new(f64::from(x), f64::from(y)));
+            Luma([if shows_field { u8::MAX } else { 0 }])
+        });
+        Ok(Self { measured, before: drawn(given)?, after: drawn(&analysis.model)?, field })
+    }
+}

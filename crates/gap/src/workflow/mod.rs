@@ -1,0 +1,6 @@
+//! From a recording and a model to the report: coarse alignment, the selection of effects, and the analysis of the result.
+
+pub(crate) mod analysis;
+pub(crate) mod coarse_alignment;
+pub(crate) mod progress;
+pub(crate) mod selection;
