@@ -22,11 +22,6 @@ pub struct GoalColors {
     negative: [f64; 2],
 }
 
-/// Probability from log-odds.
-pub fn probability(log_odds: f64) -> f64 {
-    1.0 / (1.0 + (-log_odds).exp())
-}
-
 impl GoalColors {
     /// `None` where the field gives no colours, or the same for both goals.
     pub fn new(camera: &Camera, field: &FieldDimensions) -> Option<Self> {

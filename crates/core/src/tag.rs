@@ -13,6 +13,7 @@ use crate::{
     field::FieldDimensions,
     filter::{Filter, FilterConfig, FilterEstimate, PlanarSigma},
     goal_colors::GoalColors,
+    localization::{Beginning, Prediction, Track, TrackConfig},
     observation::{ObservationConfig, ObservationKind},
     pose::{CameraPose, Motion2, Pose2},
     preprocess::{Attitude, FieldBorder, Prepared, Preprocessor, Texture},
@@ -24,43 +25,18 @@ use crate::{
     sequence::{Sequence, SequenceError},
 };
 
-/// Predictions less certain than this are too wide for the particles: the field is searched around them.
-const SEARCH_SIGMA_M: f64 = 0.3;
-/// Predictions less certain than this may have led to the wrong one of two places that fit.
-const UNSURE_SIGMA_M: f64 = 0.15;
 /// Uncertainty of a start pose that the recording gives.
 const START_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.05, yaw_rad: 0.05 };
-/// Uncertainty after the odometry was reset: the robot was carried, or the recording has a gap.
-const CARRIED_SIGMA: PlanarSigma = PlanarSigma { position_m: 1.5, yaw_rad: 1.0 };
-/// Uncertainty of a sure pose.
-const SURE_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.02, yaw_rad: 0.02 };
-/// Uncertainty of a pose that fits but is not sure.
-const LIKELY_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.3, yaw_rad: 0.2 };
-/// Least uncertainty assumed of a filter that may be lost.
-const LOST_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.5, yaw_rad: 0.4 };
 /// Poses nearer than this are of one place.
 const SAME_PLACE: PlanarSigma = PlanarSigma { position_m: 0.3, yaw_rad: 0.2 };
 /// Particles spread around a place that a search found.
 const FOUND_SIGMA: PlanarSigma = PlanarSigma { position_m: 0.06, yaw_rad: 0.04 };
-/// Weight of the newest picture in the slow average of the line fraction (Thrun's α_slow).
-const SLOW: f64 = 0.05;
-/// Below this fraction of the slow average the filter may be lost.
-const LOST_RATIO: f64 = 0.5;
-/// Below this line fraction the filter may be lost, whatever the average.
-const LOST_FRACTION: f64 = 0.15;
-/// From this line fraction on, and this fraction of the slow average, a pose is sure.
-const SURE_FRACTION: f64 = 0.25;
-const SURE_RATIO: f64 = 0.55;
 /// A place found by search is sure when the next best one is at least this much worse (log-weight).
 const SURE_MARGIN: f64 = 6.0;
-/// A pose is sure while its mirror image is less probable than this.
-const MAX_MIRROR_PROBABILITY: f64 = 0.05;
 /// A search must beat the filter's own place by this much (log-weight) to move the particles.
 const MOVE_MARGIN: f64 = 4.0;
 /// Places that a search finds worse than the best one by more than this (log-weight) get no particles.
 const RIVAL_MARGIN: f64 = 4.0;
-/// Pictures in a row that must agree before a place found by search is sure without such a margin.
-const SURE_STREAK: u32 = 4;
 
 /// How a recording is tagged.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -148,51 +124,6 @@ pub struct Tagger {
     frame: u32,
 }
 
-/// What is carried from picture to picture.
-struct Track {
-    pose: Pose2,
-    /// The last sure pose carried on by the odometry since, and how far it may be wrong by now.
-    anchor: Pose2,
-    anchor_sigma: PlanarSigma,
-    odometry: Option<Pose2>,
-    slow_fraction: f64,
-    /// Pictures in a row that fitted, since the last search that moved the particles; `None` where the start was given
-    /// or the search had but one answer.
-    unsettled: Option<u32>,
-    /// Pictures since the last one that fitted in which the filter may have been lost.
-    doubtful: u32,
-    /// Log-odds of the mirrored pose.
-    mirror_log_odds: f64,
-}
-
-/// What the prediction says before a picture is looked at.
-struct Prediction {
-    sigma: PlanarSigma,
-    motion: Option<Motion2>,
-    carried: bool,
-}
-
-impl Track {
-    /// Goes on from what a search found.
-    fn relocate(&mut self, modes: &[Mode], prior: Prior) {
-        self.unsettled = (!is_clear(modes)).then_some(0);
-        if let Some(best) = modes.first().map(|mode| mode.pose.planar()) {
-            // The picture cannot tell the two halves apart: only what was known before can.
-            let odds = prior.log_probability(best.mirrored()) - prior.log_probability(best);
-            self.mirror_log_odds = self.mirror_log_odds.max(odds);
-        }
-    }
-
-    /// How far from the anchor the camera may be; farther with every picture that did not fit, where there is doubt.
-    fn search_sigma(&self, doubt: bool) -> PlanarSigma {
-        let times = if doubt { 1.0 + f64::from(self.doubtful) } else { 0.0 };
-        PlanarSigma {
-            position_m: self.anchor_sigma.position_m.max(times * LOST_SIGMA.position_m),
-            yaw_rad: self.anchor_sigma.yaw_rad.max(times * LOST_SIGMA.yaw_rad),
-        }
-    }
-}
-
 impl Tagger {
     /// Tags pictures of a camera on a field from a start pose, or from anywhere, on this processor.
     pub fn new(camera: &Camera, field: &FieldDimensions, start: Option<Pose2>, config: TagConfig) -> Self {
@@ -262,49 +193,33 @@ impl Tagger {
 
     fn begin(&mut self, picture: &Prepared, recorded: &Recorded) -> TaggedFrame {
         self.filter.place(&[(self.start.unwrap_or_default(), 1.0)], START_SIGMA);
-        let (mut unsettled, mut mirror_log_odds) = (None, f64::NEG_INFINITY);
+        let mut beginning = Beginning::Given;
         if self.start.is_none() {
             let modes = self.search_modes(picture, recorded.attitude, None);
             place(&mut *self.filter, &modes);
-            unsettled = (!is_clear(&modes)).then_some(0);
-            mirror_log_odds = 0.0;
+            beginning = Beginning::Searched { is_clear: is_clear(&modes) };
         }
         let estimate = self.filter.update(recorded.attitude, self.config.filter.noise.sigma(None));
-        let track = Track {
-            pose: estimate.pose.planar(),
-            anchor: estimate.pose.planar(),
-            anchor_sigma: CARRIED_SIGMA,
-            odometry: recorded.odometry,
-            slow_fraction: 0.0,
-            unsettled,
-            doubtful: 0,
-            mirror_log_odds,
-        };
-        let motion = None;
-        self.finish(track, recorded, Found { estimate, motion, searched: self.start.is_none() })
+        let track =
+            Track::new(TrackConfig::default(), estimate.pose.planar(), self.odometry(recorded), beginning);
+        self.finish(track, recorded, Found { estimate, motion: None, searched: self.start.is_none() })
     }
 
     fn follow(&mut self, mut track: Track, picture: &Prepared, recorded: &Recorded) -> TaggedFrame {
-        let prediction = self.predict(&track, recorded.odometry);
+        let prediction: Prediction = track.predict(self.odometry(recorded), &self.config.filter.noise);
         self.filter.predict(prediction.motion);
-        track.anchor = track.anchor.moved(prediction.motion.unwrap_or_default());
-        track.anchor_sigma = track.anchor_sigma.plus(prediction.sigma);
-        if prediction.carried {
-            // Whoever carried the robot may have turned it round.
-            track.mirror_log_odds = 0.0;
-        }
         let mut searched = false;
-        if self.config.recovery && (prediction.carried || prediction.sigma.position_m > SEARCH_SIGMA_M) {
-            let prior = Prior { pose: track.anchor, sigma: track.search_sigma(track.doubtful > 0) };
+        if self.config.recovery && track.needs_search(&prediction) {
+            let prior = track.prior();
             let modes = self.search_modes(picture, recorded.attitude, Some(prior));
             place(&mut *self.filter, &modes);
-            track.relocate(&modes, prior);
+            relocalize(&mut track, &modes, prior);
             searched = true;
         }
         // After a long way there may be more than one place that fits.
-        let long_way = prediction.sigma.position_m > UNSURE_SIGMA_M;
+        let long_way = track.is_long_way(&prediction);
         if long_way {
-            track.unsettled.get_or_insert(SURE_STREAK - 2);
+            track.confirm_after_long_way();
         }
         let diffusion = if searched { FOUND_SIGMA } else { prediction.sigma };
         let mut estimate = self.filter.update(recorded.attitude, diffusion);
@@ -313,32 +228,16 @@ impl Tagger {
             searched = true;
             estimate = self.recover(&mut track, picture, recorded.attitude, estimate);
         }
-        track.pose = estimate.pose.planar();
-        track.odometry = recorded.odometry;
         self.finish(track, recorded, Found { estimate, motion: prediction.motion, searched })
     }
 
-    fn predict(&self, track: &Track, odometry: Option<Pose2>) -> Prediction {
-        let (before, now) = match (track.odometry, odometry, self.config.odometry) {
-            (Some(before), Some(now), true) => (before, now),
-            _ => {
-                let sigma = self.config.filter.noise.sigma(None);
-                return Prediction { sigma, motion: None, carried: false };
-            }
-        };
-        // Dead reckoning that starts again at its origin says nothing of the way there.
-        let carried = now == Pose2::default() && before.motion_to(now).distance_m() > 0.1;
-        if carried {
-            return Prediction { sigma: CARRIED_SIGMA, motion: None, carried };
-        }
-        let motion = Some(before.motion_to(now));
-        let sigma = self.config.filter.noise.sigma(motion);
-        Prediction { sigma, motion, carried }
+    fn odometry(&self, recorded: &Recorded) -> Option<Pose2> {
+        recorded.odometry.filter(|_| self.config.odometry)
     }
 
     fn may_be_lost(&self, track: &Track, pose: CameraPose, attitude: Attitude) -> bool {
-        let least = lost_below(track);
-        track.unsettled == Some(0) || self.line_fraction_near(pose, attitude, least) < least
+        let least = track.lost_below();
+        track.is_unconfirmed() || self.line_fraction_near(pose, attitude, least) < least
     }
 
     /// The line fraction of a pose, or where that is less than `enough`, of the pose next to it that fits the picture
@@ -362,11 +261,11 @@ impl Tagger {
         attitude: Attitude,
         estimate: FilterEstimate,
     ) -> FilterEstimate {
-        let sigma = track.search_sigma(true);
-        let prior = Prior { pose: track.anchor, sigma };
+        let prior = track.prior_of_lost();
         let mut modes = self.search_modes(picture, attitude, Some(prior));
         // From many places no line is in view, which fits every picture a little and none well.
-        modes.retain(|mode| self.search.line_fraction(mode.pose) >= LOST_FRACTION);
+        modes
+            .retain(|mode| self.search.line_fraction(mode.pose) >= TrackConfig::default().lost_line_fraction);
         let Some(best) = modes.first() else { return estimate };
         let Some(own) = self.search.best_of(&[estimate.pose], attitude, Some(prior)) else {
             return estimate;
@@ -375,7 +274,7 @@ impl Tagger {
             return estimate;
         }
         place(&mut *self.filter, &modes);
-        track.relocate(&modes, prior);
+        relocalize(track, &modes, prior);
         self.filter.update(attitude, FOUND_SIGMA)
     }
 
@@ -397,34 +296,9 @@ impl Tagger {
                 self.filter.place(&[(pose.planar(), 1.0)], FOUND_SIGMA);
             }
         }
-        let least = SURE_FRACTION.max(SURE_RATIO * track.slow_fraction);
-        let line_fraction = self.line_fraction_near(pose, recorded.attitude, least);
-        let fits = line_fraction >= least;
-        track.unsettled = match track.unsettled {
-            Some(streak) if fits && streak + 1 < SURE_STREAK => Some(streak + 1),
-            Some(_) if fits => None,
-            Some(_) => Some(0),
-            None => None,
-        };
-        track.doubtful = match line_fraction {
-            _ if fits => 0,
-            fraction if fraction < lost_below(&track) => (track.doubtful + 1).min(8),
-            _ => track.doubtful,
-        };
-        let settled = fits && track.unsettled.is_none();
-        if fits && !settled {
-            (track.anchor, track.anchor_sigma) = (pose.planar(), LIKELY_SIGMA);
-        }
-        if settled {
-            (track.anchor, track.anchor_sigma) = (pose.planar(), SURE_SIGMA);
-            let weight = if track.slow_fraction == 0.0 { 1.0 } else { SLOW };
-            track.slow_fraction += weight * (line_fraction - track.slow_fraction);
-        } else {
-            // What was usual before a search need not be usual after it.
-            track.slow_fraction *= 1.0 - SLOW;
-        }
-        track.pose = pose.planar();
-        let mirror_probability = crate::goal_colors::probability(track.mirror_log_odds);
+        let line_fraction = self.line_fraction_near(pose, recorded.attitude, track.fits_from());
+        let settled = track.settle(pose.planar(), line_fraction);
+        let mirror_probability = track.mirrored_probability();
         self.state = Some(track);
         TaggedFrame {
             pose,
@@ -432,7 +306,7 @@ impl Tagger {
             filter: estimate,
             line_fraction,
             settled,
-            sure: settled && mirror_probability < MAX_MIRROR_PROBABILITY,
+            sure: settled && track.is_half_sure(),
             mirror_probability,
             motion,
             searched,
@@ -443,8 +317,8 @@ impl Tagger {
     /// The best particle, its rivals and the prediction, each fitted to the picture: the most probable of them, by picture
     /// and prediction together.
     fn most_probable(&self, track: &Track, attitude: Attitude, best: CameraPose) -> Option<Mode> {
-        let prior = Prior { pose: track.anchor, sigma: track.search_sigma(track.doubtful > 0) };
-        let mut candidates = vec![best, attitude.at(track.anchor)];
+        let prior = track.prior();
+        let mut candidates = vec![best, attitude.at(prior.pose)];
         candidates.extend(self.filter.rivals());
         self.search.best_of(&candidates, attitude, Some(prior))
     }
@@ -453,21 +327,17 @@ impl Tagger {
     /// speak for the other.
     fn update_mirror(&mut self, tagged: &mut TaggedFrame, recorded: &Recorded) {
         let (Some(goal_colors), Some(track)) = (&self.goal_colors, &mut self.state) else { return };
-        if track.mirror_log_odds == f64::NEG_INFINITY || tagged.line_fraction < SURE_FRACTION {
+        if !track.asks_for_half(tagged.line_fraction) {
             return;
         }
-        track.mirror_log_odds += goal_colors.mirror_log_odds(&recorded.picture, tagged.pose);
-        if track.mirror_log_odds > 0.0 {
-            track.mirror_log_odds = -track.mirror_log_odds;
+        if track.weigh_halves(goal_colors.mirror_log_odds(&recorded.picture, tagged.pose)) {
             self.filter.mirror();
-            track.pose = track.pose.mirrored();
-            track.anchor = track.anchor.mirrored();
             tagged.pose = tagged.pose.mirrored();
             tagged.filter.pose = tagged.filter.pose.mirrored();
             tagged.fit = tagged.fit.map(PoseFit::mirrored);
         }
-        tagged.mirror_probability = crate::goal_colors::probability(track.mirror_log_odds);
-        tagged.sure = tagged.settled && tagged.mirror_probability < MAX_MIRROR_PROBABILITY;
+        tagged.mirror_probability = track.mirrored_probability();
+        tagged.sure = tagged.settled && track.is_half_sure();
     }
 }
 
@@ -479,9 +349,9 @@ struct Found {
     searched: bool,
 }
 
-/// The line fraction below which the filter may be lost.
-fn lost_below(track: &Track) -> f64 {
-    LOST_FRACTION.max(LOST_RATIO * track.slow_fraction)
+/// Goes on from what a search found.
+fn relocalize(track: &mut Track, modes: &[Mode], prior: Prior) {
+    track.relocalize(modes.first().map(|mode| mode.pose.planar()), is_clear(modes), prior);
 }
 
 fn place(filter: &mut dyn Filter, modes: &[Mode]) {
@@ -570,7 +440,7 @@ pub fn smooth_sequence(
         .enumerate()
         .map(|(index, frame)| TrajectoryFrame {
             guess: frame.pose,
-            fit: frame.fit.filter(|_| frame.line_fraction >= SURE_FRACTION),
+            fit: frame.fit.filter(|_| frame.line_fraction >= TrackConfig::default().fitting_line_fraction),
             attitude: attitude(index),
             motion: frame.motion,
         })
@@ -605,3 +475,6 @@ pub fn recorded(sequence: &Sequence, index: usize, picture: &Arc<RgbImage>) -> R
         attitude: sequence_attitude(sequence, index),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,452 @@
+//! What is carried from picture to picture: a state machine of numbers, without pictures, particles or devices.
+//!
+//! A track is *settled* while the lines fit and no other place is in question; after a search with several answers it is
+//! *unconfirmed* until some pictures in a row have fitted; it is *doubtful* while they fit badly. Whether the field's point
+//! symmetry has been resolved is kept apart: a settled pose may still be the mirror image of the right one.
+
+use super::config::TrackConfig;
+use crate::{
+    filter::{MotionNoise, PlanarSigma},
+    pose::{Motion2, Pose2},
+    search::Prior,
+};
+
+/// Where a track begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Beginning {
+    /// At a pose that was given, of which the right half of the field is known.
+    Given,
+    /// At the best place of a search; `is_clear` where it had one answer only.
+    Searched { is_clear: bool },
+}
+
+/// What the motion model says before a picture is looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Prediction {
+    /// Standard deviations of the motion.
+    pub sigma: PlanarSigma,
+    /// Motion since the picture before, where odometry tells.
+    pub motion: Option<Motion2>,
+    /// The odometry was reset: nothing is known of the way here.
+    pub is_kidnapped: bool,
+}
+
+/// The state of a track.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Track {
+    config: TrackConfig,
+    /// The last pose that fitted, moved by the odometry since.
+    anchor: Pose2,
+    /// How far off the anchor may be by now.
+    anchor_sigma: PlanarSigma,
+    odometry: Option<Pose2>,
+    /// Slow average of the line fraction of settled poses.
+    usual_line_fraction: f64,
+    /// Pictures in a row that fitted since the place became uncertain; `None` where it is confirmed.
+    unconfirmed: Option<u32>,
+    /// Pictures since the last one that fitted in which the filter may have been lost.
+    doubtful_frames: u32,
+    /// Log-odds of the mirrored pose against the pose itself.
+    mirrored_log_odds: f64,
+}
+
+impl Track {
+    /// A track that begins at a pose.
+    pub fn new(config: TrackConfig, pose: Pose2, odometry: Option<Pose2>, beginning: Beginning) -> Self {
+        let (unconfirmed, mirrored_log_odds) = match beginning {
+            Beginning::Given => (None, f64::NEG_INFINITY),
+            Beginning::Searched { is_clear } => ((!is_clear).then_some(0), 0.0),
+        };
+        Self {
+            config,
+            anchor: pose,
+            anchor_sigma: config.kidnapped_sigma,
+            odometry,
+            usual_line_fraction: 0.0,
+            unconfirmed,
+            doubtful_frames: 0,
+            mirrored_log_odds,
+        }
+    }
+
+    /// Moves the track to the next picture by the odometry of its time.
+    pub fn predict(&mut self, odometry: Option<Pose2>, noise: &MotionNoise) -> Prediction {
+        let prediction = self.prediction(odometry, noise);
+        self.odometry = odometry;
+        self.anchor = self.anchor.moved(prediction.motion.unwrap_or_default());
+        self.anchor_sigma = self.anchor_sigma.plus(prediction.sigma);
+        if prediction.is_kidnapped {
+            // Whoever carried the robot may have turned it round.
+            self.mirrored_log_odds = 0.0;
+        }
+        prediction
+    }
+
+    fn prediction(&self, odometry: Option<Pose2>, noise: &MotionNoise) -> Prediction {
+        let Some((before, now)) = self.odometry.zip(odometry) else {
+            return Prediction { sigma: noise.sigma(None), motion: None, is_kidnapped: false };
+        };
+        let motion = before.motion_to(now);
+        // Dead reckoning that starts again at its origin says nothing of the way there.
+        if now == Pose2::default() && motion.distance_m() > self.config.reset_jump_m {
+            return Prediction { sigma: self.config.kidnapped_sigma, motion: None, is_kidnapped: true };
+        }
+        Prediction { sigma: noise.sigma(Some(motion)), motion: Some(motion), is_kidnapped: false }
+    }
+
+    /// Whether the field must be searched before the particles can be used again.
+    pub fn needs_search(&self, prediction: &Prediction) -> bool {
+        prediction.is_kidnapped || prediction.sigma.position_m > self.config.search_sigma_m
+    }
+
+    /// Whether the prediction may have led to the wrong one of two places that fit.
+    pub fn is_long_way(&self, prediction: &Prediction) -> bool {
+        prediction.sigma.position_m > self.config.long_way_sigma_m
+    }
+
+    /// Has the place confirmed again after a long way.
+    pub fn confirm_after_long_way(&mut self) {
+        let head_start = self.config.confirming_frames.saturating_sub(self.config.confirmed_on_a_long_way);
+        self.unconfirmed.get_or_insert(head_start);
+    }
+
+    /// Goes on from what a search around a prior found.
+    pub fn relocalize(&mut self, best: Option<Pose2>, is_clear: bool, prior: Prior) {
+        self.unconfirmed = (!is_clear).then_some(0);
+        if let Some(best) = best {
+            // The picture cannot tell the two halves apart: only what was known before can.
+            let odds = prior.log_probability(best.mirrored()) - prior.log_probability(best);
+            self.mirrored_log_odds = self.mirrored_log_odds.max(odds);
+        }
+    }
+
+    /// Where the camera probably is; wider where there is doubt, with every picture that did not fit.
+    pub fn prior(&self) -> Prior {
+        self.prior_with_doubt(self.doubtful_frames > 0)
+    }
+
+    /// As [`Track::prior`], of a filter that may be lost.
+    pub fn prior_of_lost(&self) -> Prior {
+        self.prior_with_doubt(true)
+    }
+
+    fn prior_with_doubt(&self, is_doubtful: bool) -> Prior {
+        let times = if is_doubtful { 1.0 + f64::from(self.doubtful_frames) } else { 0.0 };
+        let lost = self.config.lost_sigma;
+        let sigma = PlanarSigma {
+            position_m: self.anchor_sigma.position_m.max(times * lost.position_m),
+            yaw_rad: self.anchor_sigma.yaw_rad.max(times * lost.yaw_rad),
+        };
+        Prior { pose: self.anchor, sigma }
+    }
+
+    /// Whether the last search left several places, and no picture since has fitted.
+    pub fn is_unconfirmed(&self) -> bool {
+        self.unconfirmed == Some(0)
+    }
+
+    /// The line fraction below which the filter may be lost.
+    pub fn lost_below(&self) -> f64 {
+        self.config.lost_line_fraction.max(self.config.lost_ratio * self.usual_line_fraction)
+    }
+
+    /// The line fraction from which on a pose fits.
+    pub fn fits_from(&self) -> f64 {
+        self.config.fitting_line_fraction.max(self.config.fitting_ratio * self.usual_line_fraction)
+    }
+
+    /// Takes the pose of a picture and the fraction of the line it shows there; returns whether the pose is settled.
+    pub fn settle(&mut self, pose: Pose2, line_fraction: f64) -> bool {
+        let fits = line_fraction >= self.fits_from();
+        self.unconfirmed = match self.unconfirmed {
+            Some(streak) if fits && streak + 1 < self.config.confirming_frames => Some(streak + 1),
+            Some(_) if fits => None,
+            Some(_) => Some(0),
+            None => None,
+        };
+        if fits {
+            self.doubtful_frames = 0;
+        } else if line_fraction < self.lost_below() {
+            self.doubtful_frames = (self.doubtful_frames + 1).min(self.config.max_doubtful_frames);
+        }
+        let is_settled = fits && self.unconfirmed.is_none();
+        if fits {
+            let sigma = if is_settled { self.config.settled_sigma } else { self.config.likely_sigma };
+            (self.anchor, self.anchor_sigma) = (pose, sigma);
+        }
+        self.average(is_settled.then_some(line_fraction));
+        is_settled
+    }
+
+    /// What was usual before a search need not be usual after it: without a settled picture the average fades.
+    fn average(&mut self, line_fraction: Option<f64>) {
+        let weight = self.config.line_fraction_weight;
+        match line_fraction {
+            Some(fraction) => {
+                let weight = if self.usual_line_fraction == 0.0 { 1.0 } else { weight };
+                self.usual_line_fraction += weight * (fraction - self.usual_line_fraction);
+            }
+            None => self.usual_line_fraction *= 1.0 - weight,
+        }
+    }
+
+    /// Whether a picture can tell which half of the field it shows, and nobody has told so before.
+    pub fn asks_for_half(&self, line_fraction: f64) -> bool {
+        self.mirrored_log_odds != f64::NEG_INFINITY && line_fraction >= self.config.fitting_line_fraction
+    }
+
+    /// Adds a picture's log-odds of the mirrored pose. Where that is now the more probable one, the track turns round and
+    /// this returns true.
+    pub fn weigh_halves(&mut self, mirrored_log_odds: f64) -> bool {
+        self.mirrored_log_odds += mirrored_log_odds;
+        let is_mirrored = self.mirrored_log_odds > 0.0;
+        if is_mirrored {
+            self.mirrored_log_odds = -self.mirrored_log_odds;
+            self.anchor = self.anchor.mirrored();
+        }
+        is_mirrored
+    }
+
+    /// Probability that the mirrored pose is the right one.
+    pub fn mirrored_probability(&self) -> f64 {
+        1.0 / (1.0 + (-self.mirrored_log_odds).exp())
+    }
+
+    /// Whether the half of the field is beyond doubt.
+    pub fn is_half_sure(&self) -> bool {
+        self.mirrored_probability() < self.config.max_mirrored_probability
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEP: Motion2 = Motion2 { forward_m: 0.05, left_m: 0.0, turn_rad: 0.02 };
+    /// Line fractions of a pose that fits, of one that neither fits nor is lost, and of one that is lost.
+    const GOOD: f64 = 0.8;
+    const POOR: f64 = 0.42;
+    const BAD: f64 = 0.1;
+
+    fn track(beginning: Beginning) -> Track {
+        let start = Pose2::new(-1.0, 0.5, 0.3);
+        Track::new(TrackConfig::default(), start, Some(Pose2::default()), beginning)
+    }
+
+    /// A track at a given start whose first picture fitted.
+    fn settled() -> Track {
+        let mut track = track(Beginning::Given);
+        assert!(track.settle(Pose2::new(-1.0, 0.5, 0.3), GOOD));
+        track
+    }
+
+    /// The next prediction, by odometry that goes on by one step.
+    fn step(track: &mut Track) -> Prediction {
+        let odometry = track.odometry.unwrap().moved(STEP);
+        track.predict(Some(odometry), &MotionNoise::default())
+    }
+
+    #[test]
+    fn a_given_start_is_settled_at_the_first_picture_that_fits_and_its_half_is_known() {
+        let mut track = track(Beginning::Given);
+        assert!(!track.is_unconfirmed() && track.is_half_sure() && track.mirrored_probability() == 0.0);
+        assert!(!track.asks_for_half(GOOD), "whoever gave the start knew the half");
+        assert!(track.settle(Pose2::new(0.0, 0.0, 0.0), GOOD));
+        assert_eq!(track.prior().sigma, TrackConfig::default().settled_sigma);
+    }
+
+    #[test]
+    fn a_search_with_one_answer_settles_at_once_and_one_with_several_after_four_pictures_that_fit() {
+        let mut clear = track(Beginning::Searched { is_clear: true });
+        assert!(clear.settle(Pose2::default(), GOOD));
+
+        let mut unclear = track(Beginning::Searched { is_clear: false });
+        assert!(unclear.is_unconfirmed());
+        let fits: Vec<bool> = (0..5).map(|_| unclear.settle(Pose2::default(), GOOD)).collect();
+        assert_eq!(fits, [false, false, false, true, true]);
+    }
+
+    #[test]
+    fn a_pose_that_fits_but_is_not_confirmed_moves_the_anchor_with_the_likely_uncertainty() {
+        let mut track = track(Beginning::Searched { is_clear: false });
+        let pose = Pose2::new(2.0, 1.0, -0.4);
+        assert!(!track.settle(pose, GOOD));
+        assert_eq!(track.prior(), Prior { pose, sigma: TrackConfig::default().likely_sigma });
+    }
+
+    #[test]
+    fn one_picture_that_does_not_fit_begins_the_confirmation_anew() {
+        let mut track = track(Beginning::Searched { is_clear: false });
+        for _ in 0..3 {
+            track.settle(Pose2::default(), GOOD);
+        }
+        assert!(!track.is_unconfirmed());
+        track.settle(Pose2::default(), POOR / 2.0);
+        assert!(track.is_unconfirmed());
+    }
+
+    #[test]
+    fn both_halves_are_alike_after_a_search_until_goals_have_told() {
+        let mut track = track(Beginning::Searched { is_clear: true });
+        assert_eq!(track.mirrored_probability(), 0.5);
+        assert!(!track.is_half_sure() && track.asks_for_half(GOOD) && !track.asks_for_half(POOR / 2.0));
+        assert!(!track.weigh_halves(-2.0) && !track.is_half_sure());
+        assert!(!track.weigh_halves(-2.0) && track.is_half_sure());
+        assert!((track.mirrored_probability() - 1.0 / (1.0 + 4.0_f64.exp())).abs() < 1e-15);
+    }
+
+    #[test]
+    fn evidence_for_the_mirrored_pose_turns_the_track_round() {
+        let mut track = track(Beginning::Searched { is_clear: true });
+        let pose = Pose2::new(1.0, 0.5, 0.2);
+        track.settle(pose, GOOD);
+        assert!(!track.weigh_halves(-1.0));
+        assert!(track.weigh_halves(3.0));
+        assert_eq!(track.prior().pose, pose.mirrored());
+        // The evidence counts for the pose that the track has turned to.
+        assert!((track.mirrored_probability() - 1.0 / (1.0 + 2.0_f64.exp())).abs() < 1e-15);
+    }
+
+    #[test]
+    fn odometry_moves_the_anchor_and_its_uncertainty_grows() {
+        let mut track = settled();
+        let before = track.prior();
+        let prediction = step(&mut track);
+        assert!(!prediction.is_kidnapped && !track.needs_search(&prediction));
+        let motion = prediction.motion.unwrap();
+        assert!((motion.forward_m - STEP.forward_m).abs() < 1e-12 && motion.left_m.abs() < 1e-12);
+        let expected = before.pose.moved(STEP);
+        assert!((track.prior().pose.position_in_world() - expected.position_in_world()).length() < 1e-12);
+        let noise = MotionNoise::default().sigma(Some(STEP));
+        assert!(
+            (track.prior().sigma.position_m - before.sigma.plus(noise).position_m).abs() < 1e-12,
+            "variances add"
+        );
+    }
+
+    #[test]
+    fn without_odometry_the_prediction_stands_still_with_the_noise_of_an_unknown_motion() {
+        let noise = MotionNoise::default();
+        let mut track = settled();
+        let before = track.prior().pose;
+        let prediction = track.predict(None, &noise);
+        assert_eq!((prediction.motion, prediction.sigma), (None, noise.sigma(None)));
+        assert_eq!(track.prior().pose, before.moved(Motion2::default()));
+        let prediction = track.predict(Some(Pose2::new(9.0, 0.0, 0.0)), &noise);
+        assert_eq!(prediction.motion, None, "a motion takes the odometry of two pictures");
+    }
+
+    #[test]
+    fn odometry_that_jumps_to_its_origin_is_a_kidnapping_and_the_half_is_unknown() {
+        let mut track = settled();
+        for _ in 0..3 {
+            step(&mut track);
+        }
+        let prediction = track.predict(Some(Pose2::default()), &MotionNoise::default());
+        assert!(prediction.is_kidnapped && prediction.motion.is_none() && track.needs_search(&prediction));
+        assert_eq!(prediction.sigma, TrackConfig::default().kidnapped_sigma);
+        assert!(!track.is_half_sure());
+    }
+
+    #[test]
+    fn odometry_near_its_origin_is_no_kidnapping() {
+        let mut track = settled();
+        step(&mut track);
+        let prediction = track.predict(Some(Pose2::default()), &MotionNoise::default());
+        assert!(!prediction.is_kidnapped && track.is_half_sure());
+    }
+
+    #[test]
+    fn a_way_that_is_too_long_for_the_particles_asks_for_a_search() {
+        let prediction_of = |forward_m| {
+            let mut track = settled();
+            let odometry = Pose2::new(forward_m, 0.0, 0.0);
+            (track, track.predict(Some(odometry), &MotionNoise::default()))
+        };
+        // 0.02 m standing still and 0.15 m a metre: 0.15 m after 0.87 m, 0.3 m after 1.87 m.
+        for (forward_m, is_long, needs_search) in
+            [(0.8, false, false), (0.9, true, false), (1.8, true, false), (1.9, true, true)]
+        {
+            let (track, prediction) = prediction_of(forward_m);
+            assert_eq!(track.is_long_way(&prediction), is_long, "{forward_m} m");
+            assert_eq!(track.needs_search(&prediction), needs_search, "{forward_m} m");
+        }
+    }
+
+    #[test]
+    fn a_long_way_takes_two_pictures_that_fit_to_be_confirmed() {
+        let mut track = settled();
+        track.confirm_after_long_way();
+        assert!(!track.is_unconfirmed(), "it was right before");
+        assert!(!track.settle(Pose2::default(), GOOD));
+        assert!(track.settle(Pose2::default(), GOOD));
+    }
+
+    #[test]
+    fn a_long_way_does_not_shorten_a_confirmation_under_way() {
+        let mut track = track(Beginning::Searched { is_clear: false });
+        track.confirm_after_long_way();
+        assert!(track.is_unconfirmed());
+    }
+
+    #[test]
+    fn what_fits_is_measured_against_what_is_usual_here() {
+        let mut track = settled();
+        assert!((track.fits_from() - 0.55 * GOOD).abs() < 1e-12);
+        assert!((track.lost_below() - 0.5 * GOOD).abs() < 1e-12);
+        assert!(!track.settle(Pose2::default(), POOR));
+        assert_eq!(track.doubtful_frames, 0, "neither fits nor lost");
+    }
+
+    #[test]
+    fn the_usual_line_fraction_follows_slowly_and_fades_while_nothing_is_settled() {
+        let mut track = settled();
+        assert_eq!(track.usual_line_fraction, GOOD, "the first picture is all that is known");
+        track.settle(Pose2::default(), 0.6);
+        assert!((track.usual_line_fraction - (GOOD + 0.05 * (0.6 - GOOD))).abs() < 1e-12);
+        let before = track.usual_line_fraction;
+        track.settle(Pose2::default(), BAD);
+        assert!((track.usual_line_fraction - 0.95 * before).abs() < 1e-12);
+    }
+
+    #[test]
+    fn doubt_widens_the_prior_with_every_bad_picture_up_to_a_limit_and_ends_with_a_good_one() {
+        let mut track = settled();
+        let lost = TrackConfig::default().lost_sigma.position_m;
+        assert_eq!(track.prior_of_lost().sigma.position_m, lost, "the first doubt");
+        for times in [2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 9.0, 9.0] {
+            assert!(!track.settle(Pose2::new(7.0, 7.0, 0.0), BAD));
+            assert!((track.prior().sigma.position_m - times * lost).abs() < 1e-12, "{times}");
+        }
+        assert_eq!(track.prior().pose, Pose2::new(-1.0, 0.5, 0.3), "the anchor stays where it last fitted");
+        track.settle(Pose2::default(), GOOD);
+        assert_eq!(track.prior().sigma, TrackConfig::default().settled_sigma);
+    }
+
+    #[test]
+    fn a_relocalization_with_several_answers_is_unconfirmed_and_one_with_a_single_answer_is_not() {
+        let mut track = settled();
+        let prior = track.prior_of_lost();
+        track.relocalize(Some(prior.pose), false, prior);
+        assert!(track.is_unconfirmed());
+        track.relocalize(Some(prior.pose), true, prior);
+        assert!(!track.is_unconfirmed() && track.settle(prior.pose, GOOD));
+        track.relocalize(None, false, prior);
+        assert!(track.is_unconfirmed(), "nothing was found");
+    }
+
+    #[test]
+    fn a_relocalization_doubts_the_half_as_much_as_the_prior_does() {
+        let pose = Pose2::new(2.0, 0.0, 0.0);
+        let prior_of = |position_m, yaw_rad| Prior { pose, sigma: PlanarSigma { position_m, yaw_rad } };
+        let mut near = settled();
+        near.relocalize(Some(pose), true, prior_of(0.5, 0.4));
+        assert!(near.is_half_sure());
+        let mut far = settled();
+        far.relocalize(Some(pose), true, prior_of(40.0, 40.0));
+        assert!(!far.is_half_sure() && far.asks_for_half(GOOD));
+        // A wrong half is never more probable than the prior says, and certainty is not won back by searching.
+        far.relocalize(Some(pose), true, prior_of(0.5, 0.4));
+        assert!(!far.is_half_sure());
+    }
+}
