@@ -6,9 +6,9 @@ use std::{
 };
 
 use criterion::{BatchSize, Criterion, SamplingMode, Throughput};
+use reality_sim::db::{Database, PoseEstimate, PoseSource};
+use reality_sim::synthesis::Archive;
 use reality_sim::{CameraPose, Sequence};
-use reality_sim_db::{Database, PoseEstimate, PoseSource};
-use reality_sim_synthesis::Archive;
 use tempfile::TempDir;
 
 use crate::{poses::random_poses, scene::Scene};

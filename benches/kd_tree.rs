@@ -3,7 +3,7 @@
 
 use kdtree::{KdTree, distance::squared_euclidean};
 use reality_sim::CameraPose;
-use reality_sim_db::metric::PixelMetric;
+use reality_sim::db::metric::PixelMetric;
 
 /// Place, the heading as a place on a circle, height, pitch and roll, pixels.
 const AXES: usize = 7;

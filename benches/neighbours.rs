@@ -3,7 +3,7 @@
 use std::{cell::LazyCell, hint::black_box, time::Duration};
 
 use criterion::{BenchmarkId, Criterion, SamplingMode};
-use reality_sim_db::index::PoseIndex;
+use reality_sim::db::index::PoseIndex;
 
 use crate::{
     kd_tree::KdIndex,

@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
+use reality_sim::db::metric::PixelMetric;
 use reality_sim::{
     CameraPose, Pose2, Sequence,
     filter::{Purpose, Stream},
 };
-use reality_sim_db::metric::PixelMetric;
 
 /// Half of the carpet on which they lie, metres.
 const HALF_CARPET_M: [f64; 2] = [3.7, 2.7];

@@ -19,7 +19,7 @@ use std::{
 
 use anyhow::Context;
 use reality_sim::Sequence;
-use reality_sim_db::index::PoseIndex;
+use reality_sim::db::index::PoseIndex;
 
 use crate::{
     kd_tree::KdIndex,

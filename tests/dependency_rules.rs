@@ -1,4 +1,5 @@
-//! Which package may use which: the library must stay usable without a GPU and without a window.
+//! Which package may use which: the library must stay usable without a GPU, without a window and without what only a
+//! program needs.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -6,18 +7,24 @@ use std::{collections::BTreeMap, process::Command};
 
 use serde_json::Value;
 
-/// The root package.
-const ROOT: &str = "reality-sim";
+/// The root package, the program.
+const ROOT: &str = "reality-sim-cli";
 
-/// Packages that must build without a graphics card and without a window, directly or not.
+/// The library's package. Graphics come under it with its feature `gpu` only.
+const LIBRARY: &str = "reality-sim";
+
+/// Packages that must build without graphics and without a program's dependencies whatever their features.
 const PLAIN: [&str; 5] =
     ["reality-sim-core", "reality-sim-db", "reality-sim-synthesis", "reality-sim-sensor", "reality-sim-gap"];
 
-/// What must not be under them.
+/// What belongs to a graphics card or a window.
 const GRAPHICS: [&str; 7] = ["wgpu", "wgpu-core", "winit", "egui", "eframe", "egui-wgpu", "egui-winit"];
 
+/// What belongs to a program.
+const PROGRAM: [&str; 3] = ["clap", "indicatif", "anyhow"];
+
 /// The packages of this workspace that each package may use.
-const MAY_USE: [(&str, &[&str]); 8] = [
+const MAY_USE: [(&str, &[&str]); 9] = [
     ("reality-sim-core", &[]),
     ("reality-sim-gpu", &["reality-sim-core"]),
     ("reality-sim-db", &["reality-sim-core"]),
@@ -25,6 +32,17 @@ const MAY_USE: [(&str, &[&str]); 8] = [
     ("reality-sim-sensor", &["reality-sim-core"]),
     ("reality-sim-hidden", &["reality-sim-core"]),
     ("reality-sim-gap", &["reality-sim-core", "reality-sim-sensor"]),
+    (
+        LIBRARY,
+        &[
+            "reality-sim-core",
+            "reality-sim-gpu",
+            "reality-sim-db",
+            "reality-sim-synthesis",
+            "reality-sim-sensor",
+            "reality-sim-gap",
+        ],
+    ),
     (
         "reality-sim-viewer",
         &[
@@ -76,24 +94,34 @@ fn packages_use_each_other_in_one_direction() {
     }
 }
 
+/// The names of a package and of all that it is built from, tests excluded.
+fn packages_under(package: &str, features: &[&str]) -> Vec<String> {
+    let arguments = ["tree", "--package", package, "--edges", "normal,build", "--prefix", "none"];
+    let tree = cargo(&[&arguments, features].concat());
+    let names: Vec<String> =
+        tree.lines().filter_map(|line| line.split_whitespace().next()).map(str::to_owned).collect();
+    assert!(names.iter().any(|name| name == package), "{tree}");
+    names
+}
+
 #[test]
-fn neither_graphics_card_nor_window_is_under_the_plain_packages() {
+fn neither_graphics_nor_a_programs_dependencies_are_under_the_library() {
     let workspace = workspace();
-    for package in PLAIN.iter().filter(|package| workspace.contains_key(**package)) {
-        let tree = cargo(&[
-            "tree",
-            "--package",
-            package,
-            "--edges",
-            "normal,build",
-            "--prefix",
-            "none",
-            "--all-features",
-        ]);
-        let names: Vec<&str> = tree.lines().filter_map(|line| line.split_whitespace().next()).collect();
-        assert!(names.contains(package), "{tree}");
-        for forbidden in GRAPHICS {
-            assert!(!names.contains(&forbidden), "{forbidden} is under {package}");
+    let plain = PLAIN.iter().map(|package| (*package, "--all-features"));
+    for (package, features) in plain.chain([(LIBRARY, "--features=")]) {
+        assert!(workspace.contains_key(package), "{package} is not in the workspace");
+        let names = packages_under(package, &[features]);
+        for forbidden in GRAPHICS.iter().chain(&PROGRAM) {
+            assert!(!names.iter().any(|name| name == forbidden), "{forbidden} is under {package}");
         }
+    }
+}
+
+#[test]
+fn the_graphics_card_comes_under_the_library_with_its_feature_but_no_window_does() {
+    let names = packages_under(LIBRARY, &["--features=gpu"]);
+    assert!(names.iter().any(|name| name == "wgpu"));
+    for forbidden in ["winit", "egui"].iter().chain(&PROGRAM) {
+        assert!(!names.iter().any(|name| name == forbidden), "{forbidden} is under {LIBRARY}");
     }
 }

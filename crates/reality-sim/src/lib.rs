@@ -18,6 +18,7 @@
 //! use reality_sim::db::{Database, PoseEstimate, PoseSource};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # std::env::set_current_dir("../..")?;
 //! # let folder = tempfile::tempdir()?;
 //! # let file = folder.path().join("walk.db");
 //! # let file = file.as_path();
@@ -43,6 +44,7 @@
 //! use reality_sim::{ObservationKind, Sequence, TagConfig, Tagger, tag_sequence};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # std::env::set_current_dir("../..")?;
 //! let mut walk = Sequence::open(Path::new("assets/walk"))?;
 //! walk.frames.truncate(3);
 //!
