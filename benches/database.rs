@@ -76,7 +76,7 @@ fn renamed(walk: &Sequence, number: usize) -> Sequence {
 }
 
 fn truth(walk: &Sequence) -> Vec<Option<PoseEstimate>> {
-    walk.groundtruth.iter().map(|pose| pose.and_then(estimate)).collect()
+    walk.reference_poses().map(|pose| pose.and_then(estimate)).collect()
 }
 
 fn estimate(pose: CameraPose) -> Option<PoseEstimate> {

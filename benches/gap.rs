@@ -39,8 +39,9 @@ fn decode(sequence: &Sequence) -> usize {
 }
 
 fn whole(sequence: &Sequence) -> usize {
-    let recording = Recording::new(sequence, &sequence.groundtruth, PoseSource::Measured, None)
-        .expect("a recording with poses");
+    let recording =
+        Recording::new(sequence, &sequence.reference_poses().collect::<Vec<_>>(), PoseSource::Measured, None)
+            .expect("a recording with poses");
     let analysis = analyse(&recording, &Model::default(), &Options::default(), &|_| ());
     analysis.expect("its pictures can be read").report.effects.len()
 }

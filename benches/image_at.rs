@@ -20,7 +20,7 @@ const LEFT_OUT: usize = 5;
 /// By every method, `blend` from four and from six pictures.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let walk = Sequence::open(&scene.walk.folder).expect("the demonstration walk is part of the repository");
-    let poses: Vec<CameraPose> = walk.groundtruth.iter().step_by(LEFT_OUT).copied().flatten().collect();
+    let poses: Vec<CameraPose> = walk.reference_poses().step_by(LEFT_OUT).flatten().collect();
     let stored = LazyCell::new(|| store(&walk));
     let methods: [(&str, &dyn Method, usize); 5] = [
         ("nearest", &Nearest, 1),
@@ -56,11 +56,11 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
 fn store(walk: &Sequence) -> (TempDir, Arc<Archive>) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("walk.db");
-    let estimate = |(frame, pose): (usize, &Option<CameraPose>)| {
+    let estimate = |(frame, pose): (usize, Option<CameraPose>)| {
         let pose = pose.filter(|_| frame % LEFT_OUT != 0);
         pose.map(PoseEstimate::from)
     };
-    let poses: Vec<_> = walk.groundtruth.iter().enumerate().map(estimate).collect();
+    let poses: Vec<_> = walk.reference_poses().enumerate().map(estimate).collect();
     let mut database = Database::create_or_open(&path).expect("a database");
     database.ingest(walk, &poses, &PoseSource::GroundTruth, |_| ()).expect("pictures of the walk");
     let archive = Archive::open(&path, 1 << 30).expect("a database");

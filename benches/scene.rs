@@ -31,7 +31,6 @@ impl Scene {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/walk");
         let mut walk = Sequence::open(&folder).expect("the demonstration walk is part of the repository");
         walk.frames.truncate(PICTURES);
-        walk.groundtruth.truncate(PICTURES);
         let picture = |index| Arc::new(walk.load_image(index).expect("a picture of the demonstration walk"));
         let pictures: Vec<Arc<RgbImage>> = (0..PICTURES).map(picture).collect();
         let attitude = recorded(&walk, MIDDLE, &pictures[MIDDLE]).attitude;
@@ -54,7 +53,7 @@ impl Scene {
 
     /// Where a picture was taken.
     fn true_pose(&self, frame: usize) -> CameraPose {
-        self.walk.groundtruth[frame].expect("the demonstration walk has ground truth")
+        self.walk.frames[frame].reference_pose.expect("the demonstration walk has ground truth")
     }
 
     /// The picture that single stages are measured on.

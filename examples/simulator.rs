@@ -79,7 +79,7 @@ fn line_to_the_left(picture: &RgbImage, camera: &Camera, usual: CameraPose) -> O
 /// A database of the walk that ships with the project.
 fn demonstration(path: &Path) -> Result<&Path, Box<dyn Error>> {
     let walk = Sequence::open(Path::new("assets/walk"))?;
-    let poses: Vec<_> = walk.groundtruth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
+    let poses: Vec<_> = walk.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
     Database::create_or_open(path)?.ingest(&walk, &poses, &PoseSource::GroundTruth, |_| ())?;
     Ok(path)
 }

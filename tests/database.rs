@@ -50,9 +50,8 @@ fn shown(path: &Path) -> &str {
 /// The walk's text files in a folder of their own with these frames; the pictures are linked.
 fn part_of_walk(folder: &Path, name: &str, frames: std::ops::Range<usize>) -> PathBuf {
     let mut walk = Sequence::open(Path::new(WALK)).unwrap();
-    walk.frames = walk.frames[frames.clone()].to_vec();
-    walk.groundtruth = walk.groundtruth[frames].to_vec();
-    walk.start = walk.groundtruth[0].map(reality_sim::CameraPose::planar);
+    walk.frames = walk.frames[frames].to_vec();
+    walk.start = walk.frames[0].reference_pose.map(reality_sim::CameraPose::planar);
     walk.name = name.to_owned();
     let part = folder.join(name);
     for frame in 0..walk.frames.len() {
@@ -111,7 +110,7 @@ fn poses_come_from_the_file_given_or_from_the_filter() {
     assert_eq!(report["sequences"][0]["poses"], "filter");
     let database = Database::open(&by_filter).unwrap();
     let images = database.images().unwrap();
-    let truth = Sequence::open(&walk).unwrap().groundtruth;
+    let truth: Vec<_> = Sequence::open(&walk).unwrap().reference_poses().collect();
     assert!(images.len() > 8, "{} sure", images.len());
     for image in images {
         let truth = truth[image.frame_index].unwrap();
@@ -353,9 +352,8 @@ fn a_build_that_was_killed_goes_on_where_it_was() {
     let mut walk = Sequence::open(Path::new(WALK)).unwrap();
     let folder = own.path().join("long");
     let picture = walk.load_image(0).unwrap();
-    let (frame, pose) = (walk.frames[0].clone(), walk.groundtruth[0]);
+    let frame = walk.frames[0].clone();
     walk.frames.clear();
-    walk.groundtruth.clear();
     for number in 0..FRAMES {
         let image = PathBuf::from(format!("{number:06}.jpg"));
         let source = folder.join("000000.jpg");
@@ -369,7 +367,6 @@ fn a_build_that_was_killed_goes_on_where_it_was() {
             image,
             ..frame.clone()
         });
-        walk.groundtruth.push(pose);
     }
     walk.write(&folder).unwrap();
     let mut child = Command::new(env!("CARGO_BIN_EXE_reality-sim"))
@@ -430,14 +427,12 @@ fn the_smallest_databases_give_pictures() {
     let own = tempfile::tempdir().unwrap();
     let one = part_of_walk(own.path(), "one", 0..1);
     let mut still = Sequence::open(&part_of_walk(own.path(), "still", 0..12)).unwrap();
-    for (frame, pose) in still.groundtruth.iter_mut().enumerate() {
-        *pose = pose.map(|pose| {
-            let yaw_rad = 0.5 * frame as f64;
-            pose.with_planar(reality_sim::Pose2::new(0.1, 0.2, yaw_rad))
-        });
+    for (index, frame) in still.frames.iter_mut().enumerate() {
+        let planar = reality_sim::Pose2::new(0.1, 0.2, 0.5 * index as f64);
+        frame.reference_pose = frame.reference_pose.map(|pose| pose.with_planar(planar));
     }
     still.write(&still.folder).unwrap();
-    let at = Sequence::open(&one).unwrap().groundtruth[0].unwrap();
+    let at = Sequence::open(&one).unwrap().frames[0].reference_pose.unwrap();
     for (sequence, pose) in
         [(one, format!("{},{},0.6", at.x_m, at.y_m)), (still.folder, "0.1,0.2,0.7".to_owned())]
     {

@@ -41,7 +41,8 @@ fn analysed(sequence: &Sequence, model: &Model, options: &Options) -> Analysis {
 }
 
 fn recording_of(sequence: &Sequence) -> Recording<'_> {
-    Recording::new(sequence, &sequence.groundtruth, PoseSource::Measured, None).unwrap()
+    Recording::new(sequence, &sequence.reference_poses().collect::<Vec<_>>(), PoseSource::Measured, None)
+        .unwrap()
 }
 
 fn reported(sequence: &Sequence) -> Report {

@@ -64,8 +64,8 @@ fn the_walk_is_tagged_as_well_as_on_the_cpu() {
         let found = tagged(&sequence, config, sequence.start, gpu.clone());
         let expected = tagged(&sequence, config, sequence.start, Arc::new(CpuBackend));
         let error = |frames: &[TaggedFrame]| {
-            let pairs = frames.iter().zip(&sequence.groundtruth);
-            mean(pairs.filter_map(|(frame, truth)| Some(PoseError::new(frame.pose, (*truth)?).distance_m)))
+            let pairs = frames.iter().zip(sequence.reference_poses());
+            mean(pairs.filter_map(|(frame, truth)| Some(PoseError::new(frame.pose, truth?).distance_m)))
         };
         let (gpu_m, cpu_m) = (error(&found), error(&expected));
         let mut apart: Vec<f64> =
@@ -103,7 +103,7 @@ fn the_best_particle_is_that_of_the_cpu() {
             };
             let (mut found, mut expected) = (filter(&*gpu), filter(&CpuBackend));
             let (mut same, mut apart_m) = (0, Vec::new());
-            for (index, truth) in sequence.groundtruth.iter().enumerate() {
+            for (index, truth) in sequence.reference_poses().enumerate() {
                 let picture = Arc::new(sequence.load_image(index).expect("every picture can be read"));
                 let attitude: Attitude = recorded(&sequence, index, &picture).attitude;
                 let prepared = preprocessor.prepare(picture, attitude);
@@ -133,7 +133,7 @@ fn a_start_that_nobody_knows_is_found_on_the_device() {
     sequence.frames.truncate(5);
     let config = TagConfig::new(ObservationKind::Contrast);
     let found = tagged(&sequence, config, None, gpu());
-    let (last, truth) = (found[4].pose, sequence.groundtruth[4].expect("exact truth"));
+    let (last, truth) = (found[4].pose, sequence.frames[4].reference_pose.expect("exact truth"));
     assert!(distance_m(last, truth).min(distance_m(last.mirrored(), truth)) < 0.02, "{last:?}");
 }
 

@@ -13,8 +13,7 @@ fn walk() -> Sequence {
 
 /// The frames of a range, as a recording of its own.
 fn cut(mut sequence: Sequence, frames: std::ops::Range<usize>) -> Sequence {
-    sequence.frames = sequence.frames[frames.clone()].to_vec();
-    sequence.groundtruth = sequence.groundtruth[frames].to_vec();
+    sequence.frames = sequence.frames[frames].to_vec();
     sequence
 }
 
@@ -35,7 +34,7 @@ fn found_from_nowhere_without_odometry_within_five_pictures() {
     for first in [0, 9, 21, 33, 47, 55] {
         let sequence = cut(walk(), first..first + 5);
         let (_, tagged) = tag(&sequence, None, config);
-        let (last, truth) = (&tagged[4], sequence.groundtruth[4].expect("exact truth"));
+        let (last, truth) = (&tagged[4], sequence.frames[4].reference_pose.expect("exact truth"));
         assert!(
             is_right(last.pose, truth) || is_right(last.pose.mirrored(), truth),
             "from picture {first}: {:?} instead of {truth:?}",
@@ -50,7 +49,7 @@ fn goals_of_two_colours_tell_the_halves_apart() {
     let sequence = walk();
     let (_, tagged) = tag(&sequence, None, config);
     let last = tagged.last().expect("sixty pictures");
-    assert!(is_right(last.pose, sequence.groundtruth[59].expect("exact truth")));
+    assert!(is_right(last.pose, sequence.frames[59].reference_pose.expect("exact truth")));
     assert!(last.mirror_probability < 0.05, "{}", last.mirror_probability);
 
     let plain = Sequence {
@@ -76,10 +75,9 @@ fn found_again_after_being_carried_and_never_sure_while_wrong() {
             frame.odometry = Some(Pose2::default().moved(motion));
         }
         sequence.frames.drain(10..40);
-        sequence.groundtruth.drain(10..40);
         let (_, tagged) = tag(&sequence, sequence.start, TagConfig::new(kind));
         for (index, frame) in tagged.iter().enumerate() {
-            let truth = sequence.groundtruth[index].expect("exact truth");
+            let truth = sequence.frames[index].reference_pose.expect("exact truth");
             let right = is_right(frame.pose, truth);
             assert!(right || !frame.sure, "{kind:?}: sure and wrong at picture {index}");
             // Which half it was put down in, only the colours of the goals tell, once one is in view.
@@ -99,7 +97,7 @@ fn smoothed_poses_are_exact_and_their_covariances_honest() {
         .expect("every picture can be read")
         .expect("there are lines");
     let (mut worst_m, mut inside) = (0.0_f64, [0; 3]);
-    for (pose, truth) in smoothed.iter().zip(&sequence.groundtruth) {
+    for (pose, truth) in smoothed.iter().zip(sequence.reference_poses()) {
         let truth = truth.expect("exact truth");
         let error = [pose.pose.x_m - truth.x_m, pose.pose.y_m - truth.y_m, pose.pose.yaw_rad - truth.yaw_rad];
         worst_m = worst_m.max(error[0].hypot(error[1]));

@@ -115,7 +115,12 @@ pub fn run(task: &Task, hidden: &[Chosen]) -> Result<Outcome, Box<dyn Error>> {
 }
 
 fn examine(sequence: &Sequence, model: &Model, options: &Options) -> Result<Report, Box<dyn Error>> {
-    let recording = Recording::new(sequence, &sequence.groundtruth, PoseSource::Measured, None)?;
+    let recording = Recording::new(
+        sequence,
+        &sequence.reference_poses().collect::<Vec<_>>(),
+        PoseSource::Measured,
+        None,
+    )?;
     Ok(analyse(&recording, model, options, &|_| ())?.report)
 }
 
@@ -151,6 +156,11 @@ fn oracle(sequence: &Sequence, effects: &[Hidden], options: &Options) -> Result<
     if effects.is_empty() {
         return Ok(None);
     }
-    let recording = Recording::new(sequence, &sequence.groundtruth, PoseSource::Measured, None)?;
+    let recording = Recording::new(
+        sequence,
+        &sequence.reference_poses().collect::<Vec<_>>(),
+        PoseSource::Measured,
+        None,
+    )?;
     Ok(Some(reality_sim::gap::gap_of(&recording, &model, options)?.before))
 }

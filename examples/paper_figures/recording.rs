@@ -77,7 +77,6 @@ impl Recording {
     pub fn open(folder: &Path, frames: usize) -> anyhow::Result<Self> {
         let mut sequence = Sequence::open(folder)?;
         sequence.frames.truncate(frames);
-        sequence.groundtruth.truncate(frames);
         let pictures = (0..sequence.frames.len())
             .map(|index| sequence.load_image(index).map(Arc::new))
             .collect::<Result<_, _>>()?;
@@ -85,7 +84,7 @@ impl Recording {
     }
 
     fn run(&self, config: TagConfig, model: Model) -> anyhow::Result<Run> {
-        let Sequence { setup, field, start, groundtruth, .. } = &self.sequence;
+        let Sequence { setup, field, start, frames, .. } = &self.sequence;
         let camera = &setup.camera;
         let mut tagger = match model {
             Model::Configured => Tagger::new(camera, field, *start, config),
@@ -96,7 +95,7 @@ impl Recording {
         let (mut errors, mut seconds) = (Vec::new(), Vec::new());
         for (index, picture) in self.pictures.iter().enumerate() {
             let frame = tagger.tag(&recorded(&self.sequence, index, picture))?;
-            errors.extend(groundtruth[index].map(|truth| PoseError::new(frame.pose, truth)));
+            errors.extend(frames[index].reference_pose.map(|truth| PoseError::new(frame.pose, truth)));
             seconds.push(frame.seconds);
         }
         seconds.sort_by(f64::total_cmp);

@@ -92,8 +92,6 @@ fn rows(walk: &Sequence, first: usize) -> anyhow::Result<Vec<Row>> {
     let mut rest = walk.clone();
     rest.frames = walk.frames[..first].to_vec();
     rest.frames.extend_from_slice(&walk.frames[left_out.end..]);
-    rest.groundtruth = walk.groundtruth[..first].to_vec();
-    rest.groundtruth.extend_from_slice(&walk.groundtruth[left_out.end..]);
     let (_folder, synthesizer) = synthesizer(&rest)?;
     let truth =
         left_out.clone().map(|frame| walk.load_image(frame).map(Arc::new)).collect::<Result<_, _>>()?;
@@ -101,7 +99,7 @@ fn rows(walk: &Sequence, first: usize) -> anyhow::Result<Vec<Row>> {
     for method in METHODS {
         let mut pictures = Vec::new();
         for frame in left_out.clone() {
-            let Some(pose) = walk.groundtruth[frame] else { continue };
+            let Some(pose) = walk.frames[frame].reference_pose else { continue };
             pictures.push(Arc::new(synthesizer.image_at(pose, method)?.picture));
         }
         rows.push(Row { name: method.name(), pictures });
@@ -125,12 +123,14 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 
 /// Errors of the filter on pictures that stand for a part of a walk.
 fn tag(walk: &Sequence, first: usize, row: &Row, kind: ObservationKind) -> anyhow::Result<Vec<PoseError>> {
-    let start = walk.groundtruth[first].map(reality_sim::CameraPose::planar);
+    let start = walk.frames[first].reference_pose.map(reality_sim::CameraPose::planar);
     let mut tagger = Tagger::new(&walk.setup.camera, &walk.field, start, TagConfig::new(kind));
     let mut errors = Vec::new();
     for (offset, picture) in row.pictures.iter().enumerate() {
         let tagged = tagger.tag(&recorded(walk, first + offset, picture))?;
-        errors.extend(walk.groundtruth[first + offset].map(|truth| PoseError::new(tagged.pose, truth)));
+        errors.extend(
+            walk.frames[first + offset].reference_pose.map(|truth| PoseError::new(tagged.pose, truth)),
+        );
     }
     Ok(errors)
 }

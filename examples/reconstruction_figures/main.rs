@@ -46,7 +46,7 @@ fn synthesizer(sequence: &Sequence) -> anyhow::Result<(tempfile::TempDir, Synthe
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("walk.db");
     let mut database = Database::create_or_open(&path)?;
-    let poses: Vec<_> = sequence.groundtruth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
+    let poses: Vec<_> = sequence.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
     database.ingest(sequence, &poses, &PoseSource::GroundTruth, |_| ())?;
     let archive = Archive::open(&path, 1 << 30)?;
     if let Some(hall) = measure_hall(&archive)? {

@@ -28,8 +28,8 @@ pub fn write(walk: &Sequence, probes: &Sequence, text: &mut String) -> anyhow::R
     let camera = &probes.setup.camera;
     let mut judged: Vec<Judged> = Vec::new();
     let mut lines: BTreeMap<&str, Lines> = BTreeMap::new();
-    for (frame, pose) in probes.groundtruth.iter().enumerate() {
-        let Some(pose) = *pose else { continue };
+    for (frame, pose) in probes.reference_poses().enumerate() {
+        let Some(pose) = pose else { continue };
         let probe = judge(&synthesizer, &renderer, frame, pose, probes.load_image(frame)?)?;
         lines.entry("true picture").or_default().add(&probe.truth, camera, &walk.field, pose);
         for (name, outcome) in &probe.outcomes {
@@ -121,7 +121,7 @@ fn provenance(
     text: &mut String,
 ) -> anyhow::Result<()> {
     let probe = &judged[judged.len() / 2];
-    let Some(pose) = probes.groundtruth[probe.frame] else { return Ok(()) };
+    let Some(pose) = probes.frames[probe.frame].reference_pose else { return Ok(()) };
     let made = synthesizer.image_at(pose, &Blend)?;
     let trust = image::DynamicImage::from(made.trust_picture()).into_rgb8();
     let row = [probe.truth.clone(), made.picture.clone(), made.origin_picture(), trust];

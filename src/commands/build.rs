@@ -155,9 +155,8 @@ fn poses(args: &BuildArgs, sequence: &Sequence) -> anyhow::Result<Poses> {
         let estimates = poses.into_iter().map(|pose| pose.map(PoseEstimate::from)).collect();
         return Ok(Poses { estimates, source: PoseSource::File { name } });
     }
-    let truth = &sequence.groundtruth;
-    if !args.tag && truth.iter().any(Option::is_some) {
-        let estimates = truth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
+    if !args.tag && sequence.has_reference_poses() {
+        let estimates = sequence.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
         return Ok(Poses { estimates, source: PoseSource::GroundTruth });
     }
     tagged_poses(args, sequence)

@@ -63,7 +63,7 @@ impl EvaluateArgs {
 pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
     let archive = args.synthesis.archive(&args.database)?;
     let probes = Sequence::open(&args.probes)?;
-    if probes.groundtruth.iter().all(Option::is_none) {
+    if !probes.has_reference_poses() {
         bail!("{}: has no ground truth: the poses of probes must be known", args.probes.display());
     }
     check_poses(args, &probes)?;
@@ -71,8 +71,7 @@ pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
     let synthesizer = args.synthesis.synthesizer(archive.clone(), probes.setup.camera.clone())?;
     let renderer =
         Renderer::new(&probes.setup, archive.field(), SceneColors::new(&probes.setup, archive.field()));
-    let with_truth =
-        probes.groundtruth.iter().enumerate().filter_map(|(frame, pose)| Some((frame, (*pose)?)));
+    let with_truth = probes.reference_poses().enumerate().filter_map(|(frame, pose)| Some((frame, pose?)));
     let with_truth: Vec<(usize, CameraPose)> = with_truth.collect();
     let progress = frame_progress(with_truth.len())?;
     let mut judged = Vec::new();
@@ -96,8 +95,8 @@ pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
 
 /// No camera was where some ground truths say it was.
 fn check_poses(args: &EvaluateArgs, probes: &Sequence) -> anyhow::Result<()> {
-    let is_impossible = |pose: &Option<CameraPose>| pose.is_some_and(|pose| !pose.is_possible());
-    match probes.groundtruth.iter().position(is_impossible) {
+    let is_impossible = |pose: Option<CameraPose>| pose.is_some_and(|pose| !pose.is_possible());
+    match probes.reference_poses().position(is_impossible) {
         Some(frame) => bail!(
             "{}: the ground truth of frame {frame} is none that a camera can have (above the ground, within 200 m): correct it, or leave it out",
             args.probes.display()

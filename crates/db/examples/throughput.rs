@@ -11,10 +11,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let count: usize = std::env::args().nth(1).map_or(Ok(10_000), |text| text.parse())?;
     let mut sequence = Sequence::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk"))?;
     sequence.frames = sequence.frames.iter().cycle().take(count).cloned().collect();
-    sequence.groundtruth = sequence.groundtruth.iter().cycle().take(count).copied().collect();
     let covariance = Some(nalgebra::Matrix6::identity());
     let poses: Vec<_> =
-        sequence.groundtruth.iter().map(|pose| pose.map(|pose| PoseEstimate { pose, covariance })).collect();
+        sequence.reference_poses().map(|pose| pose.map(|pose| PoseEstimate { pose, covariance })).collect();
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("walk.db");
     let mut out = std::io::stdout();

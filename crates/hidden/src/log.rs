@@ -32,7 +32,7 @@ pub fn timestamp_s(frame: usize) -> f64 {
     (frame + 1) as f64 / (1.0 / PERIOD_S).round()
 }
 
-/// The lines of `frames.csv`.
+/// The lines of `frames.csv`, without reference poses.
 pub fn frames(
     seed: u64,
     count: usize,
@@ -56,6 +56,7 @@ pub fn frames(
                 odometry: Some(odometry.pose()),
                 pitch_rad: noisy(pitch_rad),
                 roll_rad: noisy(roll_rad),
+                reference_pose: None,
             }
         })
         .collect()
@@ -88,9 +89,9 @@ impl Odometry {
 }
 
 /// What motion capture measured at each frame.
-pub fn references(seed: u64, count: usize, trajectory: &Trajectory) -> Vec<Option<CameraPose>> {
+pub fn references(seed: u64, count: usize, trajectory: &Trajectory) -> Vec<CameraPose> {
     let random = &mut Random::stream(seed, "capture", 0);
-    (0..count).map(|frame| Some(reference(random, trajectory, timestamp_s(frame)))).collect()
+    (0..count).map(|frame| reference(random, trajectory, timestamp_s(frame))).collect()
 }
 
 fn reference(random: &mut Random, trajectory: &Trajectory, time_s: f64) -> CameraPose {

@@ -56,14 +56,17 @@ impl Recipe {
         let truth = Truth::new(&nominal, &self.effects);
         let trajectory = self.trajectory(&nominal);
         self.take_pictures(folder, &nominal, &truth, &trajectory)?;
+        let mut frames = log::frames(self.seed, self.frames, self.walk, &trajectory, &truth);
+        for (frame, pose) in frames.iter_mut().zip(log::references(self.seed, self.frames, &trajectory)) {
+            frame.reference_pose = Some(pose);
+        }
         let sequence = Sequence {
             folder: folder.to_path_buf(),
             files: Vec::new(),
             name: format!("hidden-{}", self.seed),
             setup: nominal.setup()?,
-            frames: log::frames(self.seed, self.frames, self.walk, &trajectory, &truth),
+            frames,
             start: Some(log::start(&trajectory)),
-            groundtruth: log::references(self.seed, self.frames, &trajectory),
             field: nominal.field,
         };
         sequence.write(folder)?;

@@ -60,7 +60,7 @@ fn a_recording_reads_back_as_a_sequence_with_pictures() {
     let sequence = Sequence::open(folder.path()).unwrap();
     assert_eq!(given, sequence);
     assert_eq!(sequence.frames.len(), 4);
-    assert!(sequence.start.is_some() && sequence.groundtruth.iter().all(Option::is_some));
+    assert!(sequence.start.is_some() && sequence.reference_poses().all(|pose| pose.is_some()));
     let photometry = sequence.setup.photometry.unwrap();
     assert!(photometry.line_linear_rgb.is_some() && photometry.psf_sigma_px == Some(0.5));
     for frame in 0..4 {

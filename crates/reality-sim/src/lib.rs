@@ -23,7 +23,7 @@
 //! # let file = folder.path().join("walk.db");
 //! # let file = file.as_path();
 //! let walk = Sequence::open(Path::new("assets/walk"))?;
-//! let poses: Vec<_> = walk.groundtruth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
+//! let poses: Vec<_> = walk.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
 //! Database::create_or_open(file)?.ingest(&walk, &poses, &PoseSource::GroundTruth, |_| ())?;
 //!
 //! let archive = Arc::new(Archive::open(file, 256 << 20)?);
@@ -52,7 +52,7 @@
 //! let mut tagger = Tagger::new(&walk.setup.camera, &walk.field, walk.start, config);
 //! let tagged = tag_sequence(&walk, &mut tagger, |_, _, _, _| Ok(()))?;
 //!
-//! let truth = walk.groundtruth[2].ok_or("the walk has ground truth")?;
+//! let truth = walk.frames[2].reference_pose.ok_or("the walk has ground truth")?;
 //! assert!((tagged[2].pose.x_m - truth.x_m).abs() < 0.03);
 //! # Ok(())
 //! # }

@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let sequence = Sequence::open(Path::new(folder))?;
     let frame: usize = frame.parse()?;
     let measured = sequence.load_image(frame)?;
-    let pose = sequence.groundtruth[frame].ok_or("the frame has no reference pose")?;
+    let pose = sequence.frames[frame].reference_pose.ok_or("the frame has no reference pose")?;
     let start = Instant::now();
     let colors = SceneColors::new(&sequence.setup, &sequence.field);
     let renderer = Renderer::new(&sequence.setup, &sequence.field, colors);

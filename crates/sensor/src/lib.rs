@@ -16,7 +16,7 @@
 //! let sequence = Sequence::open("assets/walk".as_ref())?;
 //! let colors = SceneColors::new(&sequence.setup, &sequence.field);
 //! let renderer = Renderer::new(&sequence.setup, &sequence.field, colors);
-//! let picture = renderer.draw(sequence.groundtruth[0].expect("the walk has ground truth"))?;
+//! let picture = renderer.draw(sequence.frames[0].reference_pose.expect("the walk has ground truth"))?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -30,8 +30,7 @@
 //! let poses: Vec<_> = sequence
 //!     .frames
 //!     .iter()
-//!     .zip(&sequence.groundtruth)
-//!     .filter_map(|(frame, pose)| Some((frame.timestamp_s, (*pose)?)))
+//!     .filter_map(|frame| Some((frame.timestamp_s, frame.reference_pose?)))
 //!     .collect();
 //! let colors = SceneColors::new(&sequence.setup, &sequence.field);
 //! let model = Model::read("model.toml".as_ref())?;

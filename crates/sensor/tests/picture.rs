@@ -46,7 +46,7 @@ fn lines_are_bright_where_they_are_projected_and_the_carpet_beside_is_not() {
         .map(|color| scene::pixel_of(color)[1]);
     let renderer = Renderer::new(&scene::linear_setup(camera.clone()), &field, scene::colors());
     let (mut on_line, mut beside) = (0, 0);
-    for pose in sequence.groundtruth.iter().step_by(10).map(|pose| pose.unwrap()) {
+    for pose in sequence.reference_poses().step_by(10).map(|pose| pose.unwrap()) {
         let picture = renderer.draw(pose).unwrap();
         // From 3 pixels on, the whole pixel at the centre is on the line.
         for visible in lines_in_view(camera, &field, pose).iter().filter(|v| v.half_width_px > 1.5) {

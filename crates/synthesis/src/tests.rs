@@ -26,7 +26,7 @@ fn stored(sequence: &Sequence) -> (TempDir, Archive) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("walk.db");
     let poses: Vec<Option<PoseEstimate>> =
-        sequence.groundtruth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
+        sequence.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
     let mut database = Database::create_or_open(&path).unwrap();
     database.ingest(sequence, &poses, &PoseSource::GroundTruth, |_| ()).unwrap();
     let archive = Archive::open(&path, 64 << 20).unwrap();
@@ -35,13 +35,13 @@ fn stored(sequence: &Sequence) -> (TempDir, Archive) {
 
 fn without_some_frames() -> (TempDir, Synthesizer) {
     let mut sequence = walk();
-    LEFT_OUT.for_each(|frame| sequence.groundtruth[frame] = None);
+    LEFT_OUT.for_each(|frame| sequence.frames[frame].reference_pose = None);
     let (folder, archive) = stored(&sequence);
     (folder, Synthesizer::new(Arc::new(archive)))
 }
 
 fn truth(walk: &Sequence, frame: usize) -> (CameraPose, RgbImage) {
-    (walk.groundtruth[frame].unwrap(), walk.load_image(frame).unwrap())
+    (walk.frames[frame].reference_pose.unwrap(), walk.load_image(frame).unwrap())
 }
 
 #[test]
@@ -100,8 +100,8 @@ fn the_recorded_picture_is_that_of_the_lens_wanted() {
     walk.name = "another lens".to_owned();
     walk.setup.camera.fx = 200.0;
     let beside = CameraPose { yaw_rad: pose.yaw_rad + 5e-4, ..pose };
-    walk.groundtruth[9] = Some(beside);
-    let poses: Vec<_> = walk.groundtruth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
+    walk.frames[9].reference_pose = Some(beside);
+    let poses: Vec<_> = walk.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
     let mut database = Database::create_or_open(&path).unwrap();
     database.ingest(&walk, &poses, &PoseSource::GroundTruth, |_| ()).unwrap();
     let synthesizer = Synthesizer::new(Arc::new(Archive::open(&path, 64 << 20).unwrap()));
@@ -176,7 +176,8 @@ fn threads_get_the_same_pictures_and_the_cache_keeps_its_bound() {
         synthesizer = Synthesizer::new(Arc::new(Archive::open(&path, 3 * 640 * 480 * 4).unwrap()));
         folder = temporary;
     }
-    let poses: Vec<CameraPose> = (0..6).map(|frame| walk.groundtruth[10 * frame].unwrap()).collect();
+    let poses: Vec<CameraPose> =
+        (0..6).map(|frame| walk.frames[10 * frame].reference_pose.unwrap()).collect();
     let alone: Vec<_> = poses.iter().map(|&pose| synthesizer.image_at(pose, &Blend).unwrap()).collect();
     std::thread::scope(|scope| {
         for thread in 0..3 {
@@ -265,7 +266,7 @@ fn painted(walk: &Sequence, hull: &Hull) -> (TempDir, Sequence) {
     let mut setup = walk.setup.clone();
     let lens = setup.camera.distortion;
     setup.camera = reality_sim_core::camera::Camera::new([160, 120], [54.0, 54.0, 79.5, 59.5], lens).unwrap();
-    let (mut frames, mut groundtruth) = (Vec::new(), Vec::new());
+    let mut frames = Vec::new();
     for number in 0..60 {
         // Places and headings that fill the field evenly (Roberts' sequence).
         let part = |step: f64| (0.5 + f64::from(number) * step).fract();
@@ -294,10 +295,10 @@ fn painted(walk: &Sequence, hull: &Hull) -> (TempDir, Sequence) {
             odometry: None,
             pitch_rad: pose.pitch_rad,
             roll_rad: 0.0,
+            reference_pose: Some(pose),
         });
-        groundtruth.push(Some(pose));
     }
-    (pictures, Sequence { folder, setup, frames, groundtruth, ..walk.clone() })
+    (pictures, Sequence { folder, setup, frames, ..walk.clone() })
 }
 
 #[test]

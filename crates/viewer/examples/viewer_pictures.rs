@@ -107,11 +107,16 @@ fn miscalibrate(walk: &Path, to: &Path) -> Result<(), Box<dyn Error>> {
 /// Finds what the plain model misses in a recording, and writes what the viewer reads.
 fn write_report(recording: &Path, to: &Path) -> Result<(), Box<dyn Error>> {
     let sequence = Sequence::open(recording)?;
-    let compared = Recording::new(&sequence, &sequence.groundtruth, PoseSource::Measured, None)?;
+    let compared = Recording::new(
+        &sequence,
+        &sequence.reference_poses().collect::<Vec<_>>(),
+        PoseSource::Measured,
+        None,
+    )?;
     let plain = Model::default();
     let analysis = analyse(&compared, &plain, &Options::default(), &|_| ())?;
     let frame = analysis.report.shown_frame;
-    let pose = sequence.groundtruth[frame].ok_or("the walk has ground truth")?;
+    let pose = sequence.frames[frame].reference_pose.ok_or("the walk has ground truth")?;
     let draw = |model: &Model| -> Result<RgbImage, Box<dyn Error>> {
         let colors = SceneColors::new(&sequence.setup, &sequence.field);
         Ok(Renderer::with_model(&sequence.setup, &sequence.field, colors, model)?.draw(pose)?)

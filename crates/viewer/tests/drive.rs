@@ -24,7 +24,7 @@ type Window = common::Viewer<'static>;
 fn database(folder: &Path) -> PathBuf {
     let sequence = Sequence::open(&walk()).unwrap();
     let path = folder.join("walk.db");
-    let poses: Vec<_> = sequence.groundtruth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
+    let poses: Vec<_> = sequence.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
     let mut database = Database::create_or_open(&path).unwrap();
     database.ingest(&sequence, &poses, &PoseSource::GroundTruth, |_| {}).unwrap();
     path

@@ -28,8 +28,7 @@ use common::{
 fn database() -> (TempDir, PathBuf) {
     let mut sequence = Sequence::open(&walk()).unwrap();
     sequence.frames.truncate(3);
-    sequence.groundtruth.truncate(3);
-    let poses: Vec<_> = sequence.groundtruth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
+    let poses: Vec<_> = sequence.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
     let folder = tempdir().unwrap();
     let path = folder.path().join("walk.db");
     let mut database = Database::create_or_open(&path).unwrap();

@@ -26,8 +26,8 @@ pub fn reference(args: &GapArgs, sequence: &Sequence) -> anyhow::Result<Referenc
         }
         return Ok(tagged(sequence, poses.into_iter().map(|pose| pose.map(CameraPose::planar))));
     }
-    if !args.tag && sequence.groundtruth.iter().any(Option::is_some) {
-        return Ok(Reference { poses: sequence.groundtruth.clone(), source: PoseSource::Measured });
+    if !args.tag && sequence.has_reference_poses() {
+        return Ok(Reference { poses: sequence.reference_poses().collect(), source: PoseSource::Measured });
     }
     by_filter(args, sequence)
 }

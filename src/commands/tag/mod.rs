@@ -36,7 +36,7 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     let first = args.frames.map_or(0, |range| range.first);
     let tagged = tag_sequence(&sequence, &mut tagger, |index, frame, picture, tagger| {
         progress.inc(1);
-        if let Some(truth) = sequence.groundtruth[index] {
+        if let Some(truth) = sequence.frames[index].reference_pose {
             let error_cm = 100.0 * PoseError::new(frame.pose, truth).distance_m;
             progress.set_message(format!("{error_cm:.1} cm off"));
         }
@@ -117,7 +117,7 @@ fn draw(
         camera: &sequence.setup.camera,
         field: &sequence.field,
         pose: frame.pose,
-        truth: sequence.groundtruth[index],
+        truth: sequence.frames[index].reference_pose,
         border: Some(BorderOutline {
             corners_in_heading: &border.outline_in_heading,
             camera_in_heading: attitude.at(Pose2::default()),

@@ -256,8 +256,7 @@ impl TagArgs {
             (None, true) => None,
             (None, false) => self.start_at(&sequence, range.start),
         };
-        sequence.frames = sequence.frames[range.clone()].to_vec();
-        sequence.groundtruth = sequence.groundtruth[range].to_vec();
+        sequence.frames = sequence.frames[range].to_vec();
         Ok(sequence)
     }
 

@@ -55,7 +55,7 @@ pub fn details_csv(sequence: &Sequence, tagged: &[TaggedFrame], results: &[PoseR
             frame.mirror_probability,
             frame.searched
         );
-        let _ = match sequence.groundtruth[index].map(|truth| PoseError::new(pose, truth)) {
+        let _ = match sequence.frames[index].reference_pose.map(|truth| PoseError::new(pose, truth)) {
             Some(error) => writeln!(csv, ",{},{}", error.distance_m, error.yaw_rad),
             None => writeln!(csv, ",,"),
         };
@@ -102,9 +102,9 @@ impl Report {
         tagged: &[TaggedFrame],
         poses: &[CameraPose],
     ) -> Self {
-        let truths = sequence.groundtruth.iter().zip(poses);
+        let truths = sequence.reference_poses().zip(poses);
         let errors: Vec<PoseError> =
-            truths.filter_map(|(truth, pose)| Some(PoseError::new(*pose, (*truth)?))).collect();
+            truths.filter_map(|(truth, pose)| Some(PoseError::new(*pose, truth?))).collect();
         let mut seconds: Vec<f64> = tagged.iter().map(|frame| frame.seconds).collect();
         seconds.sort_by(f64::total_cmp);
         Self {

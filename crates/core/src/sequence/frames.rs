@@ -12,7 +12,7 @@ use super::{
     sequence_file::is_inside_folder,
     text::line_of_offset,
 };
-use crate::pose::Pose2;
+use crate::pose::{CameraPose, Pose2};
 
 const ODOMETRY_COLUMNS: [&str; 3] = ["odometry_x_m", "odometry_y_m", "odometry_yaw_rad"];
 
@@ -29,9 +29,11 @@ pub struct FrameRecord {
     pub pitch_rad: f64,
     /// The camera's roll, clockwise seen from behind, from the IMU and the joints, radians.
     pub roll_rad: f64,
+    /// The camera's pose by other means than the pictures, as motion capture, where it is known.
+    pub reference_pose: Option<CameraPose>,
 }
 
-/// Frames from the text of their file.
+/// Frames from the text of their file, without reference poses, which stand in another one.
 pub(super) fn parse_frames(path: &Path, text: &str) -> Result<Vec<FrameRecord>, SequenceError> {
     let mut reader =
         ReaderBuilder::new().has_headers(false).flexible(true).trim(Trim::All).from_reader(text.as_bytes());
@@ -160,6 +162,7 @@ impl Columns {
             odometry: odometry.transpose()?,
             pitch_rad: number("pitch_rad", field(self.pitch_rad))?,
             roll_rad: number("roll_rad", field(self.roll_rad))?,
+            reference_pose: None,
         })
     }
 }

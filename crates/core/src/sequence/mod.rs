@@ -61,8 +61,6 @@ pub struct Sequence {
     pub frames: Vec<FrameRecord>,
     /// Pose of the first frame in the world, where it is known.
     pub start: Option<Pose2>,
-    /// The reference pose of each frame, where there is one. As long as `frames`.
-    pub groundtruth: Vec<Option<CameraPose>>,
 }
 
 impl Sequence {
@@ -76,14 +74,12 @@ impl Sequence {
         let files = std::iter::once(main_file).chain(parts).collect();
         let setup = read_camera(&folder.join(&table.camera))?;
         let field = read_field(&folder.join(&table.field))?;
-        let frames = read_and_parse(&folder.join(&table.frames), parse_frames)?;
-        let groundtruth = match &table.groundtruth {
-            Some(name) => {
-                let path = folder.join(name);
-                match_poses(&path, read_tum(&path)?, &frames)?
-            }
-            None => vec![None; frames.len()],
-        };
+        let mut frames = read_and_parse(&folder.join(&table.frames), parse_frames)?;
+        if let Some(name) = &table.groundtruth {
+            let path = folder.join(name);
+            let poses = match_poses(&path, read_tum(&path)?, &frames)?;
+            frames.iter_mut().zip(poses).for_each(|(frame, pose)| frame.reference_pose = pose);
+        }
         Ok(Self {
             folder: folder.to_path_buf(),
             files,
@@ -92,8 +88,17 @@ impl Sequence {
             field,
             frames,
             start: table.start.map(Pose2::from),
-            groundtruth,
         })
+    }
+
+    /// The reference pose of each frame, where there is one.
+    pub fn reference_poses(&self) -> impl ExactSizeIterator<Item = Option<CameraPose>> + Clone {
+        self.frames.iter().map(|frame| frame.reference_pose)
+    }
+
+    /// Whether any frame has a reference pose.
+    pub fn has_reference_poses(&self) -> bool {
+        self.reference_poses().any(|pose| pose.is_some())
     }
 
     /// The picture of a frame (from 0), JPEG or PNG, in the camera's size. Grey pictures become RGB.

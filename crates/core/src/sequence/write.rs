@@ -6,7 +6,7 @@ use super::{
     CameraSetup, Sequence,
     atomic::write_atomically,
     error::{Fault, SequenceError},
-    frames::{parse_frames, print_frames},
+    frames::{FrameRecord, parse_frames, print_frames},
     sequence_file::{SEQUENCE_FILE, SequenceTable, StartTable, parse_sequence},
     toml_text::print,
     tum::{StampedPose, parse_tum, print_tum},
@@ -39,14 +39,15 @@ impl Sequence {
         FieldDimensions::from_toml(&path, &field)?;
         let path = folder.join(FRAMES_FILE);
         let frames = print_frames(&path, &self.frames)?;
-        if parse_frames(&path, &frames)? != self.frames {
+        let lines = self.frames.iter().map(|frame| FrameRecord { reference_pose: None, ..frame.clone() });
+        if !parse_frames(&path, &frames)?.into_iter().eq(lines) {
             let rule = "the pictures' names must not begin or end with blanks";
             return Err(SequenceError::of_file(&path, Fault::Inconsistent { rule }));
         }
         let mut files = vec![(CAMERA_FILE, camera), (FIELD_FILE, field), (FRAMES_FILE, frames)];
 
         let path = folder.join(GROUNDTRUTH_FILE);
-        let poses = self.stamped_groundtruth(&path)?;
+        let poses = self.stamped_reference_poses();
         if !poses.is_empty() {
             let text = print_tum(&path, &poses)?;
             parse_tum(&path, &text)?;
@@ -70,14 +71,10 @@ impl Sequence {
         }
     }
 
-    fn stamped_groundtruth(&self, path: &Path) -> Result<Vec<StampedPose>, SequenceError> {
-        if self.groundtruth.len() != self.frames.len() {
-            let rule = "the ground truth must have one entry a frame";
-            return Err(SequenceError::of_file(path, Fault::Inconsistent { rule }));
-        }
-        let pairs = self.frames.iter().zip(&self.groundtruth);
-        Ok(pairs
-            .filter_map(|(frame, pose)| Some(StampedPose { timestamp_s: frame.timestamp_s, pose: (*pose)? }))
-            .collect())
+    fn stamped_reference_poses(&self) -> Vec<StampedPose> {
+        let stamped = |frame: &FrameRecord| {
+            Some(StampedPose { timestamp_s: frame.timestamp_s, pose: frame.reference_pose? })
+        };
+        self.frames.iter().filter_map(stamped).collect()
     }
 }

@@ -92,10 +92,10 @@ fn a_changed_sequence_is_refused_and_nothing_is_changed() {
         change(&mut sequence);
         sequence
     };
-    let far = |pose: CameraPose| CameraPose { x_m: pose.x_m + 1e-3, ..pose };
+    let far = |pose: &mut CameraPose| pose.x_m += 1e-3;
     for (changed, what) in [
         (
-            with(&|sequence| sequence.groundtruth[4] = sequence.groundtruth[4].map(far)),
+            with(&|sequence| sequence.frames[4].reference_pose.iter_mut().for_each(far)),
             "frame 4 of the sequence \"walk\" is in it with another pose",
         ),
         (
@@ -124,7 +124,7 @@ fn a_changed_sequence_is_refused_and_nothing_is_changed() {
 fn poses_that_differ_by_rounding_or_a_turn_are_the_same() {
     let (_folder, path) = database_of(&short_walk(3));
     let mut again = short_walk(3);
-    for pose in again.groundtruth.iter_mut().flatten() {
+    for pose in again.frames.iter_mut().flat_map(|frame| &mut frame.reference_pose) {
         pose.yaw_rad += std::f64::consts::TAU;
         pose.height_m += 1e-9;
     }

@@ -129,7 +129,7 @@ fn a_transaction_that_was_torn_is_undone_by_the_next_reader() {
     assert_ne!(raw, fs::read(whole).unwrap(), "nothing was torn");
     let database = Database::open(&path).unwrap();
     for (index, image) in database.images().unwrap().iter().enumerate() {
-        assert_eq!(Some(image.pose), sequence.groundtruth[index]);
+        assert_eq!(Some(image.pose), sequence.frames[index].reference_pose);
         assert_eq!(database.image_bytes(image.id).unwrap(), sequence.image_bytes(index).unwrap());
     }
     assert_eq!(names_in(folder.path()), ["torn.db"]);

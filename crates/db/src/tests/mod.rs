@@ -22,7 +22,6 @@ fn walk() -> Sequence {
 fn short_walk(frames: usize) -> Sequence {
     let mut sequence = walk();
     sequence.frames.truncate(frames);
-    sequence.groundtruth.truncate(frames);
     sequence
 }
 
@@ -32,7 +31,6 @@ fn long_walk(frames: usize) -> Sequence {
     let count = once.frames.len();
     let mut sequence = once.clone();
     sequence.frames = (0..frames).map(|index| once.frames[index % count].clone()).collect();
-    sequence.groundtruth = (0..frames).map(|index| once.groundtruth[index % count]).collect();
     for (index, frame) in sequence.frames.iter_mut().enumerate() {
         frame.timestamp_s = 0.2 * index as f64;
     }
@@ -43,8 +41,8 @@ fn long_walk(frames: usize) -> Sequence {
 fn estimates(sequence: &Sequence) -> Vec<Option<PoseEstimate>> {
     let covariance = Matrix6::from_fn(|i, j| if i == j { 0.1 } else { 1e-3 / (1 + i + j) as f64 });
     let estimate =
-        |pose: &Option<CameraPose>| pose.map(|pose| PoseEstimate { pose, covariance: Some(covariance) });
-    sequence.groundtruth.iter().map(estimate).collect()
+        |pose: Option<CameraPose>| pose.map(|pose| PoseEstimate { pose, covariance: Some(covariance) });
+    sequence.reference_poses().map(estimate).collect()
 }
 
 fn add(database: &mut Database, sequence: &Sequence) -> Result<IngestReport, DbError> {

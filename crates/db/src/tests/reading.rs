@@ -41,7 +41,7 @@ fn every_kind_of_pose_source_and_no_covariance_come_out_as_they_went_in() {
         PoseSource::File { name: "poses ü.tum".to_owned() },
     ];
     for (index, source) in sources.iter().enumerate() {
-        let pose = sequence.groundtruth[index].unwrap();
+        let pose = sequence.frames[index].reference_pose.unwrap();
         let mut poses = vec![None; sequence.frames.len()];
         poses[index] = Some(PoseEstimate { pose, covariance: None });
         database.ingest(&sequence, &poses, source, |_| {}).unwrap();

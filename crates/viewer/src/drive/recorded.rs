@@ -72,7 +72,7 @@ impl Recorded {
 
     /// How many pictures have poses of the ground truth.
     fn poses(&self) -> usize {
-        self.sequence.groundtruth.iter().flatten().count()
+        self.sequence.reference_poses().flatten().count()
     }
 
     fn content(&mut self, ui: &mut Ui, settings: &mut DriveSettings, devices: &[Device]) {

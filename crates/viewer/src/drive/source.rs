@@ -64,8 +64,8 @@ pub struct NearProbe {
 impl Probes {
     /// Those of a recording's pictures of which the pose is known; `None` where there are none.
     pub fn of_recording(sequence: &Arc<Sequence>) -> Option<Self> {
-        let known = sequence.groundtruth.iter().enumerate();
-        Self::new(sequence, known.filter_map(|(frame, pose)| Some((frame, (*pose)?))))
+        let known = sequence.reference_poses().enumerate();
+        Self::new(sequence, known.filter_map(|(frame, pose)| Some((frame, pose?))))
     }
 
     fn new(sequence: &Arc<Sequence>, poses: impl Iterator<Item = (usize, CameraPose)>) -> Option<Self> {
@@ -111,8 +111,7 @@ pub struct Poses {
 impl Poses {
     /// A recording's ground truth; `None` where it has none.
     pub fn known(sequence: &Sequence) -> Option<Self> {
-        let estimates: Vec<_> =
-            sequence.groundtruth.iter().map(|pose| pose.map(PoseEstimate::from)).collect();
+        let estimates: Vec<_> = sequence.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
         let is_known = estimates.iter().any(Option::is_some);
         is_known.then_some(Self { estimates, source: PoseSource::GroundTruth })
     }

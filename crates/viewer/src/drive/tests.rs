@@ -128,7 +128,6 @@ fn every_fifth_picture_of_a_recording_is_held_back_and_the_file_goes_with_the_la
 fn a_short_recording_keeps_all_its_pictures() {
     let mut short = walk();
     short.frames.truncate(6);
-    short.groundtruth.truncate(6);
     let source = built(short);
     assert_eq!(source.archive.images().len(), 6);
     assert!(source.probes.is_none());
@@ -138,7 +137,7 @@ fn a_short_recording_keeps_all_its_pictures() {
 fn without_ground_truth_the_filter_finds_where_pictures_were_taken() {
     let mut recording = walk();
     recording.frames.truncate(12);
-    let truth = std::mem::replace(&mut recording.groundtruth, vec![None; 12]);
+    let truth: Vec<_> = recording.frames.iter_mut().map(|frame| frame.reference_pose.take()).collect();
     assert!(Poses::known(&recording).is_none());
     let recording = Arc::new(recording);
     let task = Task::spawn(&Context::default(), "", move |progress| {
@@ -364,7 +363,7 @@ fn leaving_while_the_database_is_made_leaves_no_file_behind() {
 fn the_provenance_of_poses_found_says_how_they_were_found() {
     let mut recording = walk();
     recording.frames.truncate(4);
-    recording.groundtruth = vec![None; 4];
+    recording.frames.iter_mut().for_each(|frame| frame.reference_pose = None);
     let recording = Arc::new(recording);
     let task = Task::spawn(&Context::default(), "", move |progress| {
         build(&recording, Poses::found(&recording, None, progress)?, progress)
@@ -380,9 +379,7 @@ fn the_provenance_of_poses_found_says_how_they_were_found() {
 #[test]
 fn a_long_recording_is_made_a_database_of_only_when_that_is_asked_for() {
     let mut long = walk();
-    let (frame, pose) = (long.frames[0].clone(), long.groundtruth[0]);
-    long.frames = vec![frame; 2001];
-    long.groundtruth = vec![pose; 2001];
+    long.frames = vec![long.frames[0].clone(); 2001];
     let show = |ui: &mut Ui, panel: &mut DrivePanel| {
         panel.ui(ui, &mut DriveSettings::default(), &[], &mut Problems::default());
     };
@@ -435,7 +432,10 @@ fn recordings_that_cannot_be_compared_are_refused_by_name() {
     let renamed = changed(|recording| recording.field.name = "another name".to_owned());
     assert_eq!(driving.compare_with(&Arc::new(renamed)), Ok(()), "names do not matter");
     let refused = [
-        (changed(|recording| recording.groundtruth.fill(None)), "ground truth"),
+        (
+            changed(|recording| recording.frames.iter_mut().for_each(|frame| frame.reference_pose = None)),
+            "ground truth",
+        ),
         (changed(|recording| recording.setup.camera.width = 1280), "1280 x 480 pixels"),
         (changed(|recording| recording.setup.camera.fx += 1.0), "another lens"),
         (

@@ -117,7 +117,7 @@ impl Seen {
         let edges = |pose| [lines(pose, -half_width_m), lines(pose, half_width_m)].concat();
         let corners: Vec<DVec2> =
             self.prepared.border.outline_in_heading.iter().map(|corner| corner.as_dvec2()).collect();
-        let truth = sequence.groundtruth[self.index];
+        let truth = sequence.frames[self.index].reference_pose;
         FrameView {
             record: Record::new(self.index, &self.tagged, truth),
             picture: self.picture.clone(),

@@ -3,8 +3,8 @@
 
 use glam::DVec2;
 use reality_sim_core::{
-    pose::{CameraPose, Pose2},
-    sequence::Sequence,
+    pose::Pose2,
+    sequence::{FrameRecord, Sequence},
 };
 
 use super::frame::Record;
@@ -96,9 +96,9 @@ impl History {
 
 /// True places up to a frame.
 pub fn true_path(sequence: &Sequence, last: usize) -> Thinned<DVec2> {
-    let truth = &sequence.groundtruth[..=last.min(sequence.groundtruth.len() - 1)];
-    let place = |pose: &Option<CameraPose>| pose.map(|pose| pose.planar().position_in_world());
-    let Thinned { points, step } = thin(truth, place);
+    let frames = &sequence.frames[..=last.min(sequence.frames.len() - 1)];
+    let position = |frame: &FrameRecord| Some(frame.reference_pose?.planar().position_in_world());
+    let Thinned { points, step } = thin(frames, position);
     Thinned { points: points.into_iter().flatten().collect(), step }
 }
 
@@ -114,6 +114,8 @@ pub fn odometry_path(sequence: &Sequence, (known, pose): (usize, Pose2), last: u
 
 #[cfg(test)]
 mod tests {
+    use reality_sim_core::pose::CameraPose;
+
     use super::*;
 
     fn record(index: usize, searched: bool) -> Record {

@@ -104,7 +104,7 @@ fn draw_path(canvas: &FieldCanvas, path: &Thinned<DVec2>, color: Color32) {
 }
 
 fn draw_odometry(canvas: &FieldCanvas, sequence: &Sequence, history: &History, at: usize) {
-    let start = sequence.groundtruth[0].map(CameraPose::planar).or(sequence.start);
+    let start = sequence.frames[0].reference_pose.map(CameraPose::planar).or(sequence.start);
     let Some(known) = start.map(|start| (0, start)).or(history.first()) else { return };
     let path = odometry_path(sequence, known, at);
     canvas.path(&path.points, path.step, Stroke::new(1.5, colors::ODOMETRY));

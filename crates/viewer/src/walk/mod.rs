@@ -71,7 +71,7 @@ impl WalkPanel {
         Self {
             history: History::default(),
             timeline: Timeline::new(&sequence),
-            has_truth: sequence.groundtruth.iter().any(Option::is_some),
+            has_truth: sequence.has_reference_poses(),
             sequence,
             player,
             told: settings.clone(),

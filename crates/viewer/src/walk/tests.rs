@@ -29,7 +29,6 @@ fn walk(frames: usize) -> Arc<Sequence> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk");
     let mut sequence = Sequence::open(&folder).unwrap();
     sequence.frames.truncate(frames);
-    sequence.groundtruth.truncate(frames);
     Arc::new(sequence)
 }
 
