@@ -3,7 +3,7 @@
 use criterion::{Criterion, Throughput};
 use reality_sim::{
     Sequence,
-    gap::{Options, PoseSource, Recording, analyse},
+    gap::{Options, Recording, ReferenceSource, analyse},
     sensor::Model,
 };
 use reality_sim_hidden::{Hidden, Recipe};
@@ -39,9 +39,13 @@ fn decode(sequence: &Sequence) -> usize {
 }
 
 fn whole(sequence: &Sequence) -> usize {
-    let recording =
-        Recording::new(sequence, &sequence.reference_poses().collect::<Vec<_>>(), PoseSource::Measured, None)
-            .expect("a recording with poses");
+    let recording = Recording::new(
+        sequence,
+        &sequence.reference_poses().collect::<Vec<_>>(),
+        ReferenceSource::Measured,
+        None,
+    )
+    .expect("a recording with poses");
     let analysis = analyse(&recording, &Model::default(), &Options::default(), &|_| ());
     analysis.expect("its pictures can be read").report.effects.len()
 }

@@ -12,7 +12,7 @@ use std::{
 use reality_sim::{
     Sequence,
     gap::{
-        Analysis, Options, Pictures, PoseSource, Recording, analyse,
+        Analysis, Options, Pictures, Recording, ReferenceSource, analyse,
         report::{Report, Verdict},
     },
     sensor::{Model, library},
@@ -41,7 +41,7 @@ fn analysed(sequence: &Sequence, model: &Model, options: &Options) -> Analysis {
 }
 
 fn recording_of(sequence: &Sequence) -> Recording<'_> {
-    Recording::new(sequence, &sequence.reference_poses().collect::<Vec<_>>(), PoseSource::Measured, None)
+    Recording::new(sequence, &sequence.reference_poses().collect::<Vec<_>>(), ReferenceSource::Measured, None)
         .unwrap()
 }
 

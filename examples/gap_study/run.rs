@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, error::Error, path::Path, time::Instant};
 use reality_sim::{
     Sequence,
     gap::{
-        Options, PoseSource, Recording, analyse,
+        Options, Recording, ReferenceSource, analyse,
         report::{Report, Verdict},
     },
     sensor::{Model, effect},
@@ -118,7 +118,7 @@ fn examine(sequence: &Sequence, model: &Model, options: &Options) -> Result<Repo
     let recording = Recording::new(
         sequence,
         &sequence.reference_poses().collect::<Vec<_>>(),
-        PoseSource::Measured,
+        ReferenceSource::Measured,
         None,
     )?;
     Ok(analyse(&recording, model, options, &|_| ())?.report)
@@ -159,7 +159,7 @@ fn oracle(sequence: &Sequence, effects: &[Hidden], options: &Options) -> Result<
     let recording = Recording::new(
         sequence,
         &sequence.reference_poses().collect::<Vec<_>>(),
-        PoseSource::Measured,
+        ReferenceSource::Measured,
         None,
     )?;
     Ok(Some(reality_sim::gap::gap_of(&recording, &model, options)?.before))

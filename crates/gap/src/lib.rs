@@ -16,11 +16,11 @@ mod workflow;
 pub use self::{
     inference::held_out::ChannelGap,
     linear_model::{linearization::MeasureError, residual::Channel},
-    recording::{LEAST_FRAMES, PoseSource, Recording, RecordingError},
+    recording::{LEAST_FRAMES, Recording, RecordingError, ReferenceSource},
     report::{Pictures, PicturesError, ReportError, ReportFault, html},
     workflow::{
         analysis::{Analysis, analyse, gap_of},
-        progress::Stage,
+        progress::Progress,
         selection::Options,
     },
 };

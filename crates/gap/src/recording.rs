@@ -68,7 +68,7 @@ pub enum RecordingError {
 /// Where the reference poses come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum PoseSource {
+pub enum ReferenceSource {
     /// Something else than the pictures: motion capture.
     Measured,
     /// Place and heading were found in the pictures themselves; height, pitch and roll are those of the robot.
@@ -90,7 +90,7 @@ pub struct Recording<'a> {
     pub(crate) sequence: &'a Sequence,
     pub(crate) trajectory: Trajectory,
     pub(crate) frames: Vec<Frame>,
-    pub(crate) source: PoseSource,
+    pub(crate) source: ReferenceSource,
     pub(crate) scene: Option<NominalReflectance>,
     /// Files of frames whose picture is broken or missing.
     pub(crate) left_out: Vec<PathBuf>,
@@ -101,7 +101,7 @@ impl<'a> Recording<'a> {
     pub fn new(
         sequence: &'a Sequence,
         poses: &[Option<CameraPose>],
-        source: PoseSource,
+        source: ReferenceSource,
         range: Option<Range<usize>>,
     ) -> Result<Self, RecordingError> {
         let name = || sequence.name.clone();
@@ -174,8 +174,8 @@ impl<'a> Recording<'a> {
 
     pub(crate) fn reference(&self) -> ReferenceKind {
         match self.source {
-            PoseSource::Measured => ReferenceKind::Whole,
-            PoseSource::Tagged => ReferenceKind::Attitude,
+            ReferenceSource::Measured => ReferenceKind::Whole,
+            ReferenceSource::Tagged => ReferenceKind::Attitude,
         }
     }
 

@@ -19,7 +19,7 @@ use reality_sim_core::{
     backend::CpuBackend,
     sequence::{Sequence, save_image},
 };
-use reality_sim_gap::{Options, PoseSource, Recording, analyse};
+use reality_sim_gap::{Options, Recording, ReferenceSource, analyse};
 use reality_sim_sensor::{Model, Renderer, SceneColors};
 use reality_sim_viewer::{Device, ViewerApp, ViewerOptions};
 
@@ -110,7 +110,7 @@ fn write_report(recording: &Path, to: &Path) -> Result<(), Box<dyn Error>> {
     let compared = Recording::new(
         &sequence,
         &sequence.reference_poses().collect::<Vec<_>>(),
-        PoseSource::Measured,
+        ReferenceSource::Measured,
         None,
     )?;
     let plain = Model::default();

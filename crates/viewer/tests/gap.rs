@@ -19,7 +19,7 @@ use egui_kittest::kittest::Queryable;
 use image::{Rgb, RgbImage};
 use reality_sim_core::field::FieldDimensions;
 use reality_sim_gap::{
-    ChannelGap, PoseSource,
+    ChannelGap, ReferenceSource,
     report::{
         Course, EffectReport, Estimate, Gap, Limit, Map, Maps, NotFoundReport, PosesReport, Report,
         Unexplained, Unobservable, Verdict,
@@ -123,7 +123,7 @@ fn report() -> Report {
             recording_that_would_decide: "nod at one place".to_owned(),
         }],
         poses: PosesReport {
-            source: PoseSource::Measured,
+            source: ReferenceSource::Measured,
             rotation_sigma_rad: [0.002; 3],
             position_sigma_m: [0.003; 3],
             absorbed: String::new(),

@@ -12,7 +12,7 @@ use std::io::{self, IsTerminal};
 
 use reality_sim::{
     Sequence,
-    gap::{Analysis, Options, Pictures, Recording, Stage, analyse, html},
+    gap::{Analysis, Options, Pictures, Progress, Recording, analyse, html},
     sensor::{Chain, Model},
     sequence::{save_image, write_atomically},
 };
@@ -82,11 +82,11 @@ fn stages() -> anyhow::Result<ProgressBar> {
     Ok(spinner)
 }
 
-fn words(stage: Stage) -> &'static str {
+fn words(stage: Progress) -> &'static str {
     match stage {
-        Stage::Measuring => "measuring lines and carpet in the pictures",
-        Stage::Testing => "testing every effect",
-        Stage::Fitting => "fitting the extended model",
-        Stage::Judging => "judging on frames that no fit has seen",
+        Progress::Measuring => "measuring lines and carpet in the pictures",
+        Progress::Testing => "testing every effect",
+        Progress::Fitting => "fitting the extended model",
+        Progress::Judging => "judging on frames that no fit has seen",
     }
 }

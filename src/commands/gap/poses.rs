@@ -4,7 +4,7 @@ use anyhow::bail;
 
 use reality_sim::{
     CameraPose, Pose2, Sequence,
-    gap::PoseSource,
+    gap::ReferenceSource,
     sequence::{match_poses, read_tum},
 };
 
@@ -14,7 +14,7 @@ use crate::commands::filter;
 /// One pose a frame, where there is one, and where they come from.
 pub struct Reference {
     pub poses: Vec<Option<CameraPose>>,
-    pub source: PoseSource,
+    pub source: ReferenceSource,
 }
 
 /// The sequence's own, those of a file, or those of the particle filter.
@@ -27,7 +27,10 @@ pub fn reference(args: &GapArgs, sequence: &Sequence) -> anyhow::Result<Referenc
         return Ok(tagged(sequence, poses.into_iter().map(|pose| pose.map(CameraPose::planar))));
     }
     if !args.tag && sequence.has_reference_poses() {
-        return Ok(Reference { poses: sequence.reference_poses().collect(), source: PoseSource::Measured });
+        return Ok(Reference {
+            poses: sequence.reference_poses().collect(),
+            source: ReferenceSource::Measured,
+        });
     }
     by_filter(args, sequence)
 }
@@ -45,5 +48,5 @@ fn tagged(sequence: &Sequence, planar: impl Iterator<Item = Option<Pose2>>) -> R
     let pose = |(planar, frame): (Option<Pose2>, &reality_sim::sequence::FrameRecord)| {
         planar.map(|planar| CameraPose::new(planar, height_m, frame.pitch_rad, frame.roll_rad))
     };
-    Reference { poses: planar.zip(&sequence.frames).map(pose).collect(), source: PoseSource::Tagged }
+    Reference { poses: planar.zip(&sequence.frames).map(pose).collect(), source: ReferenceSource::Tagged }
 }

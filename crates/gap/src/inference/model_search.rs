@@ -15,7 +15,7 @@ use crate::{
     linear_model::residual::Channel,
     linear_model::system::{FittedResiduals, INDEPENDENT, LinearSystem},
     recording::Recording,
-    workflow::progress::Stage,
+    workflow::progress::Progress,
 };
 
 /// Rounds of Gauss and Newton's method after an effect was added.
@@ -45,7 +45,7 @@ pub(crate) struct ModelSearch<'a> {
     pub(crate) split: &'a HeldOutSplit,
     /// Effects that the model has had from the start.
     pub(crate) given: &'a [usize],
-    pub(crate) progress: &'a dyn Fn(Stage),
+    pub(crate) progress: &'a dyn Fn(Progress),
 }
 
 impl ModelSearch<'_> {
@@ -202,12 +202,12 @@ impl ModelSearch<'_> {
         effects: &[usize],
     ) -> Result<LinearizedRecording, MeasureError> {
         for _ in 0..SETTLING {
-            (self.progress)(Stage::Fitting);
+            (self.progress)(Progress::Fitting);
             let naming = measured.naming(self.columns);
             let Some(fit) = naming.fit_in_range(effects) else { break };
             let still = naming.evidence.improvement(&fit) < SETTLED;
             let model = self.moved(&measured.model, &naming, &fit, effects);
-            (self.progress)(Stage::Measuring);
+            (self.progress)(Progress::Measuring);
             measured = LinearizedRecording::new(self.recording, model, self.columns, self.split, SEARCH[1])?;
             if still {
                 break;

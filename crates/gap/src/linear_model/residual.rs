@@ -1,4 +1,4 @@
-//! LinearizedRecording against expected, number by number, each with where and when it was measured.
+//! Measured against expected, number by number, each with where and when it was measured.
 
 use glam::DVec2;
 use reality_sim_core::pose::Motion2;

@@ -192,7 +192,7 @@ pub struct Maps {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PosesReport {
     /// `measured` or `tagged`.
-    pub source: crate::recording::PoseSource,
+    pub source: crate::recording::ReferenceSource,
     /// Scatter of rotations about the axes to the right, down and forward of the heading, radians.
     pub rotation_sigma_rad: [f64; 3],
     /// Scatter of positions in the world, metres.

@@ -20,14 +20,14 @@ use crate::{
     linear_model::parameters::FittedParameter,
     linear_model::residual::Channel,
     linear_model::system::FittedResiduals,
-    recording::{Frame, LEAST_VIEWS, PoseSource, Recording},
+    recording::{Frame, LEAST_VIEWS, Recording, ReferenceSource},
     report::data::{
         EffectReport, Estimate, Gap, Limit, NotFoundReport, PosesReport, Report, Unexplained, Unobservable,
         Verdict,
     },
     report::maps::maps,
     report::text,
-    workflow::progress::Stage,
+    workflow::progress::Progress,
     workflow::selection::{Options, SelectedModel, as_given, find},
 };
 
@@ -50,10 +50,10 @@ pub fn analyse(
     recording: &Recording<'_>,
     model: &Model,
     options: &Options,
-    progress: &dyn Fn(Stage),
+    progress: &dyn Fn(Progress),
 ) -> Result<Analysis, MeasureError> {
     let found = find(recording, model, options, progress)?;
-    progress(Stage::Judging);
+    progress(Progress::Judging);
     let naming = found.naming();
     let all = found.all();
     let before = HeldOutResiduals::new(recording, &found, model)?;
@@ -69,7 +69,7 @@ pub fn analyse(
     } else {
         let explained = ModelError::new(&found, &before, &after);
         let mut unexplained = unexplained(recording, &found, &naming, &all, &explained);
-        if recording.source == PoseSource::Measured {
+        if recording.source == ReferenceSource::Measured {
             unexplained.extend(restless(&channels, &explained));
         }
         unexplained
@@ -350,10 +350,10 @@ fn unexplained_pattern(pattern: &Pattern) -> Unexplained {
 }
 
 /// What poses that were found in the pictures themselves cannot show.
-fn absorbed(source: PoseSource) -> &'static str {
+fn absorbed(source: ReferenceSource) -> &'static str {
     match source {
-        PoseSource::Measured => "",
-        PoseSource::Tagged => {
+        ReferenceSource::Measured => "",
+        ReferenceSource::Tagged => {
             "place and heading were found in these pictures: whatever moves all lines as another place or heading would is in the poses and not seen here (a camera turned sideways on the robot, part of a time offset while the robot turns); pitch, roll and height are the robot's own, effects on them are seen against those"
         }
     }

@@ -2,8 +2,8 @@
 
 /// What the workflow is doing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
-    /// MeasurementConfig at the pictures.
+pub enum Progress {
+    /// Measuring lines and carpet in the pictures.
     Measuring,
     /// Testing every effect.
     Testing,

@@ -13,7 +13,7 @@ use crate::{
     linear_model::parameters::{FittedParameter, columns},
     recording::Recording,
     workflow::coarse_alignment::placing,
-    workflow::progress::Stage,
+    workflow::progress::Progress,
 };
 
 /// No more effects than this are added in one go.
@@ -69,7 +69,7 @@ pub(crate) fn find(
     recording: &Recording<'_>,
     model: &Model,
     options: &Options,
-    progress: &dyn Fn(Stage),
+    progress: &dyn Fn(Progress),
 ) -> Result<SelectedModel, MeasureError> {
     check(recording, model)?;
     let columns = columns(&options.without);
@@ -77,7 +77,7 @@ pub(crate) fn find(
     let index = |id: &str| library().iter().position(|effect| effect.id() == id);
     let given: Vec<usize> = model.effects.iter().filter_map(|used| index(used.effect.id())).collect();
     let finder = ModelSearch { recording, columns: &columns, split: &split, given: &given, progress };
-    progress(Stage::Measuring);
+    progress(Progress::Measuring);
     let mut measured = LinearizedRecording::new(recording, model.clone(), &columns, &split, SEARCH[0])?;
     let mut named: Vec<usize> = Vec::new();
     if !given.is_empty() {
@@ -93,7 +93,7 @@ pub(crate) fn find(
     let mut ties = Vec::new();
     let mut p_values = BTreeMap::new();
     while named.len() < MOST_EFFECTS {
-        progress(Stage::Testing);
+        progress(Progress::Testing);
         if let Some((set, settled)) = finder.dropped(&measured, &named)? {
             (named, measured) = (set, settled);
             continue;

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Color32, Label, RichText, Ui};
 use reality_sim_gap::{
-    PoseSource,
+    ReferenceSource,
     report::{Report, Verdict},
 };
 
@@ -67,8 +67,8 @@ fn words(verdict: Verdict) -> (&'static str, &'static str, Color32) {
 
 fn facts(report: &Report) -> String {
     let poses = match report.poses.source {
-        PoseSource::Measured => "measured",
-        PoseSource::Tagged => "found by the filter",
+        ReferenceSource::Measured => "measured",
+        ReferenceSource::Tagged => "found by the filter",
     };
     format!(
         "{} · {} frames, {} of them judged and in no fit · poses {poses} · gap {:.2} before, {:.2} after, in {} (floor {:.2})",

@@ -2,7 +2,7 @@
 
 use super::text::{cell, table};
 use crate::{
-    recording::PoseSource,
+    recording::ReferenceSource,
     report::data::{PosesReport, Report},
     report::text::digits,
 };
@@ -26,7 +26,7 @@ pub(super) fn section(report: &Report) -> String {
         ("Frames compared", report.frames.to_string()),
         ("Frames kept for judging", format!("{}, chosen with seed {}", report.judged_frames, report.seed)),
         ("Frames left out", left_out(&report.left_out)),
-        ("ReferenceKind poses", source(&report.poses).to_owned()),
+        ("Reference poses", source(&report.poses).to_owned()),
         (
             "Scatter of rotations",
             triple(report.poses.rotation_sigma_rad.map(f64::to_degrees), "°", ROTATIONS),
@@ -54,8 +54,8 @@ fn left_out(files: &[String]) -> String {
 
 fn source(poses: &PosesReport) -> &'static str {
     match poses.source {
-        PoseSource::Measured => "measured by something else than the pictures",
-        PoseSource::Tagged => "found in the pictures; height, pitch and roll are those of the robot",
+        ReferenceSource::Measured => "measured by something else than the pictures",
+        ReferenceSource::Tagged => "found in the pictures; height, pitch and roll are those of the robot",
     }
 }
 

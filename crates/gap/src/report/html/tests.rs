@@ -6,7 +6,7 @@ use reality_sim_sensor::{Effect, Parameter, library};
 
 use super::*;
 use crate::{
-    recording::PoseSource,
+    recording::ReferenceSource,
     report::data::{
         Course, EffectReport, Estimate, Gap, Limit, Map, NotFoundReport, PosesReport, Unexplained,
         Unobservable,
@@ -115,7 +115,7 @@ fn report() -> Report {
         not_found: all[..12].iter().map(|effect| not_found(*effect)).collect(),
         unobservable: all[14..].iter().map(|effect| unobservable(*effect)).collect(),
         poses: PosesReport {
-            source: PoseSource::Tagged,
+            source: ReferenceSource::Tagged,
             rotation_sigma_rad: [0.002, 0.001, 0.003],
             position_sigma_m: [0.01, 0.012, 0.003],
             absorbed: "a mount that is turned about the vertical".to_owned(),
