@@ -15,7 +15,8 @@ mod workflow;
 
 pub use self::{
     inference::held_out::ChannelGap,
-    linear_model::{linearization::MeasureError, residual::Channel},
+    linear_model::linearization::MeasureError,
+    measurement::quantity::Channel,
     recording::{LEAST_FRAMES, Recording, RecordingError, ReferenceSource},
     report::{Pictures, PicturesError, ReportError, ReportFault, html},
     workflow::{

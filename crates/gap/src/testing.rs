@@ -7,8 +7,9 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::{
     linear_model::normal_equations::NormalEquations,
-    linear_model::residual::{Channel, Group, Row},
     linear_model::system::LinearSystem,
+    measurement::quantity::{ColorChannel, Quantity},
+    measurement::scalar::Measurement,
 };
 
 /// Numbers from a fixed linear congruential generator, summed to be nearly normal.
@@ -24,10 +25,10 @@ impl Noise {
     }
 }
 
-/// A row of a channel, seen from straight above.
-pub(crate) fn row(channel: Channel, part: u8) -> Row {
-    Row {
-        group: Group { channel, part },
+/// A measurement of a quantity, seen from straight above.
+pub(crate) fn measurement(quantity: Quantity) -> Measurement {
+    Measurement {
+        quantity,
         measured: 0.0,
         sigma: 0.0,
         pixel: DVec2::ZERO,
@@ -40,8 +41,14 @@ pub(crate) fn row(channel: Channel, part: u8) -> Row {
 }
 
 /// The green of a block of carpet.
-pub(crate) fn carpet_row(pixel: DVec2, ground: DVec2) -> Row {
-    Row { pixel, ground, normal: DVec2::ZERO, half_width_px: 0.0, ..row(Channel::Photometry, 4) }
+pub(crate) fn carpet_measurement(pixel: DVec2, ground: DVec2) -> Measurement {
+    Measurement {
+        pixel,
+        ground,
+        normal: DVec2::ZERO,
+        half_width_px: 0.0,
+        ..measurement(Quantity::CarpetLevel(ColorChannel::Green))
+    }
 }
 
 /// A system of frames with these normal equations; each is a view and a place on the field of its own.

@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::{
     diagnostics::passing::{is_green_carpet, is_outlying},
     diagnostics::residual_patterns::Residuals,
-    linear_model::residual::Channel,
+    measurement::quantity::Channel,
     report::data::Unexplained,
 };
 
@@ -62,7 +62,7 @@ pub(crate) fn moving(frames: &[Residuals<'_>], sigma: f64) -> Option<Unexplained
 
 impl NominalReflectance {
     fn new(frame: &Residuals<'_>, sigma: f64) -> Self {
-        let rows = frame.rows.iter().zip(&frame.values);
+        let rows = frame.measurements.iter().zip(&frame.values);
         let spots = rows
             .filter(|(row, value)| is_green_carpet(row) && value.is_finite())
             .map(|(row, value)| Spot { ground: row.ground, is_hidden: is_outlying(*value, sigma) });
@@ -108,14 +108,14 @@ fn is_left(scenes: &[NominalReflectance], time_s: f64, foot: DVec2) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{linear_model::residual::Row, testing::carpet_row};
+    use crate::{measurement::scalar::Measurement, testing::carpet_measurement};
 
     const SIGMA: f64 = 0.05;
     const CAMERA_M: f64 = 0.5;
 
     /// Carpet of 2 m by 2 m in blocks of 10 cm, seen from above a place 1 m before it, with things that stand there: 20 cm
     /// thick where they touch the carpet, 40 cm above half of the camera's height.
-    fn picture(camera: DVec2, things: &[DVec2]) -> (Vec<Row>, Vec<f64>) {
+    fn picture(camera: DVec2, things: &[DVec2]) -> (Vec<Measurement>, Vec<f64>) {
         let places = (0..400).map(|i| 0.1 * DVec2::new(f64::from(i % 20), f64::from(i / 20)));
         let hides = |thing: &DVec2, place: DVec2| {
             let way = place - camera;
@@ -125,7 +125,7 @@ mod tests {
         };
         let seen = places.map(|place| {
             let is_hidden = things.iter().any(|thing| hides(thing, place));
-            (carpet_row(DVec2::ZERO, place), if is_hidden { -1.0 } else { 0.3 * SIGMA })
+            (carpet_measurement(DVec2::ZERO, place), if is_hidden { -1.0 } else { 0.3 * SIGMA })
         });
         seen.unzip()
     }
@@ -136,7 +136,7 @@ mod tests {
         let camera = |time_s: f64| DVec2::new(0.5 * time_s, -1.0);
         let pictures: Vec<_> = times_s.iter().map(|&t| picture(camera(t), &things(t))).collect();
         let frames = times_s.iter().zip(&pictures).map(|(&time_s, (rows, values))| Residuals {
-            rows,
+            measurements: rows,
             values: values.clone(),
             time_s,
             camera: camera(time_s),

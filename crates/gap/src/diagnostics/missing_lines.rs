@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use reality_sim_core::field::{Curve, FieldDimensions};
 
 use crate::{
-    linear_model::residual::Channel, measurement::frame::FrameMeasurements, report::data::Unexplained,
+    measurement::frame::FrameMeasurements, measurement::quantity::Channel, report::data::Unexplained,
 };
 
 /// A line is missing where less than this part of its pieces is found, as against all lines.

@@ -4,11 +4,9 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::{
     diagnostics::residual_patterns::LIKELY_CHANCE, inference::model_error::ModelError,
-    linear_model::nuisance::Nuisance, linear_model::residual::Channel, report::data::Unexplained,
+    linear_model::nuisance::Nuisance, measurement::quantity::Channel, report::data::Unexplained,
 };
 
-/// Colours in the order of a picture's channels.
-const COLORS: [&str; 3] = ["red", "green", "blue"];
 /// Channels whose nominal values are in the camera's file.
 const CHANNELS: [Channel; 3] = [Channel::Photometry, Channel::Sharpness, Channel::Noise];
 
@@ -47,7 +45,7 @@ fn of_channel(channel: Channel, tolerances: &[Nuisance], fitted: &[f64], off: f6
 /// A nominal value of the camera's file.
 struct Nominal {
     channel: Channel,
-    name: String,
+    name: &'static str,
     /// How far it is trusted.
     sigma: f64,
     unit: &'static str,
@@ -71,24 +69,17 @@ impl Nominal {
     fn of(tolerance: &Nuisance) -> Option<Self> {
         let is_of_rows = matches!(tolerance, Nuisance::Offset { .. } | Nuisance::Width { .. });
         let (channel, name, sigma, unit) = match *tolerance {
-            Nuisance::Offset { group, sigma } => match group.channel {
-                Channel::Photometry => {
-                    let surface = if group.part < 3 { "lines" } else { "carpet" };
-                    let color = COLORS[usize::from(group.part % 3)];
-                    (group.channel, format!("{color} of {surface}"), sigma, "1")
-                }
-                Channel::Sharpness => (group.channel, "the blur".to_owned(), sigma, "px2"),
-                Channel::Noise => (group.channel, "its variance".to_owned(), sigma, "1"),
-                _ => return None,
-            },
+            Nuisance::Offset { quantity, sigma } => {
+                (quantity.channel(), quantity.name(), sigma, quantity.unit())
+            }
             Nuisance::Sheen { sigma, .. } => {
-                (Channel::Photometry, "carpet seen at a grazing angle".to_owned(), sigma, "1")
+                (Channel::Photometry, "carpet seen at a grazing angle", sigma, "1")
             }
             Nuisance::Width { sigma } => {
-                (Channel::Sharpness, "the blur of broad lines against thin ones".to_owned(), sigma, "px2")
+                (Channel::Sharpness, "the blur of broad lines against thin ones", sigma, "px2")
             }
             Nuisance::Kernel { sigma } | Nuisance::ThinKernel { sigma } => {
-                (Channel::Sharpness, "the shape of the blur".to_owned(), sigma, "1")
+                (Channel::Sharpness, "the shape of the blur", sigma, "1")
             }
             Nuisance::Patch { .. } => return None,
         };
@@ -99,7 +90,10 @@ impl Nominal {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linear_model::nuisance::tolerances;
+    use crate::{
+        linear_model::nuisance::tolerances,
+        measurement::quantity::{ColorChannel, Quantity},
+    };
 
     /// What is told where the tolerances that are picked are so many standard deviations off, the others half a one.
     fn told(value: f64, explained: &ModelError, picked: impl Fn(&Nominal) -> bool) -> Vec<Unexplained> {
@@ -120,7 +114,7 @@ mod tests {
 
     #[test]
     fn what_a_model_explains_its_values_may_be_off_by_a_part_of() {
-        let explained = ModelError::by(Channel::Photometry, 2, 2.0);
+        let explained = ModelError::by(Quantity::LineLevel(ColorChannel::Blue), 2.0);
         assert_eq!(told(5.0, &explained, |nominal| nominal.name == "blue of lines"), []);
         assert_eq!(told(5.0, &explained, |nominal| nominal.channel == Channel::Noise).len(), 1);
     }

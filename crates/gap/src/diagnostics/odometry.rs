@@ -2,6 +2,8 @@
 //!
 //! As for patterns in the pictures, a part of the recording is judged by what the other parts foretell.
 
+use std::collections::BTreeMap;
+
 use reality_sim_core::pose::Motion2;
 
 use crate::{
@@ -10,7 +12,7 @@ use crate::{
     inference::model_error::ModelError,
     inference::split::stretch,
     linear_model::odometry_steps::around,
-    linear_model::residual::{Channel, Group},
+    measurement::quantity::{Channel, Quantity},
     recording::{Frame, Recording},
     report::data::Unexplained,
 };
@@ -25,40 +27,37 @@ const LEAST_GAIN: f64 = 8.0;
 const LEAST_PART: f64 = 0.5;
 /// And this many times what the model may be off by beside what it explains.
 const BEYOND: f64 = 2.0;
-/// The odometry's increments.
-const PARTS: [(&str, &str); 3] = [("steps forward", "m"), ("steps to the left", "m"), ("turns", "rad")];
-
 /// What these may follow, in the order of [`movements`].
 const FOLLOWED: [&str; 3] = ["as the robot walks ahead", "as it turns", "as time goes by"];
 
 /// What a number may follow, and the number, both in its standard deviation.
 type Pair = (f64, f64);
 
-/// The odometry's residuals, as far as they follow the movement. `sigma` is that of each of the increments.
+/// The odometry's residuals, as far as they follow the movement. `sigmas` are those of the quantities.
 pub(crate) fn following(
     recording: &Recording<'_>,
     frames: &[&Frame],
     residuals: &[Residuals<'_>],
-    sigma: impl Fn(u8) -> Option<f64>,
+    sigmas: &BTreeMap<Quantity, f64>,
     explained: &ModelError,
 ) -> Vec<Unexplained> {
     let mut all = Vec::new();
     let steps = movements(recording, frames);
-    for (part, (name, unit)) in (0..).zip(PARTS) {
-        let Some(sigma) = sigma(part) else { continue };
-        let of_part = |group: Group| group.channel == Channel::Motion && group.part == part;
+    for quantity in Quantity::ODOMETRY {
+        let Some(&sigma) = sigmas.get(&quantity) else { continue };
         let value = |residuals: &Residuals<'_>| {
-            let mut rows = residuals.rows.iter().zip(&residuals.values);
-            rows.find(|(row, value)| of_part(row.group) && value.is_finite()).map(|(_, value)| value / sigma)
+            let mut rows = residuals.measurements.iter().zip(&residuals.values);
+            rows.find(|(row, value)| row.quantity == quantity && value.is_finite())
+                .map(|(_, value)| value / sigma)
         };
         let values: Vec<Option<f64>> = residuals.iter().map(value).collect();
-        let off = explained.off(Channel::Motion, part) / sigma;
-        all.extend(odometry(&steps, &values, name).filter(|(_, rms)| *rms > BEYOND * off).map(
+        let off = explained.off(quantity) / sigma;
+        all.extend(odometry(&steps, &values, quantity.name()).filter(|(_, rms)| *rms > BEYOND * off).map(
             |(r#where, rms)| Unexplained {
                 channel: Channel::Motion.name().to_owned(),
                 r#where,
                 size: rms * sigma,
-                unit: unit.to_owned(),
+                unit: quantity.unit().to_owned(),
                 p_value: None,
             },
         ));

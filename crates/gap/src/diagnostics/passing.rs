@@ -4,7 +4,8 @@ use crate::{
     diagnostics::residual_patterns::Residuals,
     inference::effect_test::ALPHA,
     inference::evidence::{sum_of, two_sided},
-    linear_model::residual::{Channel, Row},
+    measurement::quantity::{Channel, ColorChannel, Quantity},
+    measurement::scalar::Measurement,
     report::data::Unexplained,
 };
 
@@ -22,7 +23,7 @@ const OUTLYING: f64 = 5.0;
 /// Bands of brightness along the rows that differ from picture to picture. Carpet's own patches make bands, too, but
 /// along the columns as much as along the rows.
 pub(crate) fn bands(frames: &[Residuals<'_>]) -> Option<Unexplained> {
-    let along = |place: fn(&Row, [u32; 2]) -> f64| -> Vec<f64> {
+    let along = |place: fn(&Measurement, [u32; 2]) -> f64| -> Vec<f64> {
         let cut: Vec<Vec<Option<f64>>> = frames.iter().map(|frame| band_means(frame, place)).collect();
         // What every picture has is a pattern of the picture.
         let usual: Vec<f64> =
@@ -54,7 +55,7 @@ pub(crate) fn bands(frames: &[Residuals<'_>]) -> Option<Unexplained> {
 pub(crate) fn things(frames: &[Residuals<'_>], sigma: f64) -> Option<Unexplained> {
     let hidden = |frame: &Residuals<'_>| {
         let carpet = frame
-            .rows
+            .measurements
             .iter()
             .zip(&frame.values)
             .filter(|(row, value)| is_green_carpet(row) && value.is_finite());
@@ -80,13 +81,13 @@ pub(crate) fn is_outlying(value: f64, sigma: f64) -> bool {
     value.abs() > OUTLYING * sigma
 }
 
-pub(crate) fn is_green_carpet(row: &Row) -> bool {
-    row.group.channel == Channel::Photometry && row.group.part == 4
+pub(crate) fn is_green_carpet(row: &Measurement) -> bool {
+    row.quantity == Quantity::CarpetLevel(ColorChannel::Green)
 }
 
-fn band_means(frame: &Residuals<'_>, place: fn(&Row, [u32; 2]) -> f64) -> Vec<Option<f64>> {
+fn band_means(frame: &Residuals<'_>, place: fn(&Measurement, [u32; 2]) -> f64) -> Vec<Option<f64>> {
     let mut values: Vec<Vec<f64>> = vec![Vec::new(); BANDS];
-    for (row, value) in frame.rows.iter().zip(&frame.values) {
+    for (row, value) in frame.measurements.iter().zip(&frame.values) {
         if is_green_carpet(row) && value.is_finite() {
             let band = (place(row, frame.size) * BANDS as f64).clamp(0.0, BANDS as f64 - 1.0);
             values[band as usize].push(*value);
@@ -116,7 +117,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::testing::carpet_row;
+    use crate::testing::carpet_measurement;
 
     const SIGMA: f64 = 0.05;
     const SIZE: [u32; 2] = [320, 240];
@@ -126,13 +127,14 @@ mod tests {
         let size = DVec2::new(f64::from(SIZE[0]), f64::from(SIZE[1]));
         let pixels: Vec<DVec2> =
             (0..1200).map(|i| 8.0 * DVec2::new(f64::from(i % 40), f64::from(i / 40))).collect();
-        let rows: Vec<Row> = pixels.iter().map(|&pixel| carpet_row(pixel, pixel / 100.0)).collect();
+        let rows: Vec<Measurement> =
+            pixels.iter().map(|&pixel| carpet_measurement(pixel, pixel / 100.0)).collect();
         // A little texture, another in every block and picture.
         let texture =
             |frame: u32, index: usize| 0.01 * (((index * 31 + frame as usize * 17) % 7) as f64 - 3.0) / 3.0;
         let frames: Vec<Residuals<'_>> = (0..24)
             .map(|frame| Residuals {
-                rows: &rows,
+                measurements: &rows,
                 values: (0..)
                     .zip(&pixels)
                     .map(|(index, pixel)| residual(frame, *pixel / size) + texture(frame, index))

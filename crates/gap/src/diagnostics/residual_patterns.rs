@@ -11,8 +11,9 @@ use crate::{
     inference::evidence::{Gain, sum_of, two_sided},
     inference::model_error::ModelError,
     inference::split::stretch,
-    linear_model::residual::{Channel, Row},
     linear_model::system::median,
+    measurement::quantity::{Channel, Quantity},
+    measurement::scalar::Measurement,
     report::text,
 };
 
@@ -108,7 +109,7 @@ pub(crate) const LIKELY_CHANCE: f64 = 0.02;
 
 /// A frame's residuals after the fit.
 pub(crate) struct Residuals<'a> {
-    pub(crate) rows: &'a [Row],
+    pub(crate) measurements: &'a [Measurement],
     pub(crate) values: Vec<f64>,
     pub(crate) time_s: f64,
     /// The place on the field that the camera is above, metres.
@@ -133,7 +134,7 @@ fn material(channel: Channel, scale: f64) -> f64 {
 /// Every significant pattern.
 pub(crate) fn patterns(
     frames: &[Residuals<'_>],
-    sigmas: &BTreeMap<(Channel, u8), f64>,
+    sigmas: &BTreeMap<Quantity, f64>,
     explained: &ModelError,
     from_s: f64,
 ) -> Vec<Pattern> {
@@ -155,13 +156,17 @@ pub(crate) fn patterns(
 #[derive(Debug, Clone, Copy)]
 struct Source {
     channel: Channel,
-    /// All parts of the channel where none is given.
-    part: Option<u8>,
+    /// One quantity of the channel; all of them where none is given.
+    quantity: Option<Quantity>,
 }
 
 impl Source {
     const fn whole(channel: Channel) -> Self {
-        Self { channel, part: None }
+        Self { channel, quantity: None }
+    }
+
+    const fn one(quantity: Quantity) -> Self {
+        Self { channel: quantity.channel(), quantity: Some(quantity) }
     }
 
     /// What it is binned by. Where lines are and how sharp they are may change as the picture moves.
@@ -174,8 +179,9 @@ impl Source {
         }
     }
 
-    fn has(&self, row: &Row) -> bool {
-        row.group.channel == self.channel && self.part.is_none_or(|part| row.group.part == part)
+    fn has(&self, row: &Measurement) -> bool {
+        row.quantity.channel() == self.channel
+            && self.quantity.is_none_or(|quantity| row.quantity == quantity)
     }
 }
 
@@ -184,8 +190,8 @@ const SOURCES: [Source; 6] = [
     Source::whole(Channel::Geometry),
     Source::whole(Channel::Photometry),
     Source::whole(Channel::Sharpness),
-    Source { channel: Channel::Color, part: Some(0) },
-    Source { channel: Channel::Color, part: Some(1) },
+    Source::one(Quantity::RedOffset),
+    Source::one(Quantity::BlueOffset),
     Source::whole(Channel::Noise),
 ];
 
@@ -232,7 +238,7 @@ struct Binned {
 impl Binned {
     fn new(
         frames: &[Residuals<'_>],
-        sigmas: &BTreeMap<(Channel, u8), f64>,
+        sigmas: &BTreeMap<Quantity, f64>,
         (source, locus): (Source, Locus),
         from_s: f64,
     ) -> Self {
@@ -313,16 +319,17 @@ fn together<'a>(frames: impl Iterator<Item = &'a BTreeMap<Place, Bin>>) -> BTree
 }
 
 /// Residuals are counted in standard deviations of their own groups: that of all rows together, root mean square.
-fn usual_sigma(frames: &[Residuals<'_>], sigmas: &BTreeMap<(Channel, u8), f64>, source: Source) -> f64 {
-    let rows = frames.iter().flat_map(|frame| frame.rows).filter(|row| source.has(row));
-    let squares = rows.filter_map(|row| Some(sigmas.get(&(row.group.channel, row.group.part))?.powi(2)));
+fn usual_sigma(frames: &[Residuals<'_>], sigmas: &BTreeMap<Quantity, f64>, source: Source) -> f64 {
+    let rows = frames.iter().flat_map(|frame| frame.measurements).filter(|row| source.has(row));
+    let squares = rows.filter_map(|row| Some(sigmas.get(&row.quantity)?.powi(2)));
     let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
     f64::sqrt(sum / f64::max(count, 1.0))
 }
 
 /// The median of a channel's measurements.
 fn middle(frames: &[Residuals<'_>], channel: Channel) -> f64 {
-    let rows = frames.iter().flat_map(|frame| frame.rows).filter(|row| row.group.channel == channel);
+    let rows =
+        frames.iter().flat_map(|frame| frame.measurements).filter(|row| row.quantity.channel() == channel);
     let mut values: Vec<f64> = rows.map(|row| row.measured).filter(|value| value.is_finite()).collect();
     median(&mut values)
 }
@@ -349,7 +356,7 @@ fn p_value(frames: &[BTreeMap<(i32, i32), Bin>], place: (i32, i32)) -> Option<f6
 
 fn bins(
     frame: &Residuals<'_>,
-    sigmas: &BTreeMap<(Channel, u8), f64>,
+    sigmas: &BTreeMap<Quantity, f64>,
     source: Source,
     locus: Locus,
     from_s: f64,
@@ -358,8 +365,8 @@ fn bins(
     let mut bins: BTreeMap<(i32, i32), Bin> = BTreeMap::new();
     // Of the carpet's brightness the middle one of a place stands for all.
     let mut blocks: BTreeMap<(i32, i32), Vec<f64>> = BTreeMap::new();
-    for (row, value) in frame.rows.iter().zip(&frame.values) {
-        let sigma = sigmas.get(&(row.group.channel, row.group.part));
+    for (row, value) in frame.measurements.iter().zip(&frame.values) {
+        let sigma = sigmas.get(&row.quantity);
         let Some(&sigma) = sigma.filter(|_| source.has(row) && value.is_finite()) else {
             continue;
         };
@@ -412,15 +419,21 @@ pub(crate) fn picture_cell(pixel: DVec2, size: [u32; 2]) -> (i32, i32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{carpet_row, row};
+    use crate::{
+        measurement::quantity::ColorChannel,
+        testing::{carpet_measurement, measurement},
+    };
 
     const SIGMA: f64 = 0.05;
     const SIZE: [u32; 2] = [320, 240];
 
     /// Pictures five a second whose residuals are these, by the picture's number and the row's.
-    fn frames(rows: &[Vec<Row>], residual: impl Fn(u32, u32, &Row) -> f64) -> Vec<Residuals<'_>> {
+    fn frames(
+        rows: &[Vec<Measurement>],
+        residual: impl Fn(u32, u32, &Measurement) -> f64,
+    ) -> Vec<Residuals<'_>> {
         let framed = (0..).zip(rows).map(|(frame, rows)| Residuals {
-            rows,
+            measurements: rows,
             values: (0..).zip(rows).map(|(index, row)| residual(frame, index, row)).collect(),
             time_s: 0.2 * f64::from(frame),
             camera: DVec2::ZERO,
@@ -438,43 +451,47 @@ mod tests {
             state = state.wrapping_mul(0xBF58_476D_1CE4_E5B9);
             (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
         };
-        let rows_of = |frame: u32| -> Vec<Row> {
+        let rows_of = |frame: u32| -> Vec<Measurement> {
             (0..1200_u32)
                 .map(|index| {
                     let pixel = 8.0 * DVec2::new(f64::from(index % 40), f64::from(index / 40));
                     // The robot walks along the field.
-                    carpet_row(pixel, pixel / 80.0 + DVec2::new(0.2 * f64::from(frame), 0.0))
+                    carpet_measurement(pixel, pixel / 80.0 + DVec2::new(0.2 * f64::from(frame), 0.0))
                 })
                 .collect()
         };
-        let all: Vec<Vec<Row>> = (0..24).map(rows_of).collect();
+        let all: Vec<Vec<Measurement>> = (0..24).map(rows_of).collect();
         let frames = frames(&all, |frame, index, row| {
             0.1 * noise(frame, index) + residual(frame, row.pixel, row.ground)
         });
-        let sigmas = BTreeMap::from([((Channel::Photometry, 4), SIGMA)]);
+        let sigmas = BTreeMap::from([(Quantity::CarpetLevel(ColorChannel::Green), SIGMA)]);
         patterns(&frames, &sigmas, &ModelError::default(), 0.0)
     }
 
     #[test]
     fn red_and_blue_that_are_off_to_opposite_sides_are_two_patterns() {
-        let rows: Vec<Row> = (0..1200_u32)
+        let rows: Vec<Measurement> = (0..1200_u32)
             .flat_map(|index| {
                 let pixel = 8.0 * DVec2::new(f64::from(index % 40), f64::from(index / 40));
-                [0, 1].map(|part| Row { pixel, normal: DVec2::X, ..row(Channel::Color, part) })
+                [Quantity::RedOffset, Quantity::BlueOffset].map(|quantity| Measurement {
+                    pixel,
+                    normal: DVec2::X,
+                    ..measurement(quantity)
+                })
             })
             .collect();
-        let sign = |part: u8| if part == 0 { 1.0 } else { -1.0 };
-        let off = |row: &Row| sign(row.group.part) * 0.004 * (row.pixel.x - 160.0);
+        let sign = |quantity: Quantity| if quantity == Quantity::RedOffset { 1.0 } else { -1.0 };
+        let off = |row: &Measurement| sign(row.quantity) * 0.004 * (row.pixel.x - 160.0);
         let frames: Vec<Residuals<'_>> = (0..24)
             .map(|frame| Residuals {
-                rows: &rows,
+                measurements: &rows,
                 values: rows.iter().map(off).collect(),
                 time_s: 0.2 * f64::from(frame),
                 camera: DVec2::ZERO,
                 size: SIZE,
             })
             .collect();
-        let sigmas = BTreeMap::from([((Channel::Color, 0), SIGMA), ((Channel::Color, 1), SIGMA)]);
+        let sigmas = BTreeMap::from([(Quantity::RedOffset, SIGMA), (Quantity::BlueOffset, SIGMA)]);
         let found = patterns(&frames, &sigmas, &ModelError::default(), 0.0);
         let in_picture = found.iter().filter(|pattern| pattern.locus == Locus::Picture);
         assert_eq!(in_picture.count(), 2, "{found:?}");
@@ -483,20 +500,25 @@ mod tests {
     #[test]
     fn lines_that_are_seen_late_are_off_by_how_fast_the_picture_moves() {
         // Half of the lines' normals point to where the picture moves, half away; quick ones are seen in turns anywhere.
-        let rows_of = |frame: u32| -> Vec<Row> {
+        let rows_of = |frame: u32| -> Vec<Measurement> {
             (0..300_u32)
                 .map(|index| {
                     let quick = (index + frame).is_multiple_of(3);
                     let speed_px_s =
                         if quick { 100.0 } else { 10.0 } * if index.is_multiple_of(2) { 1.0 } else { -1.0 };
                     let pixel = DVec2::new(f64::from(8 * index % 320), f64::from(8 * (index / 40)));
-                    Row { pixel, ground: pixel / 80.0, speed_px_s, ..row(Channel::Geometry, 0) }
+                    Measurement {
+                        pixel,
+                        ground: pixel / 80.0,
+                        speed_px_s,
+                        ..measurement(Quantity::LineOffset)
+                    }
                 })
                 .collect()
         };
-        let all: Vec<Vec<Row>> = (0..24).map(rows_of).collect();
+        let all: Vec<Vec<Measurement>> = (0..24).map(rows_of).collect();
         let frames = frames(&all, |_, _, row| 0.004 * row.speed_px_s);
-        let sigmas = BTreeMap::from([((Channel::Geometry, 0), 0.2)]);
+        let sigmas = BTreeMap::from([(Quantity::LineOffset, 0.2)]);
         let found = patterns(&frames, &sigmas, &ModelError::default(), 0.0);
         let loci: Vec<Locus> = found.iter().map(|pattern| pattern.locus).collect();
         assert_eq!(loci, [Locus::Speed], "{found:?}");

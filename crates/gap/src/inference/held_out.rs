@@ -8,8 +8,8 @@ use reality_sim_sensor::Model;
 use crate::{
     inference::model_error::ModelError,
     linear_model::linearization::{MeasureError, linearise},
-    linear_model::residual::Channel,
     linear_model::system::{FittedResiduals, LinearizedFrame, weigh},
+    measurement::quantity::{Channel, Quantity},
     recording::Recording,
     report::data::Unexplained,
     report::text::has_moved,
@@ -74,28 +74,27 @@ pub(crate) fn gaps(
     after: &HeldOutResiduals,
 ) -> BTreeMap<Channel, ChannelGap> {
     let mut sums: BTreeMap<Channel, Squares> = BTreeMap::new();
-    let mut last: BTreeMap<(Channel, u8), f64> = BTreeMap::new();
+    let mut last: BTreeMap<Quantity, f64> = BTreeMap::new();
     let mut next = 0;
     for frame in found.split.judged() {
         let rows = &found.measured.frames[frame];
         // Neighbours are measured in one picture; those of a step are the steps before and after it.
-        last.retain(|(channel, _), _| *channel == Channel::Motion && frame == next);
+        last.retain(|quantity, _| quantity.is_odometry() && frame == next);
         next = frame + 1;
-        for (index, row) in rows.rows.iter().enumerate() {
-            let key = (row.group.channel, row.group.part);
+        for (index, row) in rows.measurements.iter().enumerate() {
             let (b, a) = (before.residuals[frame][index], after.residuals[frame][index]);
             let refitted = after.refitted[frame][index];
-            let sigma = found.measured.system.sigmas.get(&key).copied().unwrap_or(0.0);
+            let sigma = found.measured.system.sigmas.get(&row.quantity).copied().unwrap_or(0.0);
             // What is no measurement of a line or of carpet stays out.
             if !(b.is_finite() && a.is_finite() && refitted.abs() < OUTLYING * sigma) {
                 continue;
             }
-            let sums = sums.entry(key.0).or_default();
+            let sums = sums.entry(row.quantity.channel()).or_default();
             sums.before += b * b;
             sums.after += a * a;
             sums.count += 1.0;
             sums.poses += pose_variance(&rows.pose[index], &found.measured.system.pose_sigmas);
-            if let Some(previous) = last.insert(key, refitted) {
+            if let Some(previous) = last.insert(row.quantity, refitted) {
                 sums.steps += 0.5 * (refitted - previous).powi(2);
                 sums.pairs += 1.0;
             }
@@ -166,7 +165,7 @@ mod tests {
         assert!(restless_at(0.6, &nothing).is_none());
         assert_eq!(restless_at(1.4, &nothing).unwrap().size, 1.4);
         // A model that explains 30 pixels may be off by one.
-        assert!(restless_at(1.4, &ModelError::by(Channel::Geometry, 0, 30.0)).is_none());
+        assert!(restless_at(1.4, &ModelError::by(Quantity::LineOffset, 30.0)).is_none());
     }
 
     #[test]

@@ -9,9 +9,9 @@ use crate::{
     linear_model::linearization::{MeasureError, linearise, measure_frames},
     linear_model::nuisance::{Nuisance, tolerances},
     linear_model::parameters::FittedParameter,
-    linear_model::residual::Channel,
     linear_model::system::{LinearSystem, LinearizedFrame},
     measurement::frame::FrameMeasurements,
+    measurement::quantity::Channel,
     recording::Recording,
 };
 

@@ -3,26 +3,27 @@
 use std::collections::BTreeMap;
 
 use crate::{
-    inference::held_out::HeldOutResiduals, linear_model::residual::Channel,
+    inference::held_out::HeldOutResiduals,
+    measurement::quantity::{Channel, Quantity},
     workflow::selection::SelectedModel,
 };
 
 /// Part of what is explained that a model may be off by: discs are no Gaussians, clipped colours no gains.
 const INEXACT: f64 = 0.04;
 
-/// Root mean squares of what changed from the model as given to the extended one, by channel and part.
+/// Root mean squares of what changed from the model as given to the extended one, by quantity.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct ModelError(BTreeMap<(Channel, u8), f64>);
+pub(crate) struct ModelError(BTreeMap<Quantity, f64>);
 
 impl ModelError {
     pub(crate) fn new(found: &SelectedModel, before: &HeldOutResiduals, after: &HeldOutResiduals) -> Self {
-        let mut sums: BTreeMap<(Channel, u8), (f64, f64)> = BTreeMap::new();
+        let mut sums: BTreeMap<Quantity, (f64, f64)> = BTreeMap::new();
         for frame in found.split.judged() {
             let residuals = before.residuals[frame].iter().zip(&after.residuals[frame]);
-            for (row, (before, after)) in found.measured.frames[frame].rows.iter().zip(residuals) {
+            for (row, (before, after)) in found.measured.frames[frame].measurements.iter().zip(residuals) {
                 let change = before - after;
                 if change.is_finite() {
-                    let sum = sums.entry((row.group.channel, row.group.part)).or_default();
+                    let sum = sums.entry(row.quantity).or_default();
                     *sum = (sum.0 + change * change, sum.1 + 1.0);
                 }
             }
@@ -30,32 +31,33 @@ impl ModelError {
         Self(sums.into_iter().map(|(key, (sum, count))| (key, f64::sqrt(sum / count))).collect())
     }
 
-    /// What a part of a channel may be off by, in its unit.
-    pub(crate) fn off(&self, channel: Channel, part: u8) -> f64 {
-        INEXACT * self.0.get(&(channel, part)).copied().unwrap_or(0.0)
+    /// What a quantity may be off by, in its unit.
+    pub(crate) fn off(&self, quantity: Quantity) -> f64 {
+        INEXACT * self.0.get(&quantity).copied().unwrap_or(0.0)
     }
 
-    /// What a channel may be off by: the most of its parts.
+    /// What a channel may be off by: the most of its quantities.
     pub(crate) fn most_off(&self, channel: Channel) -> f64 {
-        let parts = self.0.keys().filter(|(of, _)| *of == channel);
-        parts.map(|(_, part)| self.off(channel, *part)).fold(0.0, f64::max)
+        let quantities = self.0.keys().filter(|quantity| quantity.channel() == channel);
+        quantities.map(|quantity| self.off(*quantity)).fold(0.0, f64::max)
     }
 
     #[cfg(test)]
-    pub(crate) fn by(channel: Channel, part: u8, size: f64) -> Self {
-        Self(BTreeMap::from([((channel, part), size)]))
+    pub(crate) fn by(quantity: Quantity, size: f64) -> Self {
+        Self(BTreeMap::from([(quantity, size)]))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measurement::quantity::ColorChannel;
 
     #[test]
     fn a_model_may_be_off_by_a_part_of_what_it_explains_and_by_nothing_where_it_explains_nothing() {
-        let explained = ModelError::by(Channel::Photometry, 2, 0.5);
-        assert_eq!(explained.off(Channel::Photometry, 2), INEXACT * 0.5);
-        assert_eq!(explained.off(Channel::Photometry, 1), 0.0);
+        let explained = ModelError::by(Quantity::LineLevel(ColorChannel::Blue), 0.5);
+        assert_eq!(explained.off(Quantity::LineLevel(ColorChannel::Blue)), INEXACT * 0.5);
+        assert_eq!(explained.off(Quantity::LineLevel(ColorChannel::Green)), 0.0);
         assert_eq!(explained.most_off(Channel::Photometry), INEXACT * 0.5);
         assert_eq!(explained.most_off(Channel::Geometry), 0.0);
     }

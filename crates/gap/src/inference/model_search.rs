@@ -12,8 +12,8 @@ use crate::{
     linear_model::linearization::MeasureError,
     linear_model::parameters::FittedParameter,
     linear_model::reduced_equations::Fit,
-    linear_model::residual::Channel,
     linear_model::system::{FittedResiduals, INDEPENDENT, LinearSystem},
+    measurement::quantity::Quantity,
     recording::Recording,
     workflow::progress::Progress,
 };
@@ -173,13 +173,14 @@ impl ModelSearch<'_> {
     pub(crate) fn left(&self, measured: &LinearizedRecording, system: &LinearSystem) -> f64 {
         let Some(fit) = measured.naming(self.columns).evidence.as_it_is() else { return f64::INFINITY };
         let strain = 0.5 * fit.delta.norm_squared();
-        let mut means: BTreeMap<(Channel, u8), (f64, f64)> = BTreeMap::new();
+        let mut means: BTreeMap<Quantity, (f64, f64)> = BTreeMap::new();
         for (frame, weights) in self.split.fitted().zip(&measured.system.weights) {
             let rows = &measured.frames[frame];
             let left = FittedResiduals::new(rows, weights, &fit.delta, &system.pose_sigmas);
-            for (row, residual) in rows.rows.iter().zip(&left.residuals).filter(|(_, left)| left.is_finite())
+            for (row, residual) in
+                rows.measurements.iter().zip(&left.residuals).filter(|(_, left)| left.is_finite())
             {
-                let key = (row.group.channel, row.group.part);
+                let key = row.quantity;
                 if let Some(sigma) = system.sigmas.get(&key) {
                     let mean = means.entry(key).or_default();
                     mean.0 += (residual / sigma).powi(2).min(CUT_OFF * CUT_OFF);
@@ -188,8 +189,8 @@ impl ModelSearch<'_> {
             }
         }
         // Other models find other numbers of lines: means count, times as many as there are independent.
-        let counted = means.iter().map(|((channel, _), (sum, count))| {
-            let rows = if *channel == Channel::Motion { MOTION_ROWS } else { INDEPENDENT * PICTURE_ROWS };
+        let counted = means.iter().map(|(quantity, (sum, count))| {
+            let rows = if quantity.is_odometry() { MOTION_ROWS } else { INDEPENDENT * PICTURE_ROWS };
             0.5 * rows * sum / count.max(1.0)
         });
         counted.sum::<f64>() + strain

@@ -11,9 +11,11 @@ use crate::{
     linear_model::odometry_steps::around,
     linear_model::parameters::FittedParameter,
     linear_model::prediction::{Rounding, pose_gradient, reported},
-    linear_model::residual::{Channel, Context, Row, expected, measured},
+    linear_model::residual::{Context, expected, measured},
     linear_model::system::LinearizedFrame,
     measurement::frame::{FrameCamera, FrameMeasurements, MeasurementConfig, measure_frame},
+    measurement::quantity::Quantity,
+    measurement::scalar::Measurement,
     recording::{Frame, Recording},
 };
 
@@ -144,7 +146,7 @@ impl Linear<'_> {
             // Noise moves the mean of dark places a little: too little to be told from anything else.
             let noise_only = column.effect().id() == "sensor_noise";
             for (row, (then, now)) in expect(&shifted.chain).iter().zip(&now).enumerate() {
-                if !noise_only || rows[row].group.channel == Channel::Noise {
+                if !noise_only || rows[row].quantity == Quantity::NoiseVariance {
                     put(index, row, (then - now) / shifted.step);
                 }
             }
@@ -155,7 +157,7 @@ impl Linear<'_> {
             }
         }
         let pose = self.pose_changes(frame, &rows);
-        LinearizedFrame { rows, residuals, jacobian, pose }
+        LinearizedFrame { measurements: rows, residuals, jacobian, pose }
     }
 
     /// Change of the three numbers of a frame's step with a column of the odometry.
@@ -166,10 +168,10 @@ impl Linear<'_> {
     }
 
     /// See [`LinearizedFrame::pose`].
-    fn pose_changes(&self, frame: &Frame, rows: &[Row]) -> Vec<Vector6<f64>> {
+    fn pose_changes(&self, frame: &Frame, rows: &[Measurement]) -> Vec<Vector6<f64>> {
         let here = frame_camera(&self.chain, self.recording, frame);
-        let change = |row: &Row| {
-            let is_line = row.group.channel == Channel::Geometry;
+        let change = |row: &Measurement| {
+            let is_line = row.quantity == Quantity::LineOffset;
             let gradient = is_line.then(|| pose_gradient(&here, row.ground, row.normal));
             gradient.flatten().map_or_else(Vector6::zeros, Vector6::from)
         };

@@ -5,16 +5,17 @@ use std::collections::BTreeSet;
 use glam::DVec2;
 
 use crate::{
-    linear_model::residual::{Channel, Group, Row},
     measurement::frame::FrameMeasurements,
+    measurement::quantity::{ColorChannel, Quantity},
+    measurement::scalar::Measurement,
 };
 
 /// A nominal value that may be a little off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Nuisance {
-    /// All rows of a group are off by the same.
+    /// All measurements of a quantity are off by the same.
     Offset {
-        group: Group,
+        quantity: Quantity,
         /// Standard deviation, in the rows' unit.
         sigma: f64,
     },
@@ -73,14 +74,14 @@ const PATCH_M: f64 = 0.5;
 
 /// Those that every recording has.
 const COMMON: [Nuisance; 13] = [
-    offset(Channel::Photometry, 0, LINE),
-    offset(Channel::Photometry, 1, LINE),
-    offset(Channel::Photometry, 2, LINE),
-    offset(Channel::Photometry, 3, CARPET),
-    offset(Channel::Photometry, 4, CARPET),
-    offset(Channel::Photometry, 5, CARPET),
-    offset(Channel::Sharpness, 0, BLUR),
-    offset(Channel::Noise, 0, NOISE),
+    offset(Quantity::LineLevel(ColorChannel::Red), LINE),
+    offset(Quantity::LineLevel(ColorChannel::Green), LINE),
+    offset(Quantity::LineLevel(ColorChannel::Blue), LINE),
+    offset(Quantity::CarpetLevel(ColorChannel::Red), CARPET),
+    offset(Quantity::CarpetLevel(ColorChannel::Green), CARPET),
+    offset(Quantity::CarpetLevel(ColorChannel::Blue), CARPET),
+    offset(Quantity::LineBlur, BLUR),
+    offset(Quantity::NoiseVariance, NOISE),
     Nuisance::Width { sigma: WIDTH },
     Nuisance::Kernel { sigma: KERNEL },
     Nuisance::ThinKernel { sigma: THIN_KERNEL },
@@ -88,8 +89,8 @@ const COMMON: [Nuisance; 13] = [
     Nuisance::Sheen { power: 2, sigma: SHEEN },
 ];
 
-const fn offset(channel: Channel, part: u8, sigma: f64) -> Nuisance {
-    Nuisance::Offset { group: Group { channel, part }, sigma }
+const fn offset(quantity: Quantity, sigma: f64) -> Nuisance {
+    Nuisance::Offset { quantity, sigma }
 }
 
 /// Which square of the field a point of it is in.
@@ -108,12 +109,10 @@ pub(crate) fn tolerances(looks: &[FrameMeasurements]) -> Vec<Nuisance> {
 
 impl Nuisance {
     /// Change of a row that is expected to be `expected`, with one standard deviation.
-    pub(crate) fn change(&self, row: &Row, expected: f64) -> f64 {
+    pub(crate) fn change(&self, row: &Measurement, expected: f64) -> f64 {
         match *self {
-            Self::Offset { group, sigma } if row.group == group => sigma,
-            Self::Width { sigma } if row.group.channel == Channel::Sharpness => {
-                sigma * row.half_width_px.ln()
-            }
+            Self::Offset { quantity, sigma } if row.quantity == quantity => sigma,
+            Self::Width { sigma } if row.quantity == Quantity::LineBlur => sigma * row.half_width_px.ln(),
             Self::Kernel { sigma } if is_blur(row, expected) => sigma * expected,
             Self::ThinKernel { sigma } if is_blur(row, expected) => {
                 sigma * expected * (-row.half_width_px / expected.sqrt()).exp()
@@ -129,21 +128,21 @@ impl Nuisance {
     }
 }
 
-fn is_blur(row: &Row, expected: f64) -> bool {
-    row.group.channel == Channel::Sharpness && expected > 0.0
+fn is_blur(row: &Measurement, expected: f64) -> bool {
+    row.quantity == Quantity::LineBlur && expected > 0.0
 }
 
-fn is_carpet(row: &Row) -> bool {
-    row.group.channel == Channel::Photometry && row.group.part >= 3
+fn is_carpet(row: &Measurement) -> bool {
+    row.quantity.is_carpet_level()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{carpet_row, row};
+    use crate::testing::{carpet_measurement, measurement};
 
-    fn sharpness(half_width_px: f64) -> Row {
-        Row { half_width_px, ..row(Channel::Sharpness, 0) }
+    fn sharpness(half_width_px: f64) -> Measurement {
+        Measurement { half_width_px, ..measurement(Quantity::LineBlur) }
     }
 
     /// What all tolerances of a kernel's shape allow a variance to be off by, as a part of it.
@@ -170,7 +169,7 @@ mod tests {
 
     #[test]
     fn shapes_of_kernels_have_nothing_to_do_with_other_rows() {
-        let line = row(Channel::Geometry, 0);
+        let line = measurement(Quantity::LineOffset);
         for tolerance in [Nuisance::Kernel { sigma: KERNEL }, Nuisance::ThinKernel { sigma: THIN_KERNEL }] {
             assert_eq!(tolerance.change(&line, 1.0), 0.0);
         }
@@ -178,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_patch_changes_the_carpet_in_its_own_square_only() {
-        let carpet = |ground: DVec2| carpet_row(DVec2::ZERO, ground);
+        let carpet = |ground: DVec2| carpet_measurement(DVec2::ZERO, ground);
         let patch = Nuisance::Patch { cell: cell_of(DVec2::new(0.7, -0.2)), sigma: PATCH };
         assert_eq!(patch.change(&carpet(DVec2::new(0.9, -0.4)), -2.0), PATCH);
         assert_eq!(patch.change(&carpet(DVec2::new(1.1, -0.4)), -2.0), 0.0);
@@ -186,7 +185,10 @@ mod tests {
 
     #[test]
     fn sheen_is_nothing_from_straight_above_and_stronger_on_dark_colours() {
-        let at = |cos_incidence: f64| Row { cos_incidence, ..row(Channel::Photometry, 3) };
+        let at = |cos_incidence: f64| Measurement {
+            cos_incidence,
+            ..measurement(Quantity::CarpetLevel(ColorChannel::Red))
+        };
         let sheen = Nuisance::Sheen { power: 1, sigma: SHEEN };
         assert_eq!(sheen.change(&at(1.0), -3.0), 0.0);
         assert!(sheen.change(&at(0.2), -3.0) > sheen.change(&at(0.2), -2.0));

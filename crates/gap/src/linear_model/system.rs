@@ -12,7 +12,8 @@ use rayon::prelude::*;
 
 use crate::{
     linear_model::normal_equations::NormalEquations,
-    linear_model::residual::{Channel, Group, Row},
+    measurement::quantity::{Channel, Quantity},
+    measurement::scalar::Measurement,
 };
 
 /// Residuals beyond this many standard deviations count nothing (Tukey's biweight).
@@ -36,7 +37,7 @@ pub(crate) const PRIOR: f64 = 1.0;
 /// A frame's rows with their derivatives.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearizedFrame {
-    pub(crate) rows: Vec<Row>,
+    pub(crate) measurements: Vec<Measurement>,
     /// Measured minus expected; not a number where there is nothing to compare.
     pub(crate) residuals: Vec<f64>,
     /// Change of what is expected with the columns, row by row: the columns that it changes with.
@@ -48,8 +49,8 @@ pub(crate) struct LinearizedFrame {
 impl LinearizedFrame {
     /// Compares nothing of a channel.
     pub(crate) fn leave_out(&mut self, channel: Channel) {
-        for (row, residual) in self.rows.iter().zip(&mut self.residuals) {
-            if row.group.channel == channel {
+        for (row, residual) in self.measurements.iter().zip(&mut self.residuals) {
+            if row.quantity.channel() == channel {
                 *residual = f64::NAN;
             }
         }
@@ -76,7 +77,7 @@ pub(crate) struct LinearSystem {
     /// The same sums by cell of the field.
     pub(crate) cells: Vec<NormalEquations>,
     /// Standard deviations of a row.
-    pub(crate) sigmas: BTreeMap<(Channel, u8), f64>,
+    pub(crate) sigmas: BTreeMap<Quantity, f64>,
     /// Standard deviations of the poses' errors, see [`crate::linear_model::prediction::pose_gradient`].
     pub(crate) pose_sigmas: [f64; 6],
     /// Weights of all rows, frame by frame: 0 for what is no measurement.
@@ -177,7 +178,7 @@ fn by_frame(
 ) -> (Vec<NormalEquations>, Vec<Projection>) {
     let of_frame = |(frame, weights): (&&LinearizedFrame, &Vec<f64>)| {
         let projection = Projection::new(frame, weights, pose_sigmas);
-        let rows: Vec<usize> = (0..frame.rows.len()).collect();
+        let rows: Vec<usize> = (0..frame.measurements.len()).collect();
         (sums_of(&[Part { frame, weights, projection: &projection, rows }]), projection)
     };
     frames.par_iter().zip(weights).map(of_frame).unzip()
@@ -203,9 +204,8 @@ fn by_cell(
     // In each cell the frames that see it, with their rows.
     let mut members: BTreeMap<(i32, i32), RowsOfFrames> = BTreeMap::new();
     for (index, frame) in frames.iter().enumerate() {
-        for (row, _) in frame.rows.iter().enumerate().filter(|(_, row)| row.group.channel != Channel::Motion)
-        {
-            let cell = (frame.rows[row].ground / CELL_M).floor();
+        for (row, _) in frame.measurements.iter().enumerate().filter(|(_, row)| !row.quantity.is_odometry()) {
+            let cell = (frame.measurements[row].ground / CELL_M).floor();
             let lists = members.entry((cell.x as i32, cell.y as i32)).or_default();
             match lists.last_mut() {
                 Some((last, rows)) if *last == index => rows.push(row),
@@ -237,7 +237,7 @@ impl Projection {
         let mut normal = prior(pose_sigmas);
         let mut cross: BTreeMap<usize, Vector6<f64>> = BTreeMap::new();
         for (row, (pose, &weight)) in frame.pose.iter().zip(weights).enumerate() {
-            if weight > 0.0 && frame.rows[row].group.channel == Channel::Geometry {
+            if weight > 0.0 && frame.measurements[row].quantity == Quantity::LineOffset {
                 normal.ger(weight, pose, pose, 1.0);
                 for &(column, change) in &frame.jacobian[row] {
                     *cross.entry(column).or_insert_with(Vector6::zeros) += weight * change * pose;
@@ -269,7 +269,7 @@ impl Part<'_> {
     }
 
     fn is_line(&self, row: usize) -> bool {
-        self.frame.rows[row].group.channel == Channel::Geometry
+        self.frame.measurements[row].quantity == Quantity::LineOffset
     }
 
     /// Columns that its rows change with, and those that change with the pose.
@@ -309,50 +309,49 @@ fn sums_of(parts: &[Part<'_>]) -> NormalEquations {
 pub(crate) fn weigh(
     frame: &LinearizedFrame,
     residuals: &[f64],
-    sigmas: &BTreeMap<(Channel, u8), f64>,
+    sigmas: &BTreeMap<Quantity, f64>,
 ) -> Vec<f64> {
-    let weight = |(row, residual): (&Row, &f64)| {
-        let Some(&sigma) = sigmas.get(&key(row.group)) else { return 0.0 };
+    let weight = |(row, residual): (&Measurement, &f64)| {
+        let Some(&sigma) = sigmas.get(&row.quantity) else { return 0.0 };
         let variance = sigma * sigma + row.sigma * row.sigma;
         let outlying = (residual * residual / (TUKEY * TUKEY * variance)).min(1.0);
-        let independent = if row.group.channel == Channel::Motion { 1.0 } else { INDEPENDENT };
+        let independent = if row.quantity.is_odometry() { 1.0 } else { INDEPENDENT };
         if residual.is_finite() { independent * (1.0 - outlying).powi(2) / variance } else { 0.0 }
     };
-    frame.rows.iter().zip(residuals).map(weight).collect()
-}
-
-fn key(group: Group) -> (Channel, u8) {
-    (group.channel, group.part)
+    frame.measurements.iter().zip(residuals).map(weight).collect()
 }
 
 /// Residuals of all frames with their rows.
 fn all_of<'a>(
     frames: &'a [&'a LinearizedFrame],
     residuals: impl Iterator<Item = &'a Vec<f64>>,
-) -> impl Iterator<Item = (&'a Row, f64)> {
-    frames.iter().zip(residuals).flat_map(|(frame, values)| frame.rows.iter().zip(values.iter().copied()))
+) -> impl Iterator<Item = (&'a Measurement, f64)> {
+    frames
+        .iter()
+        .zip(residuals)
+        .flat_map(|(frame, values)| frame.measurements.iter().zip(values.iter().copied()))
 }
 
 /// Residuals as weights are found by at first: those of the odometry about their medians. An effect that makes all its steps
 /// longer would make them count less than its steps aside, which are little but the reference's errors.
 fn first_residuals(frames: &[&LinearizedFrame]) -> Vec<Vec<f64>> {
-    let mut groups: BTreeMap<(Channel, u8), Vec<f64>> = BTreeMap::new();
+    let mut groups: BTreeMap<Quantity, Vec<f64>> = BTreeMap::new();
     for (row, value) in all_of(frames, frames.iter().map(|frame| &frame.residuals)) {
-        if row.group.channel == Channel::Motion && value.is_finite() {
-            groups.entry(key(row.group)).or_default().push(value);
+        if row.quantity.is_odometry() && value.is_finite() {
+            groups.entry(row.quantity).or_default().push(value);
         }
     }
-    let medians: BTreeMap<(Channel, u8), f64> =
+    let medians: BTreeMap<Quantity, f64> =
         groups.into_iter().map(|(group, mut values)| (group, median(&mut values))).collect();
-    let about = |(row, value): (&Row, &f64)| value - medians.get(&key(row.group)).unwrap_or(&0.0);
-    frames.iter().map(|frame| frame.rows.iter().zip(&frame.residuals).map(about).collect()).collect()
+    let about = |(row, value): (&Measurement, &f64)| value - medians.get(&row.quantity).unwrap_or(&0.0);
+    frames.iter().map(|frame| frame.measurements.iter().zip(&frame.residuals).map(about).collect()).collect()
 }
 
 /// Standard deviations by the median of absolute residuals about zero.
-fn group_sigmas<'a>(rows: impl Iterator<Item = (&'a Row, f64)>) -> BTreeMap<(Channel, u8), f64> {
-    let mut groups: BTreeMap<(Channel, u8), Vec<f64>> = BTreeMap::new();
+fn group_sigmas<'a>(rows: impl Iterator<Item = (&'a Measurement, f64)>) -> BTreeMap<Quantity, f64> {
+    let mut groups: BTreeMap<Quantity, Vec<f64>> = BTreeMap::new();
     for (row, residual) in rows.filter(|(_, residual)| residual.is_finite()) {
-        groups.entry(key(row.group)).or_default().push(residual.abs());
+        groups.entry(row.quantity).or_default().push(residual.abs());
     }
     groups.into_iter().map(|(group, mut values)| (group, (1.4826 * median(&mut values)).max(1e-6))).collect()
 }
@@ -392,7 +391,7 @@ fn pose_sigmas(left: Option<&[FittedResiduals]>, reference: ReferenceKind) -> [f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{Noise, row};
+    use crate::testing::{Noise, measurement};
 
     /// Frames of lines seen from a pose that is wrong by its own amount in each. The first column looks like a turn of the
     /// camera in all of them; the second does not; neither is at work but for `size` of the second.
@@ -402,7 +401,7 @@ mod tests {
             .map(|_| {
                 let wrong = Vector6::from_fn(|_, _| pose_sigma * noise.next());
                 let mut frame = LinearizedFrame {
-                    rows: Vec::new(),
+                    measurements: Vec::new(),
                     residuals: Vec::new(),
                     jacobian: Vec::new(),
                     pose: Vec::new(),
@@ -410,7 +409,7 @@ mod tests {
                 for _ in 0..60 {
                     let pose = Vector6::from_fn(|_, _| 100.0 * noise.next());
                     let other = noise.next();
-                    frame.rows.push(row(Channel::Geometry, 0));
+                    frame.measurements.push(measurement(Quantity::LineOffset));
                     frame.residuals.push(pose.dot(&wrong) + size * other + 0.3 * noise.next());
                     frame.jacobian.push(vec![(0, pose[0]), (1, other)]);
                     frame.pose.push(pose);
@@ -449,7 +448,7 @@ mod tests {
             let system = system(&frames(seed, 0.005, 0.2));
             let mean = system.pose_sigmas.iter().sum::<f64>() / 6.0;
             assert!((0.0035..0.006).contains(&mean), "{:?}", system.pose_sigmas);
-            let sigma = system.sigmas[&(Channel::Geometry, 0)];
+            let sigma = system.sigmas[&Quantity::LineOffset];
             assert!((sigma - 0.3).abs() < 0.05, "{sigma}");
             let delta = solve(&system.frames, 2);
             assert!((delta[1] - 0.2).abs() < 0.05, "{delta}");
@@ -465,7 +464,10 @@ mod tests {
                 // The reference's own error is in what is expected of a step, and with it in the step's change with scale.
                 let [ahead_m, aside_m] = [0.05 + 0.003 * noise.next(), 0.006 * noise.next()];
                 LinearizedFrame {
-                    rows: vec![row(Channel::Motion, 0), row(Channel::Motion, 1)],
+                    measurements: vec![
+                        measurement(Quantity::OdometryForward),
+                        measurement(Quantity::OdometryLeft),
+                    ],
                     residuals: vec![(1.0 + truth) * 0.05 - ahead_m, -aside_m],
                     jacobian: vec![vec![(0, ahead_m)], vec![(0, aside_m)]],
                     pose: vec![Vector6::zeros(); 2],

@@ -4,5 +4,7 @@ pub(crate) mod carpet;
 pub(crate) mod frame;
 pub(crate) mod line_profile;
 pub(crate) mod line_search;
+pub(crate) mod quantity;
 pub(crate) mod quantization;
+pub(crate) mod scalar;
 pub(crate) mod visibility;

@@ -6,7 +6,8 @@ use glam::DVec2;
 
 use crate::{
     inference::held_out::HeldOutResiduals,
-    linear_model::residual::{Channel, Row},
+    measurement::quantity::Channel,
+    measurement::scalar::Measurement,
     recording::Recording,
     report::data::{Course, Map, Maps},
     workflow::selection::SelectedModel,
@@ -33,21 +34,23 @@ pub(crate) fn maps(
     let field_rows = [cells.x as usize, cells.y as usize];
     let mut maps = BTreeMap::new();
     for channel in Channel::ALL {
-        let of = |judged: &HeldOutResiduals| -> Vec<(usize, Row, f64)> { residuals(found, judged, channel) };
+        let of = |judged: &HeldOutResiduals| -> Vec<(usize, Measurement, f64)> {
+            residuals(found, judged, channel)
+        };
         let (before, after) = (of(before), of(after));
         if after.is_empty() {
             continue;
         }
-        let map = |grid: [usize; 2], extent: [f64; 4], place: &dyn Fn(&Row) -> DVec2| Map {
+        let map = |grid: [usize; 2], extent: [f64; 4], place: &dyn Fn(&Measurement) -> DVec2| Map {
             columns: grid[0],
             rows: grid[1],
             extent,
             before: means(&before, grid, place),
             after: means(&after, grid, place),
         };
-        let in_picture = |row: &Row| (row.pixel + 0.5) / size;
+        let in_picture = |row: &Measurement| (row.pixel + 0.5) / size;
         // The field's map begins at the upper left as seen from above: x to the right, y up.
-        let on_field = |row: &Row| {
+        let on_field = |row: &Measurement| {
             let place = (row.ground + half) / (2.0 * half);
             DVec2::new(place.x, 1.0 - place.y)
         };
@@ -67,17 +70,25 @@ pub(crate) fn maps(
 }
 
 /// Residuals of what is a measurement of line or carpet: frame, row, value.
-fn residuals(found: &SelectedModel, judged: &HeldOutResiduals, channel: Channel) -> Vec<(usize, Row, f64)> {
+fn residuals(
+    found: &SelectedModel,
+    judged: &HeldOutResiduals,
+    channel: Channel,
+) -> Vec<(usize, Measurement, f64)> {
     let frames = found.measured.frames.iter().zip(&judged.residuals).enumerate();
     frames
         .flat_map(|(frame, (rows, residuals))| {
-            rows.rows.iter().zip(residuals).map(move |(row, residual)| (frame, *row, *residual))
+            rows.measurements.iter().zip(residuals).map(move |(row, residual)| (frame, *row, *residual))
         })
-        .filter(|(_, row, residual)| row.group.channel == channel && residual.is_finite())
+        .filter(|(_, row, residual)| row.quantity.channel() == channel && residual.is_finite())
         .collect()
 }
 
-fn means(rows: &[(usize, Row, f64)], grid: [usize; 2], place: &dyn Fn(&Row) -> DVec2) -> Vec<Option<f64>> {
+fn means(
+    rows: &[(usize, Measurement, f64)],
+    grid: [usize; 2],
+    place: &dyn Fn(&Measurement) -> DVec2,
+) -> Vec<Option<f64>> {
     let mut values: Vec<Vec<f64>> = vec![Vec::new(); grid[0] * grid[1]];
     for (_, row, residual) in rows {
         let cell = place(row) * DVec2::new(grid[0] as f64, grid[1] as f64);
@@ -95,13 +106,13 @@ fn means(rows: &[(usize, Row, f64)], grid: [usize; 2], place: &dyn Fn(&Row) -> D
 fn course(
     recording: &Recording<'_>,
     found: &SelectedModel,
-    before: &[(usize, Row, f64)],
-    after: &[(usize, Row, f64)],
+    before: &[(usize, Measurement, f64)],
+    after: &[(usize, Measurement, f64)],
 ) -> Course {
     let count = recording.frames.len();
     let mut judged = vec![false; count];
     found.split.judged().for_each(|frame| judged[frame] = true);
-    let sizes = |rows: &[(usize, Row, f64)]| -> Vec<Option<f64>> {
+    let sizes = |rows: &[(usize, Measurement, f64)]| -> Vec<Option<f64>> {
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); count];
         rows.iter().for_each(|(frame, _, residual)| values[*frame].push(residual.abs()));
         let robust = |values: &mut Vec<f64>| {

@@ -18,8 +18,8 @@ use crate::{
     inference::model_error::ModelError,
     linear_model::linearization::MeasureError,
     linear_model::parameters::FittedParameter,
-    linear_model::residual::Channel,
     linear_model::system::FittedResiduals,
+    measurement::quantity::{Channel, ColorChannel, Quantity},
     recording::{Frame, LEAST_VIEWS, Recording, ReferenceSource},
     report::data::{
         EffectReport, Estimate, Gap, Limit, NotFoundReport, PosesReport, Report, Unexplained, Unobservable,
@@ -316,7 +316,7 @@ fn unexplained(
         .map(|(frame, weights)| {
             let rows = &found.measured.frames[frame];
             Residuals {
-                rows: &rows.rows,
+                measurements: &rows.measurements,
                 values: FittedResiduals::new(rows, weights, &delta, &system.pose_sigmas).residuals,
                 time_s: recording.frames[frame].time_s,
                 camera: found.measured.looks[frame].camera.truncate(),
@@ -328,11 +328,11 @@ fn unexplained(
     let found_patterns = patterns(&residuals, &system.sigmas, explained, recording.frames[0].time_s);
     let mut unexplained: Vec<Unexplained> = found_patterns.iter().map(unexplained_pattern).collect();
     unexplained.extend(passing::bands(&residuals));
-    let carpet = system.sigmas.get(&(Channel::Photometry, 4)).copied().unwrap_or(f64::INFINITY);
+    let carpet =
+        system.sigmas.get(&Quantity::CarpetLevel(ColorChannel::Green)).copied().unwrap_or(f64::INFINITY);
     unexplained.extend(passing::things(&residuals, carpet));
     unexplained.extend(moving(&residuals, carpet));
-    let motion = |part: u8| system.sigmas.get(&(Channel::Motion, part)).copied();
-    unexplained.extend(following(recording, &frames, &residuals, motion, explained));
+    unexplained.extend(following(recording, &frames, &residuals, &system.sigmas, explained));
     let fitted = &delta.as_slice()[found.columns.len()..];
     unexplained.extend(strained(&found.measured.tolerances, fitted, explained));
     unexplained.extend(crate::diagnostics::missing_lines::missing(&looks, &recording.sequence.field));
@@ -362,9 +362,9 @@ fn absorbed(source: ReferenceSource) -> &'static str {
 /// The judged frame with the largest gap before.
 fn shown_frame(recording: &Recording<'_>, found: &SelectedModel, before: &HeldOutResiduals) -> usize {
     let size = |frame: usize| -> f64 {
-        let rows = found.measured.frames[frame].rows.iter().zip(&before.residuals[frame]);
+        let rows = found.measured.frames[frame].measurements.iter().zip(&before.residuals[frame]);
         let squares = rows.filter_map(|(row, residual)| {
-            let sigma = found.measured.system.sigmas.get(&(row.group.channel, row.group.part))?;
+            let sigma = found.measured.system.sigmas.get(&row.quantity)?;
             residual.is_finite().then(|| (residual / sigma).powi(2).min(100.0))
         });
         squares.sum()

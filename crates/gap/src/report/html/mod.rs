@@ -14,7 +14,7 @@ use self::{
 };
 use crate::{
     inference::held_out::ChannelGap,
-    linear_model::residual::Channel,
+    measurement::quantity::Channel,
     report::data::{Maps, Report, Verdict},
     report::pictures::Pictures,
 };

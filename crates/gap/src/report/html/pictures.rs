@@ -3,7 +3,7 @@
 use image::{ExtendedColorType, GrayImage, ImageEncoder, Rgb, RgbImage, codecs::jpeg::JpegEncoder};
 
 use super::text::escape;
-use crate::{linear_model::residual::Channel, report::data::Report, report::pictures::Pictures};
+use crate::{measurement::quantity::Channel, report::data::Report, report::pictures::Pictures};
 
 /// Of pictures in the page.
 const JPEG_QUALITY: u8 = 88;

@@ -1,6 +1,6 @@
 //! Text in HTML.
 
-use crate::linear_model::residual::Channel;
+use crate::measurement::quantity::Channel;
 
 /// Text that stays text, between tags and in attributes.
 pub(super) fn escape(text: &str) -> String {

@@ -1,0 +1,180 @@
+//! The quantities that are measured and compared with a model.
+
+/// A kind of measurement, as reports tell them apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Channel {
+    /// Offset of white lines along their normal, pixels.
+    Geometry,
+    /// Natural logarithm of the linear values of lines and carpet, for each colour.
+    Photometry,
+    /// Variance of the blur across a line, pixels squared.
+    Sharpness,
+    /// Offset of red and blue against luma along a line's normal, pixels.
+    Color,
+    /// Natural logarithm of the variance of luma on plain carpet.
+    Noise,
+    /// Increments of the odometry: forward and left in metres, turn in radians.
+    Motion,
+}
+
+impl Channel {
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::Geometry, Self::Photometry, Self::Sharpness, Self::Color, Self::Noise, Self::Motion];
+
+    /// Name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Geometry => "geometry",
+            Self::Photometry => "photometry",
+            Self::Sharpness => "sharpness",
+            Self::Color => "color",
+            Self::Noise => "noise",
+            Self::Motion => "motion",
+        }
+    }
+
+    /// Unit of its residuals.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Geometry | Self::Color => "px",
+            Self::Sharpness => "px2",
+            Self::Photometry | Self::Noise => "1",
+            Self::Motion => "m or rad",
+        }
+    }
+}
+
+/// A colour channel of a picture, in the order in which pixels store them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) enum ColorChannel {
+    Red,
+    Green,
+    Blue,
+}
+
+impl ColorChannel {
+    pub(crate) const ALL: [Self; 3] = [Self::Red, Self::Green, Self::Blue];
+}
+
+/// A measured quantity. Measurements of one quantity share a unit and a standard deviation.
+///
+/// The order of the variants is that in which sums over quantities run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) enum Quantity {
+    /// Offset of a line's middle along its normal, in luma, pixels.
+    LineOffset,
+    /// Natural logarithm of the linear value on a line's inner part.
+    LineLevel(ColorChannel),
+    /// Natural logarithm of the mean linear value of a block of carpet.
+    CarpetLevel(ColorChannel),
+    /// Variance of the blur across a line, pixels squared.
+    LineBlur,
+    /// Offset of a line's middle in red against that in luma, along the normal, pixels.
+    RedOffset,
+    /// Offset of a line's middle in blue against that in luma, along the normal, pixels.
+    BlueOffset,
+    /// Natural logarithm of the variance of luma on a block of carpet.
+    NoiseVariance,
+    /// Distance forward in one step of the odometry, metres.
+    OdometryForward,
+    /// Distance to the left in one step of the odometry, metres.
+    OdometryLeft,
+    /// Turn to the left in one step of the odometry, radians.
+    OdometryTurn,
+}
+
+impl Quantity {
+    /// The three numbers of a step of the odometry.
+    pub(crate) const ODOMETRY: [Self; 3] = [Self::OdometryForward, Self::OdometryLeft, Self::OdometryTurn];
+
+    /// All of them.
+    #[cfg(test)]
+    pub(crate) const ALL: [Self; 14] = [
+        Self::LineOffset,
+        Self::LineLevel(ColorChannel::Red),
+        Self::LineLevel(ColorChannel::Green),
+        Self::LineLevel(ColorChannel::Blue),
+        Self::CarpetLevel(ColorChannel::Red),
+        Self::CarpetLevel(ColorChannel::Green),
+        Self::CarpetLevel(ColorChannel::Blue),
+        Self::LineBlur,
+        Self::RedOffset,
+        Self::BlueOffset,
+        Self::NoiseVariance,
+        Self::OdometryForward,
+        Self::OdometryLeft,
+        Self::OdometryTurn,
+    ];
+
+    pub(crate) const fn channel(self) -> Channel {
+        match self {
+            Self::LineOffset => Channel::Geometry,
+            Self::LineLevel(_) | Self::CarpetLevel(_) => Channel::Photometry,
+            Self::LineBlur => Channel::Sharpness,
+            Self::RedOffset | Self::BlueOffset => Channel::Color,
+            Self::NoiseVariance => Channel::Noise,
+            Self::OdometryForward | Self::OdometryLeft | Self::OdometryTurn => Channel::Motion,
+        }
+    }
+
+    /// Unit of its residuals.
+    pub(crate) fn unit(self) -> &'static str {
+        match self {
+            Self::OdometryForward | Self::OdometryLeft => "m",
+            Self::OdometryTurn => "rad",
+            _ => self.channel().unit(),
+        }
+    }
+
+    /// Name in sentences of a report.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::LineOffset => "the place of lines",
+            Self::LineLevel(ColorChannel::Red) => "red of lines",
+            Self::LineLevel(ColorChannel::Green) => "green of lines",
+            Self::LineLevel(ColorChannel::Blue) => "blue of lines",
+            Self::CarpetLevel(ColorChannel::Red) => "red of carpet",
+            Self::CarpetLevel(ColorChannel::Green) => "green of carpet",
+            Self::CarpetLevel(ColorChannel::Blue) => "blue of carpet",
+            Self::LineBlur => "the blur",
+            Self::RedOffset => "red against luma",
+            Self::BlueOffset => "blue against luma",
+            Self::NoiseVariance => "its variance",
+            Self::OdometryForward => "steps forward",
+            Self::OdometryLeft => "steps to the left",
+            Self::OdometryTurn => "turns",
+        }
+    }
+
+    /// Whether it comes from the odometry, not from the picture.
+    pub(crate) fn is_odometry(self) -> bool {
+        self.channel() == Channel::Motion
+    }
+
+    /// Whether it is how bright a block of carpet is.
+    pub(crate) fn is_carpet_level(self) -> bool {
+        matches!(self, Self::CarpetLevel(_))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_quantities_are_listed_in_order_and_channel_by_channel() {
+        assert!(Quantity::ALL.is_sorted());
+        assert!(Quantity::ALL.map(Quantity::channel).is_sorted());
+        for channel in Channel::ALL {
+            assert!(Quantity::ALL.iter().any(|quantity| quantity.channel() == channel));
+        }
+    }
+
+    #[test]
+    fn no_two_quantities_share_a_name() {
+        let names: std::collections::BTreeSet<&str> = Quantity::ALL.iter().map(|q| q.name()).collect();
+        assert_eq!(names.len(), Quantity::ALL.len());
+    }
+}
