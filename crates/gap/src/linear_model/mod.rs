@@ -10,3 +10,5 @@ pub(crate) mod prediction;
 pub(crate) mod reduced_equations;
 pub(crate) mod residual;
 pub(crate) mod system;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,102 @@
+//! `around`: what a step of the odometry is compared with when a scale is fitted.
+
+use reality_sim_core::{
+    pose::{CameraPose, Motion2, Pose2},
+    sequence::Sequence,
+};
+use reality_sim_sensor::Trajectory;
+
+use super::sequence;
+use crate::{
+    linear_model::{odometry_steps::around, residual::Step},
+    recording::{Frame, Recording, ReferenceSource},
+};
+
+/// Seconds from frame to frame.
+const INTERVAL_S: f64 = 0.2;
+
+/// A walk straight ahead along x, in these steps (metres); frames named by `gaps` have no odometry to the next one.
+fn walk<'a>(sequence: &'a Sequence, steps_m: &[f64], gaps: &[usize]) -> Recording<'a> {
+    let mut x_m = 0.0;
+    let places = std::iter::once(0.0).chain(steps_m.iter().map(|step| {
+        x_m += step;
+        x_m
+    }));
+    let poses: Vec<(f64, CameraPose)> = (0..)
+        .zip(places)
+        .map(|(index, x_m)| {
+            let pose = CameraPose::new(Pose2::new(x_m, 0.0, 0.0), 0.5, 0.4, 0.0);
+            (INTERVAL_S * f64::from(index), pose)
+        })
+        .collect();
+    let frames = (0..poses.len())
+        .map(|index| {
+            let until_s = INTERVAL_S * (index + 1) as f64;
+            let has_step = index < steps_m.len() && !gaps.contains(&index);
+            // What the odometry says plays no part.
+            let odometry = Motion2 { forward_m: 99.0, left_m: 99.0, turn_rad: 1.0 };
+            Frame { index, time_s: poses[index].0, step: has_step.then_some(Step { until_s, odometry }) }
+        })
+        .collect();
+    let trajectory = Trajectory::new(&poses).unwrap();
+    Recording {
+        sequence,
+        trajectory,
+        frames,
+        source: ReferenceSource::Measured,
+        scene: None,
+        left_out: Vec::new(),
+    }
+}
+
+fn forward_m(steps_m: &[f64], gaps: &[usize]) -> Vec<Option<f64>> {
+    let sequence = sequence();
+    let recording = walk(&sequence, steps_m, gaps);
+    let frames: Vec<&Frame> = recording.frames.iter().collect();
+    let about = around(&recording, &frames);
+    about.into_iter().map(|step| step.map(|step| step.forward_m)).collect()
+}
+
+fn assert_steps(found: &[Option<f64>], wanted: &[Option<f64>]) {
+    assert_eq!(found.len(), wanted.len());
+    for (found, wanted) in found.iter().zip(wanted) {
+        match (found, wanted) {
+            (Some(found), Some(wanted)) => assert!((found - wanted).abs() < 1e-9, "{found} for {wanted}"),
+            _ => assert_eq!(found.is_some(), wanted.is_some()),
+        }
+    }
+}
+
+#[test]
+fn a_step_is_the_mean_of_those_two_and_three_before_and_after_it() {
+    let steps_m = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8];
+    let mean = |indices: &[usize]| {
+        Some(indices.iter().map(|&index| steps_m[index]).sum::<f64>() / indices.len() as f64)
+    };
+    let wanted = [
+        mean(&[2, 3]),
+        mean(&[3, 4]),
+        mean(&[0, 4, 5]),
+        mean(&[0, 1, 5, 6]),
+        mean(&[1, 2, 6, 7]),
+        mean(&[2, 3, 7]),
+        mean(&[3, 4]),
+        mean(&[4, 5]),
+        None,
+    ];
+    assert_steps(&forward_m(&steps_m, &[]), &wanted);
+}
+
+#[test]
+fn steps_without_odometry_have_none_and_stand_for_no_other() {
+    let steps_m = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2];
+    let wanted =
+        [Some(0.8), Some((0.8 + 1.6) / 2.0), None, Some((0.1 + 0.2 + 3.2) / 3.0), Some(0.2), Some(0.8), None];
+    assert_steps(&forward_m(&steps_m, &[2]), &wanted);
+}
+
+#[test]
+fn a_step_with_no_other_near_stands_for_itself() {
+    assert_steps(&forward_m(&[0.3, 0.5], &[]), &[Some(0.3), Some(0.5), None]);
+    assert_steps(&forward_m(&[0.3, 0.5, 0.7], &[2]), &[Some(0.3), Some(0.5), None, None]);
+}

@@ -1,0 +1,193 @@
+//! Every column of the linearised model against a central difference of the full prediction.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use reality_sim_core::pose::{CameraPose, Pose2};
+use reality_sim_sensor::{Growth, Model, Role, Stage, Trajectory};
+
+use super::{recording, sequence};
+use crate::{
+    linear_model::{
+        initial_values::starting_values,
+        linearization::{linearise, measure_frames},
+        parameters::{FittedParameter, columns},
+        system::LinearizedFrame,
+    },
+    measurement::{
+        frame::FrameMeasurements,
+        quantity::{Channel, Quantity},
+        scalar::Measurement,
+    },
+    recording::Recording,
+};
+
+/// Half the width of a central difference, as a part of the step that the column itself is found with.
+const WIDTH: f64 = 0.05;
+/// A column may be off by this part of the largest change that it makes in rows of the same quantity: it is a difference to
+/// one side.
+const TOLERANCE: f64 = 0.04;
+/// The same where a change of either sign does alike, so that at zero it has no slope: luma is blurred by red and blue that
+/// are apart, and noise grows with the steepness of the tone curve here and shrinks there.
+const BENT_TOLERANCE: f64 = 0.12;
+/// Rounding, in the rows' units for a whole range of the parameter.
+const ROUNDING: f64 = 1e-9;
+
+/// Whether a column is one of those that [`BENT_TOLERANCE`] is for.
+fn is_bent(column: &FittedParameter, measurement: &Measurement) -> bool {
+    match column.effect().id() {
+        "chromatic_aberration" => measurement.quantity == Quantity::LineBlur,
+        "tone_curve" => measurement.quantity == Quantity::NoiseVariance,
+        _ => false,
+    }
+}
+
+/// An effect's values with all parameters at this part of the way from neutral to the end of their range.
+fn values_at(recording: &Recording<'_>, column: &FittedParameter, part: f64) -> Vec<f64> {
+    let parameters = column.effect().parameters().iter().zip(starting_values(column.effect(), recording));
+    parameters
+        .map(|(parameter, value)| match parameter.role {
+            Role::Fixed => value,
+            _ => parameter.neutral + part * (parameter.range[1] - parameter.neutral),
+        })
+        .collect()
+}
+
+/// What is measured, linearised in one column at some values of its effect, and how the prediction changes there.
+struct Compared {
+    column: FittedParameter,
+    own: Vec<LinearizedFrame>,
+    /// For each frame and row.
+    differences: Vec<Vec<f64>>,
+}
+
+impl Compared {
+    fn new(
+        recording: &Recording<'_>,
+        looks: &[FrameMeasurements],
+        column: FittedParameter,
+        values: &[f64],
+    ) -> Self {
+        let value = values[column.parameter];
+        let half = WIDTH * column.parameter().step;
+        let linearised = |value: f64, columns: &[FittedParameter]| {
+            let mut values = values.to_vec();
+            values[column.parameter] = value;
+            let model = Model::default().with(column.effect(), values);
+            linearise(recording, looks, &model, columns, &[]).unwrap()
+        };
+        let [minus, plus] = [value - half, value + half].map(|value| linearised(value, &[]));
+        let width = column.coordinate(value + half) - column.coordinate(value - half);
+        // Residuals are measured minus expected.
+        let change = |(minus, plus): (&LinearizedFrame, &LinearizedFrame)| {
+            let residuals = minus.residuals.iter().zip(&plus.residuals);
+            residuals.map(|(minus, plus)| (minus - plus) / width).collect()
+        };
+        let differences = minus.iter().zip(&plus).map(change).collect();
+        Self { column, own: linearised(value, &[column]), differences }
+    }
+
+    /// Rows that are compared with their derivative and difference. The last frame's step ends where the trajectory does.
+    fn rows(&self) -> impl Iterator<Item = (&Measurement, f64, f64)> {
+        let last = self.own.len() - 1;
+        self.own.iter().zip(&self.differences).enumerate().flat_map(move |(frame, (own, differences))| {
+            let derivatives = own.jacobian.iter().map(|row| row.first().map_or(0.0, |entry| entry.1));
+            let all = own.measurements.iter().zip(derivatives).zip(differences);
+            all.map(|((row, derivative), difference)| (row, derivative, *difference)).filter(
+                move |(row, _, difference)| {
+                    difference.is_finite() && !(frame == last && row.quantity.channel() == Channel::Motion)
+                },
+            )
+        })
+    }
+
+    /// Asserts that derivatives are the differences, but for rows that are left out.
+    fn assert_same(&self, is_left_out: impl Fn(&Measurement) -> bool) {
+        let mut largest: BTreeMap<Quantity, f64> = BTreeMap::new();
+        for (row, _, difference) in self.rows() {
+            let largest = largest.entry(row.quantity).or_default();
+            *largest = largest.max(difference.abs());
+        }
+        let name = format!("{} {}", self.column.effect().id(), self.column.parameter().name);
+        let most = largest.values().copied().fold(0.0, f64::max);
+        assert!(most > 1e-3, "{name} changes nothing that is compared");
+        for (row, derivative, difference) in self.rows().filter(|(row, ..)| !is_left_out(row)) {
+            let part = if is_bent(&self.column, row) { BENT_TOLERANCE } else { TOLERANCE };
+            let allowed = part * largest[&row.quantity] + ROUNDING;
+            let off = (derivative - difference).abs();
+            assert!(off <= allowed, "{name}, {:?}: {derivative} for {difference}", row.quantity);
+        }
+    }
+}
+
+fn is_of_odometry(column: &FittedParameter) -> bool {
+    column.effect().stage() == Stage::Odometry
+}
+
+#[test]
+fn each_parameter_changes_what_is_seen_as_its_column_says() {
+    let sequence = sequence();
+    let recording = recording(&sequence);
+    let looks = measure_frames(&recording, &Model::default(), 20.0).unwrap();
+    for column in columns(&[]).into_iter().filter(|column| !is_of_odometry(column)) {
+        // Noise moves the mean of dark places a little: its columns are for the noise only.
+        let is_left_out = |row: &Measurement| {
+            column.effect().id() == "sensor_noise" && row.quantity.channel() != Channel::Noise
+        };
+        // The colours have to be clearly apart for a slope; a lens or a lamp that is far off leaves no camera or clips.
+        let part = if column.effect().id() == "chromatic_aberration" { 0.1 } else { 0.02 };
+        let values = values_at(&recording, &column, part);
+        Compared::new(&recording, &looks, column, &values).assert_same(is_left_out);
+    }
+}
+
+#[test]
+fn at_neutral_values_columns_are_the_predictions_slopes_too() {
+    let sequence = sequence();
+    let recording = recording(&sequence);
+    let looks = measure_frames(&recording, &Model::default(), 20.0).unwrap();
+    let has_slope = |column: &FittedParameter| {
+        column.parameter().growth == Growth::Linear && column.is_size() && !is_of_odometry(column)
+    };
+    for column in columns(&[]).into_iter().filter(has_slope) {
+        let is_left_out = |row: &Measurement| {
+            is_bent(&column, row)
+                || column.effect().id() == "sensor_noise" && row.quantity.channel() != Channel::Noise
+        };
+        let values = values_at(&recording, &column, 0.0);
+        Compared::new(&recording, &looks, column, &values).assert_same(is_left_out);
+    }
+}
+
+#[test]
+fn while_a_robot_walks_steadily_the_odometrys_columns_are_those_of_its_own_steps() {
+    let sequence = sequence();
+    let mut recording = recording(&sequence);
+    // A circle: every step is like every other, so that those around one stand for it exactly.
+    let pose = |time_s: f64| {
+        let yaw_rad = 0.4 * time_s;
+        let place = Pose2::new(1.5 * yaw_rad.sin(), -1.5 * yaw_rad.cos(), yaw_rad);
+        CameraPose::new(place, 0.5, 0.4, 0.0)
+    };
+    let times_s: Vec<f64> = recording.frames.iter().map(|frame| frame.time_s).collect();
+    let until_s = recording.frames.last().unwrap().step.unwrap().until_s;
+    let poses: Vec<(f64, CameraPose)> =
+        times_s.into_iter().chain([until_s]).map(|time_s| (time_s, pose(time_s))).collect();
+    recording.trajectory = Trajectory::new(&poses).unwrap();
+    let nothing = FrameMeasurements {
+        camera: DVec3::ZERO,
+        lines: Vec::new(),
+        expected_lines: Vec::new(),
+        blocks: Vec::new(),
+        noise_steps: Vec::new(),
+    };
+    let looks = vec![nothing; recording.frames.len()];
+    for column in columns(&[]).into_iter().filter(is_of_odometry) {
+        for part in [0.0, 0.1] {
+            let values = values_at(&recording, &column, part);
+            let compared = Compared::new(&recording, &looks, column, &values);
+            compared.assert_same(|_| false);
+            assert_eq!(compared.rows().count(), 3 * (recording.frames.len() - 1));
+        }
+    }
+}
