@@ -1,6 +1,6 @@
 //! The simulated camera: its stages one after the other, each with the effects that change it.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use reality_sim_core::{
     camera::Camera,
     field::FieldDimensions,
@@ -11,7 +11,6 @@ use reality_sim_core::{
 use crate::{
     effect::{Noise, Stage, Tone},
     effects::{BLACK_LEVEL, library},
-    frame::Frame,
     model::{Model, ModelError, ModelFault, Used},
     trajectory::Trajectory,
 };
@@ -160,23 +159,6 @@ impl Chain {
     /// The camera's true pose, from the reference one.
     pub fn mounted(&self, pose: CameraPose) -> CameraPose {
         self.mount.iter().fold(pose, |pose, used| used.effect.mount(&used.values, pose))
-    }
-
-    /// The picture with this time stamp, for many points.
-    pub fn frame<'a>(&'a self, trajectory: &'a Trajectory, time_s: f64) -> Frame<'a> {
-        Frame::new(self, trajectory, time_s)
-    }
-
-    /// Where a point of the world, metres, is seen in red (0), green (1) or blue (2) of the frame with this time stamp:
-    /// [`Frame::project`] for one point.
-    pub fn project(
-        &self,
-        trajectory: &Trajectory,
-        time_s: f64,
-        point_in_world: DVec3,
-        channel: usize,
-    ) -> Option<DVec2> {
-        self.frame(trajectory, time_s).project(point_in_world, channel)
     }
 
     /// Factor of red, green and blue on the light of a point of the scene: the light on the ground at `ground`, metres,

@@ -1,5 +1,6 @@
 //! The library of effects, one file each.
 
+mod adjustments;
 mod black_level;
 mod camera_height;
 mod chromatic_aberration;
@@ -22,12 +23,6 @@ mod tone_curve;
 mod uneven_illumination;
 mod vignetting;
 mod white_balance;
-
-use glam::DQuat;
-use reality_sim_core::{
-    camera::{Camera, Distortion, InvalidCamera},
-    pose::CameraPose,
-};
 
 use crate::effect::Effect;
 
@@ -68,29 +63,4 @@ pub fn library() -> &'static [&'static dyn Effect] {
 /// The effect with this id; `None` for one that is not known.
 pub fn effect(id: &str) -> Option<&'static dyn Effect> {
     LIBRARY.iter().copied().find(|effect| effect.id() == id)
-}
-
-/// A pose turned about the camera's own axes.
-fn turned(pose: CameraPose, true_from_nominal: DQuat) -> CameraPose {
-    let rotation = pose.quaternion_world_from_camera() * true_from_nominal;
-    CameraPose::from_world_from_camera(pose.position_in_world(), rotation)
-}
-
-/// A camera with other intrinsics, as wide as before: up to where its distortion stops growing, or to the limit that
-/// it was given.
-fn with_intrinsics(
-    camera: &Camera,
-    intrinsics: [f64; 4],
-    distortion: Distortion,
-) -> Result<Camera, InvalidCamera> {
-    let size = [camera.width, camera.height];
-    let nominal = [camera.fx, camera.fy, camera.cx, camera.cy];
-    let is_limited = camera.max_angle_rad() < Camera::new(size, nominal, camera.distortion)?.max_angle_rad();
-    let changed = Camera::new(size, intrinsics, distortion)?.with_image_circle(camera.image_circle);
-    if is_limited {
-        let limit_rad = camera.max_angle_rad().min(changed.max_angle_rad());
-        changed.with_max_angle_rad(limit_rad)
-    } else {
-        Ok(changed)
-    }
 }

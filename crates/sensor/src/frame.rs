@@ -35,8 +35,27 @@ impl CameraFromWorld {
     }
 }
 
+impl Chain {
+    /// The picture with this time stamp, for many points.
+    pub fn frame<'a>(&'a self, trajectory: &'a Trajectory, time_s: f64) -> Frame<'a> {
+        Frame::new(self, trajectory, time_s)
+    }
+
+    /// Where a point of the world, metres, is seen in red (0), green (1) or blue (2) of the frame with this time stamp:
+    /// [`Frame::project`] for one point.
+    pub fn project(
+        &self,
+        trajectory: &Trajectory,
+        time_s: f64,
+        point_in_world: DVec3,
+        channel: usize,
+    ) -> Option<DVec2> {
+        self.frame(trajectory, time_s).project(point_in_world, channel)
+    }
+}
+
 impl<'a> Frame<'a> {
-    pub(crate) fn new(chain: &'a Chain, trajectory: &'a Trajectory, time_s: f64) -> Self {
+    fn new(chain: &'a Chain, trajectory: &'a Trajectory, time_s: f64) -> Self {
         let middle = CameraFromWorld::new(chain.pose(trajectory, time_s, 0.5));
         let has_row_times = chain.has_row_times() && !trajectory.is_still();
         Self { chain, trajectory, time_s, has_row_times, middle }

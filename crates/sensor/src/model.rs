@@ -3,8 +3,6 @@
 mod error;
 mod text;
 
-use std::path::Path;
-
 pub use self::error::{ModelError, ModelFault};
 use crate::effect::Effect;
 
@@ -42,22 +40,6 @@ impl Used {
 }
 
 impl Model {
-    /// Reads and validates a model file.
-    pub fn read(path: &Path) -> Result<Self, ModelError> {
-        text::read(path).and_then(|text| Self::from_toml(path, &text))
-    }
-
-    /// A model from the text of a `model.toml`. Errors name `origin`: the file, or what else the text comes from. Values
-    /// left out are neutral; those outside the plausible range are taken as they are.
-    pub fn from_toml(origin: &Path, text: &str) -> Result<Self, ModelError> {
-        text::parse(text).map_err(|error| error.in_file(origin))
-    }
-
-    /// The text of a `model.toml` with this model: it reads back as the same values.
-    pub fn to_toml(&self) -> String {
-        text::print(self)
-    }
-
     /// The same model with an effect at these values, in the order of its parameters; those missing at the end are
     /// neutral. Values that the effect had are replaced.
     pub fn with(&self, effect: &'static dyn Effect, values: impl Into<Vec<f64>>) -> Self {

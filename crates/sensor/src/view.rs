@@ -6,11 +6,12 @@
 
 mod polygon;
 mod ring;
+mod side;
 
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use reality_sim_core::pose::CameraPose;
 
-use self::{polygon::Polygon, ring::Ring};
+use self::{polygon::Polygon, ring::Ring, side::Side};
 use crate::{
     lens::RayPatch,
     world::{Overlap, Shape, World},
@@ -40,17 +41,6 @@ struct Layer {
 enum Cone {
     Polygon(Polygon),
     Ring(Ring),
-}
-
-/// Where a patch of rays lies to what is seen.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Side {
-    /// None of its rays is inside.
-    Outside,
-    /// All of them are.
-    Inside,
-    /// Perhaps some.
-    Edge,
 }
 
 impl View {

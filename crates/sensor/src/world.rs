@@ -2,10 +2,12 @@
 
 mod goal;
 mod lines;
+mod shape;
 
 use glam::{DVec2, DVec3, Vec3};
 use reality_sim_core::field::FieldDimensions;
 
+pub(crate) use self::shape::Shape;
 use self::{
     goal::GoalBars,
     lines::{Rectangle, circles, straight_lines},
@@ -16,22 +18,6 @@ use crate::SceneColors;
 const FLOOR_AROUND_CARPET_M: f64 = 3.0;
 /// From the ground to the hall's ceiling, metres.
 const HALL_HEIGHT_M: f64 = 4.0;
-
-/// A shape in the world, metres.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Shape {
-    /// What looks convex from where it is seen, by its corners in order; they need not lie in a plane.
-    Polygon(Vec<DVec3>),
-    /// What is between two horizontal circles.
-    Ring {
-        /// Their centre.
-        center: DVec3,
-        /// Radius of the smaller; 0 or less for none.
-        inner_m: f64,
-        /// Radius of the larger.
-        outer_m: f64,
-    },
-}
 
 /// How the shapes of a layer lie to each other.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 
 use reality_sim_core::camera::{Camera, InvalidCamera};
 
-use super::with_intrinsics;
+use super::adjustments::with_intrinsics;
 use crate::effect::{About, Covariate, Effect, Parameter, Stage, values};
 
 #[derive(Debug)]

@@ -5,7 +5,7 @@
 use glam::DQuat;
 use reality_sim_core::pose::CameraPose;
 
-use super::turned;
+use super::adjustments::turned;
 use crate::effect::{About, Covariate, Effect, Parameter, Stage, values};
 
 #[derive(Debug)]

@@ -5,7 +5,7 @@
 
 use reality_sim_core::camera::{Camera, Distortion, InvalidCamera, Opencv, OpencvFisheye};
 
-use super::with_intrinsics;
+use super::adjustments::with_intrinsics;
 use crate::effect::{About, Covariate, Effect, Parameter, Stage, values};
 
 #[derive(Debug)]

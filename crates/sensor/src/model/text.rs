@@ -24,8 +24,26 @@ const MAX_BYTES: u64 = 1 << 20;
 
 const HEADER: &str = "# Effects of the simulated camera beside what camera.toml says, as positive values have them; neutral values: no effect.\n";
 
+impl Model {
+    /// Reads and validates a model file.
+    pub fn read(path: &Path) -> Result<Self, ModelError> {
+        read(path).and_then(|text| Self::from_toml(path, &text))
+    }
+
+    /// A model from the text of a `model.toml`. Errors name `origin`: the file, or what else the text comes from. Values
+    /// left out are neutral; those outside the plausible range are taken as they are.
+    pub fn from_toml(origin: &Path, text: &str) -> Result<Self, ModelError> {
+        parse(text).map_err(|error| error.in_file(origin))
+    }
+
+    /// The text of a `model.toml` with this model: it reads back as the same values.
+    pub fn to_toml(&self) -> String {
+        print(self)
+    }
+}
+
 /// All text of a regular file that is no larger than a model can be.
-pub(super) fn read(path: &Path) -> Result<String, ModelError> {
+fn read(path: &Path) -> Result<String, ModelError> {
     let bytes = read_bytes(path).map_err(|fault| ModelError::from(fault).in_file(path))?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let line = line_of_offset(error.as_bytes(), error.utf8_error().valid_up_to());
@@ -52,7 +70,7 @@ fn read_fault(error: io::Error) -> ModelFault {
 }
 
 /// The model that a text holds.
-pub(super) fn parse(text: &str) -> Result<Model, ModelError> {
+fn parse(text: &str) -> Result<Model, ModelError> {
     let at = |span: Range<usize>, fault| ModelError::at(line_of_offset(text.as_bytes(), span.start), fault);
     let document = DeTable::parse(text).map_err(|error| {
         let message = error.message().split_whitespace().collect::<Vec<_>>().join(" ");
@@ -117,7 +135,7 @@ fn line_of_offset(bytes: &[u8], offset: usize) -> usize {
 }
 
 /// The text of a model: names and units as comments.
-pub(super) fn print(model: &Model) -> String {
+fn print(model: &Model) -> String {
     let mut text = HEADER.to_owned();
     for Used { effect, values } in &model.effects {
         // Writing into a string cannot fail.

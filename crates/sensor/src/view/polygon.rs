@@ -4,7 +4,7 @@ use std::mem;
 
 use glam::{DMat3, DVec3, Vec2, Vec3};
 
-use super::Side;
+use super::side::Side;
 use crate::lens::RayPatch;
 
 /// A patch clipped by every edge of the largest outline, a post's, has no more corners.

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3, Vec2, Vec3};
 
-use super::Side;
+use super::side::Side;
 use crate::lens::RayPatch;
 
 /// The rays between two circles with one centre.

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 use reality_sim_core::field::{Goal, GoalPost};
 
-use super::Shape;
+use super::shape::Shape;
 
 /// Straight pieces of the outline around a post's end: half a circle is 0.5 mm off at a post of 10 cm.
 const END_PIECES: u32 = 10;

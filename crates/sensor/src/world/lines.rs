@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use reality_sim_core::field::{Curve, FieldDimensions};
 
-use super::Shape;
+use super::shape::Shape;
 
 /// Half the side of the penalty and centre marks, metres: squares along the lines.
 const MARK_HALF_SIDE_M: f64 = 0.05;
