@@ -17,6 +17,7 @@ mod error;
 mod gain;
 mod hall;
 mod method;
+mod methods;
 mod nearest;
 mod plane;
 mod quadratic;
@@ -30,7 +31,8 @@ pub use self::{
     auto::Auto,
     error::SynthesisError,
     hall::measure_hall,
-    method::{METHODS, Method},
+    method::Method,
+    methods::METHODS,
     nearest::Nearest,
     plane::{Blend, Plane},
     quadratic::Quadratic,

@@ -1,8 +1,8 @@
-//! The ways to a picture at a pose, behind one trait.
+//! What a way to a picture at a pose is, and how it is asked.
 
 use reality_sim_core::pose::CameraPose;
 
-use crate::{Blend, Nearest, Plane, Quadratic, Reconstruction, SynthesisError, Synthesizer};
+use crate::{Reconstruction, SynthesisError, Synthesizer};
 
 /// A way to a picture at a pose from those recorded at others.
 pub trait Method: Send + Sync {
@@ -13,5 +13,14 @@ pub trait Method: Send + Sync {
     fn reconstruct(&self, from: &Synthesizer, pose: CameraPose) -> Result<Reconstruction, SynthesisError>;
 }
 
-/// The methods that are told apart; [`crate::Auto`] chooses among them.
-pub const METHODS: [&dyn Method; 4] = [&Nearest, &Quadratic, &Plane, &Blend];
+impl Synthesizer {
+    /// Returns the picture at a pose, by a method.
+    pub fn image_at(&self, pose: CameraPose, method: &dyn Method) -> Result<Reconstruction, SynthesisError> {
+        if pose.is_finite() && !pose.is_possible() {
+            return Err(SynthesisError::ImpossiblePose { pose });
+        }
+        let near = self.archive().index().check_reach(pose, self.config().reach_px);
+        near.map_err(|reason| SynthesisError::NoNeighbours { pose, reason })?;
+        method.reconstruct(self, pose)
+    }
+}

@@ -10,7 +10,7 @@ use reality_sim_core::{
 };
 use reality_sim_db::index::{ImageIndex, Neighbour};
 
-use crate::{Archive, Method, Reconstruction, SynthesisError, gain::gains, select::select};
+use crate::{Archive, Reconstruction, SynthesisError, gain::gains, select::select};
 
 /// How pictures are made.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,18 +86,6 @@ impl Synthesizer {
     /// The settings.
     pub fn config(&self) -> &SynthesisConfig {
         &self.config
-    }
-
-    /// The picture at a pose.
-    pub fn image_at(&self, pose: CameraPose, method: &dyn Method) -> Result<Reconstruction, SynthesisError> {
-        if pose.is_finite() && !pose.is_possible() {
-            return Err(SynthesisError::ImpossiblePose { pose });
-        }
-        self.archive
-            .index()
-            .check_reach(pose, self.config.reach_px)
-            .map_err(|reason| SynthesisError::NoNeighbours { pose, reason })?;
-        method.reconstruct(self, pose)
     }
 
     /// Decodes the pictures that a picture at this pose is made from, by whichever method, so that it is drawn without

@@ -3,7 +3,6 @@
 use std::{
     any::Any,
     panic::{self, AssertUnwindSafe},
-    path::PathBuf,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -12,18 +11,7 @@ use std::{
 
 use eframe::{egui, egui_wgpu::WgpuSetup};
 
-use crate::{Device, ViewerApp};
-
-/// What the window shows first, and what it may use.
-#[derive(Debug, Clone)]
-pub struct ViewerOptions {
-    /// A recording, a database, or a report of the gap.
-    pub open: PathBuf,
-    /// The recording that ships with the program, where it is found.
-    pub demonstration: Option<PathBuf>,
-    /// Where filter and pictures can be computed, the usual one first. At least one.
-    pub devices: Vec<Device>,
-}
+use crate::{ViewerApp, ViewerOptions};
 
 /// Why there is no window.
 #[derive(Debug, thiserror::Error)]

@@ -17,6 +17,7 @@ mod gap;
 mod launch;
 mod open_window;
 mod opening;
+mod options;
 mod picture_view;
 mod problems;
 mod screenshot;
@@ -28,5 +29,6 @@ mod walk;
 pub use self::{
     app::ViewerApp,
     device::Device,
-    launch::{ViewerError, ViewerOptions, run},
+    launch::{ViewerError, run},
+    options::ViewerOptions,
 };

@@ -10,15 +10,13 @@ mod rim;
 
 use glam::{DVec2, DVec3};
 
+use self::rim::PINHOLE_MAX_ANGLE_RAD;
 pub use self::{
     kernel::{KernelCamera, LANES, Lanes, Lens, Pixels, RADIAL_TERMS, project_lanes},
     opencv::Opencv,
     opencv_fisheye::OpencvFisheye,
 };
 use crate::pose::CameraPose;
-
-/// The largest angle from the optical axis that a pinhole can take, radians: tan 89° is 57 focal lengths.
-const PINHOLE_MAX_ANGLE_RAD: f64 = 89.0 * std::f64::consts::PI / 180.0;
 
 /// A camera valid over less than this, radians, sees no more than a pixel.
 const SMALLEST_MAX_ANGLE_RAD: f64 = 1e-3;

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{PINHOLE_MAX_ANGLE_RAD, rim::last_growing_angle_rad};
+use super::rim::{PINHOLE_MAX_ANGLE_RAD, last_growing_angle_rad};
 
 /// Newton steps in [`Opencv::undistort`]; a few are enough except beside the rim.
 const MAX_STEPS: usize = 100;

@@ -3,7 +3,7 @@
 use image::GrayImage;
 
 use super::{
-    ObservationConfig, ObservationKind,
+    config::{ObservationConfig, ObservationKind},
     kernel::{ContrastScale, GroundPoints, LinePoints},
 };
 use crate::{

@@ -14,6 +14,7 @@ use super::{
     Hull, Picture,
     fill::fill,
     kernel::{HullPoints, Placement, hull_points, sample, see, unhidden},
+    origin::Origin,
     rays::{RayBlock, RayTable},
 };
 use crate::camera::{KernelCamera, LANES, Lanes, Pixels};
@@ -62,29 +63,6 @@ pub struct Source<'a> {
     pub picture: &'a Arc<Picture>,
     /// Red, green and blue are multiplied by this.
     pub gain: [f32; 3],
-}
-
-/// Where a pixel of a reconstruction came from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Origin {
-    /// The source that it came from most, or [`Origin::NOWHERE`].
-    pub source: u8,
-    /// How far it can be trusted, 0 to 255: high where a neighbour saw the ground from the same direction at the same
-    /// resolution and no other contradicts.
-    pub trust: u8,
-}
-
-impl Origin {
-    /// No source saw this: the colour is that of the surroundings.
-    pub const NOWHERE: u8 = u8::MAX;
-
-    /// The camera sees nothing there, outside its image circle say: the colour is black.
-    pub const OUTSIDE: u8 = u8::MAX - 1;
-
-    /// Whether some source saw this.
-    pub fn is_recorded(self) -> bool {
-        self.source < Self::OUTSIDE
-    }
 }
 
 /// The camera and the pose at which a picture is wanted, and what stands for the world.

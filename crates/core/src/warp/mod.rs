@@ -7,13 +7,15 @@ mod blend;
 mod fill;
 mod hull;
 mod kernel;
+mod origin;
 mod picture;
 mod rays;
 
 pub use self::{
-    blend::{BlendWeights, MAX_SOURCES, Origin, Source, Target, Warped, blend, costs, glimpses},
+    blend::{BlendWeights, MAX_SOURCES, Source, Target, Warped, blend, costs, glimpses},
     hull::{Hall, Hull, Screen},
     kernel::Placement,
+    origin::Origin,
     picture::Picture,
     rays::RayTable,
 };

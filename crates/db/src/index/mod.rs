@@ -6,11 +6,13 @@
 //! with x, y and yaw. Images of one sector at nearly the same place share a vertex, a *spot*; all of them are kept.
 
 mod nearest;
+mod neighbour;
 mod sector;
 
 use glam::DVec2;
 use reality_sim_core::pose::CameraPose;
 
+pub use self::neighbour::{ImageIndex, Neighbour, NoNeighbours};
 use self::{
     nearest::NearestTree,
     sector::{SECTORS, Sector},
@@ -20,20 +22,6 @@ use crate::metric::PixelMetric;
 /// Images closer than this share a spot, pixels: no one sees the difference.
 const SPOT_PX: f64 = 1.0;
 
-/// The index of an image in the list that a [`PoseIndex`] was made of.
-pub type ImageIndex = u32;
-
-/// An image near a pose.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Neighbour {
-    /// Which.
-    pub image: ImageIndex,
-    /// How far the picture moves from it to the pose asked for, root mean square pixels.
-    pub distance_px: f64,
-    /// Its share, of 1 over all neighbours.
-    pub weight: f64,
-}
-
 /// What the natural neighbours of a heading are found in: the Delaunay triangulation of one sector's spots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectorTriangulation {
@@ -41,27 +29,6 @@ pub struct SectorTriangulation {
     pub share: f64,
     /// The edges from spot to spot, world axes, metres.
     pub edges_in_world: Vec<[DVec2; 2]>,
-}
-
-/// Why a pose has no neighbours.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum NoNeighbours {
-    /// There are no images at all.
-    #[error("there is no image: build the database from a recording first")]
-    NoImages,
-    /// The pose is not made of finite numbers.
-    #[error("the pose is not made of finite numbers")]
-    NotFinite,
-    /// Nothing recorded is near enough to reconstruct the picture from.
-    #[error(
-        "nothing was recorded near this pose: the nearest picture is {distance_px:.0} px away, the limit is {limit_px:.0} px; record pictures there, or ask for the best effort"
-    )]
-    OutOfReach {
-        /// The nearest image's distance, root mean square pixels.
-        distance_px: f64,
-        /// The largest distance allowed.
-        limit_px: f64,
-    },
 }
 
 /// Finds images by pose.

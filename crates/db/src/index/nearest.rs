@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 use reality_sim_core::pose::CameraPose;
 
-use super::ImageIndex;
+use super::neighbour::ImageIndex;
 use crate::metric::{PixelMetric, shorter_turn};
 
 /// Images of a leaf, at least; nearly twice as many at most.

@@ -9,7 +9,7 @@ use spade::{
     handles::FixedVertexHandle,
 };
 
-use super::ImageIndex;
+use super::neighbour::ImageIndex;
 
 /// Sectors of a turn. With an eighth a heading lies at most a quarter of a turn's half from the images of its two sectors:
 /// less than the view of any wide lens.

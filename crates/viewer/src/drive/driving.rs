@@ -11,13 +11,15 @@ use reality_sim_core::{
 };
 
 use super::{
-    DriveSettings, counted, device_ui,
     kind::{PictureKind, View},
+    layout::Layout,
     map::{Map, Scene},
     painter::{Answer, Around, Painted, Painter, Wish},
-    pictures::{Gallery, Layout, Pictures},
+    pictures::{Gallery, Pictures},
     robot::Robot,
+    settings::DriveSettings,
     source::{Probes, Source},
+    widgets::{counted, device_ui},
 };
 use crate::{
     device::{Device, by_name},
@@ -128,7 +130,7 @@ impl Driving {
         let painter = self.painter.get_or_insert_with(|| Painter::spawn(ui.ctx(), self.source.clone()));
         painter.wish(Wish {
             pose: self.robot.pose(),
-            views: settings.layout.views(settings),
+            views: settings.views(),
             is_best_effort: settings.is_best_effort,
             edges_in: settings.layers.triangulation.then(|| self.map.seen()),
             probes: self.probes.clone(),

@@ -6,12 +6,15 @@
 mod driving;
 mod edges;
 mod kind;
+mod layout;
 mod map;
 mod painter;
 mod pictures;
 mod recorded;
 mod robot;
+mod settings;
 mod source;
+mod widgets;
 mod work_folder;
 
 #[cfg(test)]
@@ -22,56 +25,10 @@ use std::sync::Arc;
 use eframe::egui::Ui;
 use reality_sim_core::sequence::Sequence;
 use reality_sim_synthesis::Archive;
-use serde::{Deserialize, Serialize};
 
-use self::{
-    driving::Driving,
-    kind::{PictureKind, Shown},
-    map::Layers,
-    pictures::Layout,
-    recorded::Recorded,
-    source::Source,
-};
-use crate::{
-    device::{Device, list_ui},
-    problems::Problems,
-};
-
-/// What is remembered of the panel.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct DriveSettings {
-    pub layout: Layout,
-    /// The picture alone or on the left, and the one on the right.
-    pub left: PictureKind,
-    pub right: PictureKind,
-    /// What is shown of the left one.
-    pub shown: Shown,
-    /// Where the line of a wipe is, 0 to 1 from the left.
-    pub wipe_share: f32,
-    pub is_best_effort: bool,
-    pub layers: Layers,
-    /// Name of the device that draws and finds poses; where there is no such one, the first.
-    pub device: String,
-    /// How much of the window's width the field has.
-    pub map_share: f32,
-}
-
-impl Default for DriveSettings {
-    fn default() -> Self {
-        Self {
-            layout: Layout::default(),
-            left: PictureKind::Auto,
-            right: PictureKind::Simulated,
-            shown: Shown::default(),
-            wipe_share: 0.5,
-            is_best_effort: false,
-            layers: Layers::default(),
-            device: String::new(),
-            map_share: 0.37,
-        }
-    }
-}
+pub use self::settings::DriveSettings;
+use self::{driving::Driving, recorded::Recorded, source::Source};
+use crate::{device::Device, problems::Problems};
 
 /// The panel. Where it is dropped, work under way is stopped and waited for: a temporary database is deleted then.
 pub struct DrivePanel(State);
@@ -122,18 +79,4 @@ impl DrivePanel {
             State::Driving(driving) => driving.ui(ui, settings, devices, problems),
         }
     }
-}
-
-/// The device of a person's choice, and a list to choose another from.
-fn device_ui(ui: &mut Ui, chosen: &mut String, devices: &[Device]) {
-    ui.horizontal(|ui| {
-        let label = ui.label("Computed by");
-        let list = list_ui(ui, devices, chosen, 150.0);
-        list.labelled_by(label.id).on_hover_text("Where poses are found and pictures are drawn");
-    });
-}
-
-/// So many things, in words: one needs no plural.
-fn counted(count: usize, thing: &str) -> String {
-    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }

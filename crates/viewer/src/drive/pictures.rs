@@ -8,13 +8,13 @@ use eframe::egui::{
 };
 use reality_sim_core::pose::CameraPose;
 use reality_sim_synthesis::Archive;
-use serde::{Deserialize, Serialize};
 
 use super::{
-    DriveSettings,
     kind::{PictureKind, Shown, View},
+    layout::Layout,
     map::{hue, swatch},
     painter::{Facts, Painted},
+    settings::DriveSettings,
     source::NearProbe,
 };
 use crate::picture_view::{PictureCanvas, Uploaded};
@@ -27,38 +27,6 @@ const ROOM_FOR_FACTS: f32 = 200.0;
 const FACTS_MEAN: &str = "px away: by how many pixels the picture moves from there to here, root mean square\nPSNR: likeness to the true picture at this very pose, over the carpet; higher is better\nrecorded: the share of the pixels that recorded pictures show; the others are filled in\nms: the time that it took";
 /// Shares below this are not listed.
 const LEAST_SHARE: f64 = 0.005;
-
-/// How pictures are arranged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Layout {
-    One,
-    #[default]
-    Side,
-    Wipe,
-    All,
-}
-
-impl Layout {
-    const ALL: [(Self, &'static str, &'static str); 4] = [
-        (Self::One, "One", "One picture"),
-        (Self::Side, "Side by side", "Two pictures beside each other"),
-        (Self::Wipe, "Wipe", "Two pictures at one place, with a line between them to drag"),
-        (Self::All, "All methods", "Every method's picture, the simulated and the true one"),
-    ];
-
-    /// What is shown.
-    pub fn views(self, settings: &DriveSettings) -> Vec<View> {
-        let left = View { kind: settings.left, shown: settings.shown };
-        let right = View::picture(settings.right);
-        match self {
-            Self::One => vec![left],
-            Self::Side | Self::Wipe => vec![left, right],
-            // Auto is one of the others.
-            Self::All => PictureKind::ALL[1..].iter().map(|&kind| View::picture(kind)).collect(),
-        }
-    }
-}
 
 /// What there is to show.
 pub struct Gallery<'a> {
@@ -108,7 +76,7 @@ impl Pictures {
 
     /// Shows them; returns the pose to go to where that was asked for.
     pub fn ui(&mut self, ui: &mut Ui, settings: &mut DriveSettings, gallery: &Gallery) -> Option<CameraPose> {
-        let views = settings.layout.views(settings);
+        let views = settings.views();
         let legend = if settings.layout == Layout::All { 0.0 } else { 44.0 };
         let room = (ui.available_size() - vec2(0.0, legend)).max(Vec2::splat(60.0));
         let there = match (settings.layout, &views[..]) {

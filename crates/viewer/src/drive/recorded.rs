@@ -6,8 +6,9 @@ use eframe::egui::{self, Ui};
 use reality_sim_core::sequence::Sequence;
 
 use super::{
-    DriveSettings, counted, device_ui,
+    settings::DriveSettings,
     source::{Poses, Source, build, holds_back},
+    widgets::{counted, device_ui},
 };
 use crate::{
     background::{Outcome, Task},

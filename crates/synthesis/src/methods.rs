@@ -1,0 +1,6 @@
+//! The list of methods.
+
+use crate::{Blend, Method, Nearest, Plane, Quadratic};
+
+/// Methods to compare with each other; [`crate::Auto`] chooses among them.
+pub const METHODS: [&dyn Method; 4] = [&Nearest, &Quadratic, &Plane, &Blend];
