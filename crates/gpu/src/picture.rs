@@ -49,66 +49,112 @@ struct ColorSlot {
     to_grey: BoundKernel,
 }
 
-impl PictureStage {
-    /// For pictures of a camera, as a model wants them.
-    pub fn new(context: &GpuContext, camera: &Camera, model: &LineModel) -> Result<Self, GpuError> {
+/// What the kernels of a picture read and write.
+struct Buffers {
+    /// Its size and settings.
+    picture: wgpu::Buffer,
+    blur_weights: wgpu::Buffer,
+    /// The border's mask.
+    inside: wgpu::Buffer,
+    grey: wgpu::Buffer,
+    /// The picture half done.
+    across: wgpu::Buffer,
+    /// The picture that is scored.
+    image: wgpu::Buffer,
+    /// Words of the picture, four pixels each.
+    words: u32,
+}
+
+impl Buffers {
+    fn new(
+        context: &GpuContext,
+        camera: &Camera,
+        model: &LineModel,
+        blur_weights: &[f32],
+    ) -> Result<Self, GpuError> {
         let row_words = camera.width.div_ceil(PIXELS_OF_WORD);
         let words = row_words * camera.height;
-        let bytes = 4 * words as usize;
-        let weights = gaussian_kernel(model.config.blur_sigma_px);
-        let blur_radius = (weights.len() / 2) as u32;
-        let weights = [&[0.0; 3], &weights[..], &[0.0; 3]].concat();
         let mask_columns = camera.width.div_ceil(CELL_PX);
+        let mask_bits = mask_columns * camera.height.div_ceil(CELL_PX);
         let layout = PictureLayout {
             width: camera.width,
             height: camera.height,
             row_words,
             mask_columns,
-            blur_radius,
+            blur_radius: (blur_weights.len() / 2) as u32,
             nearness_cap: u32::from(model.nearness_cap()),
             padding_0: 0,
             padding_1: 0,
         };
-        let picture = uniform_of(context, "the picture's size", layout)?;
-        let weights = storage_of(context, "the blur's weights", &weights)?;
-        let mask_bits = mask_columns * camera.height.div_ceil(CELL_PX);
-        let inside = storage(context, "the border's mask", 4 * mask_bits.div_ceil(32) as usize)?;
-        let grey = storage(context, "the grey picture", bytes)?;
-        let image = storage(context, "the picture scored", bytes)?;
-        let across = storage(context, "the picture half done", size_of::<[f32; 4]>() * words as usize)?;
-        let texels = packed_texture(context, camera).create_view(&wgpu::TextureViewDescriptor::default());
+        let padded_weights = [&[0.0; 3], blur_weights, &[0.0; 3]].concat();
+        let bytes = bytes_of(words);
+        Ok(Self {
+            picture: uniform_of(context, "the picture's size", layout)?,
+            blur_weights: storage_of(context, "the blur's weights", &padded_weights)?,
+            inside: storage(context, "the border's mask", 4 * mask_bits.div_ceil(32) as usize)?,
+            grey: storage(context, "the grey picture", bytes)?,
+            image: storage(context, "the picture scored", bytes)?,
+            across: storage(context, "the picture half done", size_of::<[f32; 4]>() * words as usize)?,
+            words,
+        })
+    }
 
+    /// From evidence for white lines to the distance from them.
+    fn distance_kernels(&self, context: &GpuContext) -> (Sources, Vec<BoundKernel>) {
+        let Self { picture, grey, across, image, .. } = self;
         let bind = |name, buffers: &[&wgpu::Buffer]| Kernel::new(context, name).bind(context, buffers);
-        let is_blurred = blur_radius > 0;
-        let mut kernels = Vec::new();
-        let sources = match model.config.kind {
-            ObservationKind::Distance => {
-                kernels.push(bind("distance_rows", &[&picture, &grey, &across]));
-                kernels.push(bind("distance_columns", &[&picture, &across, &image]));
-                kernels.push(bind("nearness", &[&picture, &image]));
-                Sources::Evidence(grey)
-            }
-            kind => {
-                let to_grey = Kernel::new(
-                    context,
-                    if kind == ObservationKind::Contrast { "whiteness" } else { "luma" },
-                );
-                let target = if is_blurred { &grey } else { &image };
-                let slot = || {
-                    let buffer = storage(context, "the colour picture", 3 * bytes)?;
-                    let to_grey = to_grey.bind(context, &[&picture, &buffer, target]);
-                    Ok(ColorSlot { buffer, picture: None, to_grey })
-                };
-                if is_blurred {
-                    kernels.push(bind("blur_rows", &[&picture, &grey, &weights, &across]));
-                    kernels.push(bind("blur_columns", &[&picture, &across, &weights, &image]));
-                }
-                Sources::Color { slots: [slot()?, slot()?], current: 0 }
-            }
+        let kernels = vec![
+            bind("distance_rows", &[picture, grey, across]),
+            bind("distance_columns", &[picture, across, image]),
+            bind("nearness", &[picture, image]),
+        ];
+        (Sources::Evidence(grey.clone()), kernels)
+    }
+
+    /// From a colour picture to a grey one, blurred or not.
+    fn color_kernels(
+        &self,
+        context: &GpuContext,
+        kind: ObservationKind,
+        is_blurred: bool,
+    ) -> Result<(Sources, Vec<BoundKernel>), GpuError> {
+        let Self { picture, blur_weights, grey, across, image, .. } = self;
+        let name = if kind == ObservationKind::Contrast { "whiteness" } else { "luma" };
+        let to_grey = Kernel::new(context, name);
+        let target = if is_blurred { grey } else { image };
+        let slot = || {
+            let buffer = storage(context, "the colour picture", 3 * bytes_of(self.words))?;
+            let to_grey = to_grey.bind(context, &[picture, &buffer, target]);
+            Ok(ColorSlot { buffer, picture: None, to_grey })
         };
-        if model.is_masked() {
-            kernels.push(bind("mask", &[&picture, &inside, &image]));
+        let bind = |name, buffers: &[&wgpu::Buffer]| Kernel::new(context, name).bind(context, buffers);
+        let mut kernels = Vec::new();
+        if is_blurred {
+            kernels.push(bind("blur_rows", &[picture, grey, blur_weights, across]));
+            kernels.push(bind("blur_columns", &[picture, across, blur_weights, image]));
         }
+        Ok((Sources::Color { slots: [slot()?, slot()?], current: 0 }, kernels))
+    }
+}
+
+fn bytes_of(words: u32) -> usize {
+    4 * words as usize
+}
+
+impl PictureStage {
+    /// Prepares for pictures of a camera, as a model wants them.
+    pub fn new(context: &GpuContext, camera: &Camera, model: &LineModel) -> Result<Self, GpuError> {
+        let blur_weights = gaussian_kernel(model.config.blur_sigma_px);
+        let buffers = Buffers::new(context, camera, model, &blur_weights)?;
+        let (sources, mut kernels) = match model.config.kind {
+            ObservationKind::Distance => buffers.distance_kernels(context),
+            kind => buffers.color_kernels(context, kind, blur_weights.len() > 1)?,
+        };
+        let Buffers { picture, inside, image, words, .. } = buffers;
+        if model.is_masked() {
+            kernels.push(Kernel::new(context, "mask").bind(context, &[&picture, &inside, &image]));
+        }
+        let texels = packed_texture(context, camera).create_view(&wgpu::TextureViewDescriptor::default());
         let pack = Kernel::new(context, "pack");
         kernels.push(pack.bind_all(context, &[(&picture).into(), (&image).into(), (&texels).into()]));
         let groups = groups(context, words.div_ceil(PICTURE_THREADS));

@@ -143,6 +143,12 @@ pub fn project_lanes(camera: &KernelCamera, points_in_camera: &[Lanes; 3]) -> Op
             }
         }
     }
+    see_inside(camera, &cos, &mut pixels).then_some(pixels)
+}
+
+/// Marks the points that have a pixel of the camera; false where none has.
+#[inline(always)]
+fn see_inside(camera: &KernelCamera, cos: &Lanes, pixels: &mut Pixels) -> bool {
     let mut any = 0u32;
     for i in 0..LANES {
         let (u, v) = (pixels.u[i], pixels.v[i]);
@@ -152,7 +158,7 @@ pub fn project_lanes(camera: &KernelCamera, points_in_camera: &[Lanes; 3]) -> Op
         any |= u32::from(seen);
     }
     if any == 0 {
-        return None;
+        return false;
     }
     if let Some([circle_u, circle_v, radius_squared]) = camera.circle {
         for i in 0..LANES {
@@ -161,7 +167,7 @@ pub fn project_lanes(camera: &KernelCamera, points_in_camera: &[Lanes; 3]) -> Op
             pixels.seen[i] *= f32::from(u8::from(inside));
         }
     }
-    Some(pixels)
+    true
 }
 
 /// The largest angle seen in the picture's corners: the polynomial need not hold beyond it.

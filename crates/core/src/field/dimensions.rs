@@ -62,59 +62,41 @@ pub struct InvalidField {
 impl FieldDimensions {
     /// Checks that the dimensions describe a field on which lines can be drawn.
     pub fn validate(&self) -> Result<(), InvalidField> {
-        let check = |name, value: f64, valid: bool, rule| {
-            if value.is_finite() && valid { Ok(()) } else { Err(InvalidField { name, value, rule }) }
-        };
-        for (name, value) in [("length_m", self.length_m), ("width_m", self.width_m)] {
-            check(name, value, PLAUSIBLE_LENGTH_M.contains(&value), "must be between 0.5 and 200 metres")?;
-        }
-        let shorter = self.length_m.min(self.width_m);
-        let width = self.line_width_m;
-        check(
-            "line_width_m",
-            width,
-            width > 0.0 && width < shorter / 10.0,
-            "must be above 0 and below a tenth of the field",
-        )?;
-        let strip = self.border_strip_m;
-        check("border_strip_m", strip, (0.0..=20.0).contains(&strip), "must be between 0 and 20 metres")?;
-        let half = self.length_m / 2.0;
-        let fits_length = |value: f64| value >= 0.0 && value < half;
-        let fits_width = |value: f64| value >= 0.0 && value <= self.width_m;
-        let (length_rule, width_rule) = (
-            "must be 0 or more and below half the field's length",
-            "must be 0 or more and at most the field's width",
-        );
-        check(
-            "goal_area_length_m",
-            self.goal_area_length_m,
-            fits_length(self.goal_area_length_m),
-            length_rule,
-        )?;
-        check("goal_area_width_m", self.goal_area_width_m, fits_width(self.goal_area_width_m), width_rule)?;
-        check(
-            "penalty_mark_distance_m",
-            self.penalty_mark_distance_m,
-            fits_length(self.penalty_mark_distance_m),
-            length_rule,
-        )?;
-        check(
-            "center_circle_diameter_m",
-            self.center_circle_diameter_m,
-            self.center_circle_diameter_m >= 0.0 && self.center_circle_diameter_m <= shorter,
-            "must be 0 or more and fit into the field",
-        )?;
-        check("goal_width_m", self.goal_width_m, fits_width(self.goal_width_m), width_rule)?;
+        self.check_outline()?;
+        let Self { goal_area_length_m, goal_area_width_m, penalty_mark_distance_m, .. } = *self;
+        self.check_along("goal_area_length_m", goal_area_length_m)?;
+        self.check_across("goal_area_width_m", goal_area_width_m)?;
+        self.check_along("penalty_mark_distance_m", penalty_mark_distance_m)?;
+        let diameter_m = self.center_circle_diameter_m;
+        let is_valid = diameter_m >= 0.0 && diameter_m <= self.length_m.min(self.width_m);
+        check("center_circle_diameter_m", diameter_m, is_valid, "must be 0 or more and fit into the field")?;
+        self.check_across("goal_width_m", self.goal_width_m)?;
         for (name, value) in
             [("goal_height_m", self.goal_height_m), ("goal_post_diameter_m", self.goal_post_diameter_m)]
         {
             check(name, value, (0.0..=10.0).contains(&value), "must be between 0 and 10 metres")?;
         }
+        self.check_penalty_area()
+    }
+
+    /// Length, width, and what lies along the whole outline.
+    fn check_outline(&self) -> Result<(), InvalidField> {
+        for (name, value) in [("length_m", self.length_m), ("width_m", self.width_m)] {
+            check(name, value, PLAUSIBLE_LENGTH_M.contains(&value), "must be between 0.5 and 200 metres")?;
+        }
+        let (line_m, shorter_m) = (self.line_width_m, self.length_m.min(self.width_m));
+        let is_valid = line_m > 0.0 && line_m < shorter_m / 10.0;
+        check("line_width_m", line_m, is_valid, "must be above 0 and below a tenth of the field")?;
+        let strip_m = self.border_strip_m;
+        check("border_strip_m", strip_m, (0.0..=20.0).contains(&strip_m), "must be between 0 and 20 metres")
+    }
+
+    fn check_penalty_area(&self) -> Result<(), InvalidField> {
         match (self.penalty_area_length_m, self.penalty_area_width_m) {
             (None, None) => Ok(()),
-            (Some(length), Some(width)) => {
-                check("penalty_area_length_m", length, fits_length(length), length_rule)?;
-                check("penalty_area_width_m", width, fits_width(width), width_rule)
+            (Some(length_m), Some(width_m)) => {
+                self.check_along("penalty_area_length_m", length_m)?;
+                self.check_across("penalty_area_width_m", width_m)
             }
             (Some(value), None) => {
                 check("penalty_area_length_m", value, false, "needs penalty_area_width_m beside it")
@@ -125,8 +107,24 @@ impl FieldDimensions {
         }
     }
 
+    /// A length that is measured from a goal line into the field.
+    fn check_along(&self, name: &'static str, value: f64) -> Result<(), InvalidField> {
+        let is_valid = value >= 0.0 && value < self.length_m / 2.0;
+        check(name, value, is_valid, "must be 0 or more and below half the field's length")
+    }
+
+    /// A length along a goal line.
+    fn check_across(&self, name: &'static str, value: f64) -> Result<(), InvalidField> {
+        let is_valid = value >= 0.0 && value <= self.width_m;
+        check(name, value, is_valid, "must be 0 or more and at most the field's width")
+    }
+
     /// Half the carpet's extent along x and y, lines and border strip included, metres.
     pub fn carpet_half_extent_m(&self) -> glam::DVec2 {
         glam::DVec2::new(self.length_m, self.width_m) / 2.0 + self.border_strip_m + self.line_width_m / 2.0
     }
+}
+
+fn check(name: &'static str, value: f64, is_valid: bool, rule: &'static str) -> Result<(), InvalidField> {
+    if value.is_finite() && is_valid { Ok(()) } else { Err(InvalidField { name, value, rule }) }
 }
