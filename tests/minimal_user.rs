@@ -1,0 +1,61 @@
+//! The library as others depend on it: `tests/minimal_user` is a package outside the workspace.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
+
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+/// What nobody should get who only wants the library.
+const FORBIDDEN: [&str; 7] = ["clap", "indicatif", "anyhow", "wgpu", "winit", "egui", "eframe"];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The package's folder; it gets the versions of the workspace's `Cargo.lock`, which are those at hand without a network.
+fn user() -> PathBuf {
+    let folder = root().join("tests/minimal_user");
+    fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
+    folder
+}
+
+/// What a cargo command prints on standard output. It compiles into the workspace's target folder, where most of what is
+/// needed lies already.
+fn cargo(folder: &Path, arguments: &[&str]) -> String {
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
+    let output = Command::new(env!("CARGO"))
+        .current_dir(folder)
+        .env("CARGO_TARGET_DIR", target)
+        .args(&arguments[..1])
+        .arg("--offline")
+        .args(&arguments[1..])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn a_package_outside_the_workspace_gets_a_picture_without_a_programs_or_a_windows_dependencies() {
+    let folder = user();
+    let tree = cargo(&folder, &["tree", "--edges", "normal,build", "--prefix", "none"]);
+    // Name, version; those that were printed before are marked behind that.
+    let packages: BTreeSet<Vec<&str>> =
+        tree.lines().map(|line| line.split_whitespace().take(2).collect()).collect();
+    println!("the library pulls in {} packages, itself among them", packages.len() - 1);
+    let names: BTreeSet<&str> = packages.iter().filter_map(|package| package.first().copied()).collect();
+    assert!(names.contains("reality-sim") && names.contains("glam"), "{tree}");
+    for forbidden in FORBIDDEN {
+        assert!(!names.contains(forbidden), "{forbidden} is under the library");
+    }
+
+    let own = tempfile::tempdir().unwrap();
+    let (walk, database) = (root().join("assets/walk"), own.path().join("walk.db"));
+    let said = cargo(&folder, &["run", "--quiet", "--", walk.to_str().unwrap(), database.to_str().unwrap()]);
+    let recorded: f64 = said.split_whitespace().rev().nth(1).unwrap().parse().unwrap();
+    assert!(said.starts_with("160 x 120 ") && recorded > 0.9, "{said}");
+}
