@@ -1,9 +1,9 @@
-//! The shaders' source: `#import shared/….wgsl` lines are replaced by the files they name.
+//! The shaders' source, from `shaders/`, which leads to the folder of that name at the workspace's top: `#import shared/….wgsl` lines are replaced by the files they name.
 
 /// Names the files in `shaders/`; a test holds the list complete.
 macro_rules! files {
     ($($name:literal),+ $(,)?) => {
-        &[$(($name, include_str!(concat!("../../../shaders/", $name)))),+]
+        &[$(($name, include_str!(concat!("../shaders/", $name)))),+]
     };
 }
 
@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn the_list_of_files_is_complete() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shaders");
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
         let listed: BTreeSet<String> = FILES.iter().map(|(name, _)| (*name).to_owned()).collect();
         assert_eq!(listed, files_in(&folder, ""));
     }
