@@ -35,7 +35,7 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     for (name, method, sources) in methods {
         let synthesizer = LazyCell::new(|| {
             let archive = stored.1.clone();
-            let config = SynthesisConfig { sources, ..SynthesisConfig::new(&archive) };
+            let config = SynthesisConfig::new(&archive).with_sources(sources);
             let camera = archive.setup().camera.clone();
             let synthesizer = Synthesizer::with(archive, camera, Arc::new(CpuWarper), config);
             poses.iter().for_each(|&pose| drop(synthesizer.image_at(pose, method)));

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, error::ErrorKind};
 
-use commands::Command;
+use commands::{Command, advice};
 
 /// What does the camera see at this pose? Real pictures for robot simulators, by pose.
 #[derive(Debug, Parser)]
@@ -25,7 +25,8 @@ fn main() -> ExitCode {
     match cli.command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {}", one_line(&format!("{error:#}")));
+            let advice = advice(&error).map_or_else(String::new, |advice| format!(" ({advice})"));
+            eprintln!("error: {}{advice}", one_line(&format!("{error:#}")));
             ExitCode::FAILURE
         }
     }

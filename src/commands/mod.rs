@@ -1,5 +1,6 @@
 //! The program's commands.
 
+mod advice;
 mod build;
 mod device;
 #[cfg(feature = "gpu")]
@@ -14,6 +15,8 @@ mod render;
 mod tag;
 #[cfg(feature = "viewer")]
 mod viewer;
+
+pub use self::advice::advice;
 
 /// What to do.
 #[derive(Debug, clap::Subcommand)]

@@ -8,6 +8,7 @@ pub mod camera;
 pub mod field;
 pub mod filter;
 mod goal_colors;
+mod isometry;
 pub mod localization;
 pub mod observation;
 pub mod pose;

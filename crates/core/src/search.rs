@@ -124,6 +124,12 @@ pub struct GlobalSearch {
     tolerance: AttitudeTolerance,
 }
 
+impl std::fmt::Debug for GlobalSearch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("GlobalSearch").field("tolerance", &self.tolerance).finish_non_exhaustive()
+    }
+}
+
 impl GlobalSearch {
     /// Prepares the search on this processor.
     pub fn new(camera: &Camera, field: &FieldDimensions, tolerance: AttitudeTolerance) -> Self {

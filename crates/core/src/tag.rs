@@ -124,6 +124,15 @@ pub struct Tagger {
     frame: u32,
 }
 
+impl std::fmt::Debug for Tagger {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Tagger")
+            .field("config", &self.config)
+            .field("frame", &self.frame)
+            .finish_non_exhaustive()
+    }
+}
+
 impl Tagger {
     /// Tags pictures of a camera on a field from a start pose, or from anywhere, on this processor.
     pub fn new(camera: &Camera, field: &FieldDimensions, start: Option<Pose2>, config: TagConfig) -> Self {

@@ -10,6 +10,7 @@ use rusqlite::{ErrorCode, ffi};
 
 /// A database, or a recording on its way into one, that cannot be used.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum DbError {
     /// The fault is the database's.
     #[error("{}: {fault}", Printable(.path))]
@@ -34,6 +35,7 @@ impl DbError {
 
 /// What is wrong with a database, or with what is done to it. Every message says what to do.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum DbFault {
     /// There is no such file.
     #[error("there is no such file: check the path, or build the database first")]
@@ -62,7 +64,7 @@ pub enum DbFault {
     },
     /// The program is newer than the file, which was opened for reading.
     #[error(
-        "is of the old schema version {found}: open it once for writing, as `build` does, which brings it to version {known}"
+        "is of the old schema version {found}: open it once for writing, which brings it to version {known}"
     )]
     Older {
         /// Of the file.

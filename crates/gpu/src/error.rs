@@ -2,6 +2,7 @@
 
 /// A GPU that cannot be used, or no longer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GpuError {
     /// There is no adapter at all.
     #[error(

@@ -6,6 +6,7 @@ use reality_sim_core::sequence::SequenceError;
 
 /// A recording that cannot be made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// No effect has this id.
     #[error("there is no effect {id:?}: use one of LIBRARY or FOREIGN")]

@@ -67,6 +67,9 @@ pub mod probing;
 #[cfg(feature = "gpu")]
 pub use reality_sim_gpu as gpu;
 
+// The crates whose types appear in public signatures.
+pub use {glam, image, nalgebra};
+
 pub use reality_sim_core::{
     backend, camera, field, filter, observation, pose, preprocess, refine, search, sequence, tag, warp,
 };

@@ -9,7 +9,7 @@ use crate::{
     CameraPose, SynthesisError, Synthesizer,
     evaluation::percentile,
     preprocess::luma,
-    sensor::{PoseError, Renderer},
+    sensor::{RenderError, Renderer},
     synthesis::{
         METHODS, Method,
         quality::{Mask, psnr_db, ssim},
@@ -105,13 +105,14 @@ pub fn judge(
 
 /// A probe that cannot be judged.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ProbingError {
     /// A method failed.
     #[error(transparent)]
     Synthesis(#[from] SynthesisError),
     /// The pose cannot be drawn.
     #[error(transparent)]
-    Pose(#[from] PoseError),
+    Pose(#[from] RenderError),
 }
 
 fn timed<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, f64), E> {

@@ -63,6 +63,6 @@ pub use self::{
     effects::{effect, library},
     frame::Frame,
     model::{Model, ModelError, ModelFault, Used},
-    renderer::{PoseError, Renderer},
+    renderer::{RenderError, Renderer},
     trajectory::{Trajectory, TrajectoryError, Twist},
 };

@@ -22,7 +22,8 @@ const DEFAULT_PARTS_PER_SIDE: u16 = 3;
 
 /// A pose from which nothing can be drawn.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum PoseError {
+#[non_exhaustive]
+pub enum RenderError {
     /// A coordinate is NaN or infinite.
     #[error("the camera's pose {0:?} has a coordinate that is not a finite number: give six finite ones")]
     NotFinite(CameraPose),
@@ -93,7 +94,7 @@ impl Renderer {
     ///
     /// Without effects this is the plain picture of an ideal sensor: no blur, no black level, no noise. With a model it
     /// is [`Renderer::draw_at`] time 0 by a camera that stands still, without noise.
-    pub fn draw(&self, pose: CameraPose) -> Result<RgbImage, PoseError> {
+    pub fn draw(&self, pose: CameraPose) -> Result<RgbImage, RenderError> {
         if !self.chain.model().effects.is_empty() {
             return self.draw_at(&Trajectory::still(pose), 0.0, None);
         }
@@ -116,14 +117,14 @@ impl Renderer {
         trajectory: &Trajectory,
         time_s: f64,
         noise_seed: Option<u64>,
-    ) -> Result<RgbImage, PoseError> {
+    ) -> Result<RgbImage, RenderError> {
         let light = self.light(&Motion::new(&self.chain, trajectory, time_s))?;
         let light = blurred(light, |pixel| self.chain.psf_variance_px2(pixel));
         Ok(self.recorded(&light, &Sensor::new(&self.chain, time_s, noise_seed)))
     }
 
     /// What falls through the lens while each row is exposed.
-    fn light(&self, motion: &Motion<'_>) -> Result<Light, PoseError> {
+    fn light(&self, motion: &Motion<'_>) -> Result<Light, RenderError> {
         let mut light = Light::dark(self.size);
         let shared = if motion.is_same_for_rows() { Some(self.views(motion, 0.5)?) } else { None };
         let last_row = f64::from(self.size[1].max(2) - 1);
@@ -138,16 +139,16 @@ impl Renderer {
     }
 
     /// What is seen at each instant of a row's exposure; rows run from 0, the top one, to 1.
-    fn views(&self, motion: &Motion<'_>, row: f64) -> Result<Vec<View>, PoseError> {
+    fn views(&self, motion: &Motion<'_>, row: f64) -> Result<Vec<View>, RenderError> {
         motion.poses(row).map(|pose| self.view(pose)).collect()
     }
 
-    fn view(&self, pose: CameraPose) -> Result<View, PoseError> {
+    fn view(&self, pose: CameraPose) -> Result<View, RenderError> {
         if !pose.is_finite() {
-            return Err(PoseError::NotFinite(pose));
+            return Err(RenderError::NotFinite(pose));
         }
         if pose.height_m <= 0.0 {
-            return Err(PoseError::NotAboveGround { height_m: pose.height_m });
+            return Err(RenderError::NotAboveGround { height_m: pose.height_m });
         }
         Ok(View::new(&self.world, pose))
     }

@@ -15,6 +15,7 @@ const CONTINUATION_S: f64 = 0.2;
 
 /// Poses that give no trajectory.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TrajectoryError {
     /// There is none.
     #[error("a trajectory needs poses: give at least one")]

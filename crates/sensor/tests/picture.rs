@@ -16,7 +16,7 @@ use reality_sim_core::{
     pose::CameraPose,
     sequence::Sequence,
 };
-use reality_sim_sensor::{PoseError, Renderer, SceneColors};
+use reality_sim_sensor::{RenderError, Renderer, SceneColors};
 
 fn draw(camera: &Camera, field: &FieldDimensions, pose: CameraPose) -> RgbImage {
     let setup = scene::linear_setup(camera.clone());
@@ -232,13 +232,13 @@ fn poses_from_which_nothing_can_be_drawn_are_errors() {
         ];
         for pose in poses {
             let error = renderer.draw(pose).unwrap_err();
-            assert!(matches!(error, PoseError::NotFinite(_)));
+            assert!(matches!(error, RenderError::NotFinite(_)));
             assert!(!error.to_string().contains('\n'));
         }
     }
     for height_m in [0.0, -0.5] {
         let error = renderer.draw(CameraPose { height_m, ..pose() }).unwrap_err();
-        assert_eq!(error, PoseError::NotAboveGround { height_m });
+        assert_eq!(error, RenderError::NotAboveGround { height_m });
     }
 }
 

@@ -16,7 +16,7 @@ use reality_sim_core::{
     sequence::{CameraSetup, Photometry},
 };
 use reality_sim_sensor::{
-    Chain, Frame, Model, PoseError, Renderer, SceneColors, Trajectory, effect, library,
+    Chain, Frame, Model, RenderError, Renderer, SceneColors, Trajectory, effect, library,
 };
 
 fn with(effects: &[(&str, &[f64])]) -> Model {
@@ -89,11 +89,11 @@ fn a_still_camera_draws_no_motion_and_a_moving_one_does() {
 fn poses_from_which_nothing_can_be_drawn_are_refused_at_any_row() {
     let setup = scene::linear_setup(scene::fisheye([32, 24], 11.0));
     let sinking = renderer(&setup, &scene::field(), &[("camera_height", &[-0.6])]);
-    assert!(matches!(sinking.draw_at(&walk(), 0.0, None), Err(PoseError::NotAboveGround { .. })));
-    assert!(matches!(sinking.draw(walk().at(0.0)), Err(PoseError::NotAboveGround { .. })));
+    assert!(matches!(sinking.draw_at(&walk(), 0.0, None), Err(RenderError::NotAboveGround { .. })));
+    assert!(matches!(sinking.draw(walk().at(0.0)), Err(RenderError::NotAboveGround { .. })));
     for id in ["rolling_shutter", "motion_blur"] {
         let moving = renderer(&setup, &scene::field(), &[(id, &[0.05])]);
-        assert!(matches!(moving.draw_at(&walk(), f64::NAN, None), Err(PoseError::NotFinite(_))));
+        assert!(matches!(moving.draw_at(&walk(), f64::NAN, None), Err(RenderError::NotFinite(_))));
     }
 }
 

@@ -8,12 +8,13 @@ use reality_sim_db::{DbError, index::NoNeighbours};
 
 /// A picture that cannot be given.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SynthesisError {
     /// The database cannot be read.
     #[error(transparent)]
     Database(#[from] DbError),
     /// The database holds no images.
-    #[error("{database}: holds no images: add a recording with `build`")]
+    #[error("{database}: holds no images: ingest a recording")]
     Empty {
         /// Its file.
         database: String,
@@ -57,7 +58,7 @@ pub enum SynthesisError {
         pose: CameraPose,
     },
     /// No image near the pose has the size of the camera wanted.
-    #[error("{}: no picture near it has {width} x {height} pixels: use `plane` or `blend`", shown(.pose))]
+    #[error("{}: no picture near it has {width} x {height} pixels: use the method `plane` or `blend`", shown(.pose))]
     OtherSize {
         /// The pose asked for.
         pose: CameraPose,
@@ -67,10 +68,18 @@ pub enum SynthesisError {
         height: u32,
     },
     /// The points of the ground that both see do not determine a polynomial.
-    #[error("{}: the nearest picture and this pose have too few points of the ground in common: use `plane` or `blend`", shown(.pose))]
+    #[error("{}: the nearest picture and this pose have too few points of the ground in common: use the method `plane` or `blend`", shown(.pose))]
     TooFewPoints {
         /// The pose asked for.
         pose: CameraPose,
+    },
+    /// The buffer for the picture has another length.
+    #[error("the buffer has {found} bytes, not {expected}: three for every pixel of the camera, row by row")]
+    BufferLength {
+        /// Bytes of the buffer given.
+        found: usize,
+        /// Bytes of a picture.
+        expected: usize,
     },
     /// The device that draws has failed.
     #[error(transparent)]

@@ -23,4 +23,22 @@ impl Synthesizer {
         near.map_err(|reason| SynthesisError::NoNeighbours { pose, reason })?;
         method.reconstruct(self, pose)
     }
+
+    /// Draws the picture at a pose into a buffer: RGB, 8 bits each, row by row from the top left, three bytes a pixel of
+    /// [`Synthesizer::camera`]. Returns the share of the pixels that some recorded image shows, 0 to 1. After an error the
+    /// buffer is as it was.
+    pub fn image_into(
+        &self,
+        pose: CameraPose,
+        method: &dyn Method,
+        buffer: &mut [u8],
+    ) -> Result<f64, SynthesisError> {
+        let expected = 3 * self.camera().width as usize * self.camera().height as usize;
+        if buffer.len() != expected {
+            return Err(SynthesisError::BufferLength { found: buffer.len(), expected });
+        }
+        let reconstruction = self.image_at(pose, method)?;
+        buffer.copy_from_slice(&reconstruction.picture);
+        Ok(reconstruction.covered())
+    }
 }

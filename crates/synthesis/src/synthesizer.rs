@@ -1,6 +1,6 @@
 //! A picture at any pose: the neighbours are found, their pictures decoded, the method draws.
 
-use std::sync::Arc;
+use std::{fmt, sync::Arc};
 
 use image::RgbImage;
 use reality_sim_core::{
@@ -14,6 +14,7 @@ use crate::{Archive, Reconstruction, SynthesisError, gain::gains, select::select
 
 /// How pictures are made.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct SynthesisConfig {
     /// Neighbours that are mixed, at most [`reality_sim_core::warp::MAX_SOURCES`].
     pub sources: usize,
@@ -34,6 +35,31 @@ impl SynthesisConfig {
         Self { sources: 6, candidates: 120, weights: BlendWeights::default(), reach_px, least_covered: 0.4 }
     }
 
+    /// The same, mixing at most so many neighbours.
+    pub fn with_sources(self, sources: usize) -> Self {
+        Self { sources, ..self }
+    }
+
+    /// The same, choosing among so many of the nearest images.
+    pub fn with_candidates(self, candidates: usize) -> Self {
+        Self { candidates, ..self }
+    }
+
+    /// The same, with neighbours weighed otherwise.
+    pub fn with_weights(self, weights: BlendWeights) -> Self {
+        Self { weights, ..self }
+    }
+
+    /// The same, refusing poses whose nearest image is farther, root mean square pixels.
+    pub fn with_reach_px(self, reach_px: f64) -> Self {
+        Self { reach_px, ..self }
+    }
+
+    /// The same, refusing pictures of which recorded images show a smaller share, 0 to 1.
+    pub fn with_least_covered(self, least_covered: f64) -> Self {
+        Self { least_covered, ..self }
+    }
+
     /// The same, with pictures wherever there is any image at all.
     pub fn best_effort(self) -> Self {
         Self { reach_px: f64::INFINITY, least_covered: 0.0, ..self }
@@ -47,6 +73,15 @@ pub struct Synthesizer {
     rays: RayTable,
     warper: Arc<dyn Warper>,
     config: SynthesisConfig,
+}
+
+impl fmt::Debug for Synthesizer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Synthesizer")
+            .field("camera", &self.camera)
+            .field("config", &self.config)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Synthesizer {

@@ -127,6 +127,23 @@ fn the_maps_of_origin_and_trust_agree_with_what_was_used() {
 }
 
 #[test]
+fn a_callers_buffer_gets_the_same_pixels_and_keeps_its_own_after_an_error() {
+    let (_folder, synthesizer) = without_some_frames();
+    let (pose, _) = truth(&walk(), 25);
+    let mut buffer = vec![7; 3 * 640 * 480];
+    for method in METHODS {
+        let made = synthesizer.image_at(pose, method).unwrap();
+        let covered = synthesizer.image_into(pose, method, &mut buffer).unwrap();
+        assert!(buffer == *made.picture && covered == made.covered(), "{}", method.name());
+    }
+    let before = buffer.clone();
+    assert!(synthesizer.image_into(CameraPose::default(), &Auto, &mut buffer).is_err());
+    assert!(buffer == before);
+    let short = synthesizer.image_into(pose, &Auto, &mut buffer[1..]).unwrap_err();
+    assert!(matches!(short, SynthesisError::BufferLength { found: 921_599, expected: 921_600 }), "{short}");
+}
+
+#[test]
 fn what_cannot_be_answered_is_refused_and_the_best_effort_is_not() {
     let (_folder, synthesizer) = without_some_frames();
     let usual = synthesizer.archive().usual_pose();
@@ -314,7 +331,7 @@ fn a_database_without_images_says_so() {
 fn more_sources_than_can_be_mixed_are_cut_off() {
     let (_folder, archive) = stored(&walk());
     let archive = Arc::new(archive);
-    let config = SynthesisConfig { sources: 3 * MAX_SOURCES, ..SynthesisConfig::new(&archive) };
+    let config = SynthesisConfig::new(&archive).with_sources(3 * MAX_SOURCES);
     let camera = archive.setup().camera.clone();
     let synthesizer = Synthesizer::with(archive, camera, Arc::new(reality_sim_core::warp::CpuWarper), config);
     let (pose, _) = truth(&walk(), 25);

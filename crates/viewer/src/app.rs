@@ -1,6 +1,9 @@
 //! What is in the window: the bars, the panel that is shown, and what is being opened.
 
-use std::path::{Path, PathBuf};
+use std::{
+    fmt,
+    path::{Path, PathBuf},
+};
 
 use eframe::{
     CreationContext, Frame, Storage,
@@ -53,6 +56,12 @@ struct Opening {
     purpose: Purpose,
     path: PathBuf,
     task: Task<Opened>,
+}
+
+impl fmt::Debug for ViewerApp {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ViewerApp").field("demonstration", &self.demonstration).finish_non_exhaustive()
+    }
 }
 
 impl ViewerApp {

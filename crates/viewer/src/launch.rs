@@ -15,6 +15,7 @@ use crate::{ViewerApp, ViewerOptions};
 
 /// Why there is no window.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ViewerError {
     /// No screen.
     #[error(

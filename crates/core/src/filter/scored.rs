@@ -45,6 +45,12 @@ pub struct ScoredFilter {
     filter: ParticleFilter,
 }
 
+impl std::fmt::Debug for ScoredFilter {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ScoredFilter").field("filter", &self.filter).finish_non_exhaustive()
+    }
+}
+
 impl ScoredFilter {
     /// A filter without particles.
     pub fn new(scorer: Box<dyn Scorer>, config: FilterConfig) -> Self {

@@ -33,6 +33,7 @@ impl SequenceError {
 
 /// What is wrong with a file or folder. Every message says what to do.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Fault {
     /// There is no such folder.
     #[error("there is no such folder: check the path, or record or write a sequence there first")]
@@ -256,6 +257,7 @@ fn is_unprintable(letter: char) -> bool {
 }
 
 /// A path for a message: without line breaks.
+#[derive(Debug)]
 pub struct Printable<'a>(pub &'a Path);
 
 impl fmt::Display for Printable<'_> {

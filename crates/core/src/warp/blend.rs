@@ -24,6 +24,7 @@ pub const MAX_SOURCES: usize = 8;
 
 /// How neighbours are weighed against each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct BlendWeights {
     /// Penalty of a right angle between the lines of sight on the ground.
     pub angle_on_ground: f32,
@@ -37,6 +38,38 @@ pub struct BlendWeights {
     pub softness: f32,
     /// Colours that differ by this from the others' have half the weight, grey levels.
     pub disagreement: f32,
+}
+
+impl BlendWeights {
+    /// The same, with another penalty of a right angle between the lines of sight on the ground.
+    pub fn with_angle_on_ground(self, angle_on_ground: f32) -> Self {
+        Self { angle_on_ground, ..self }
+    }
+
+    /// The same, with another penalty of a right angle above the ground.
+    pub fn with_angle_above(self, angle_above: f32) -> Self {
+        Self { angle_above, ..self }
+    }
+
+    /// The same, with another penalty of coarse sources.
+    pub fn with_resolution(self, resolution: f32) -> Self {
+        Self { resolution, ..self }
+    }
+
+    /// The same, with weights that fall to 0 within this distance of a border, pixels.
+    pub fn with_border_px(self, border_px: f32) -> Self {
+        Self { border_px, ..self }
+    }
+
+    /// The same, with this added to all penalties.
+    pub fn with_softness(self, softness: f32) -> Self {
+        Self { softness, ..self }
+    }
+
+    /// The same, with half the weight for colours that differ by this from the others', grey levels.
+    pub fn with_disagreement(self, disagreement: f32) -> Self {
+        Self { disagreement, ..self }
+    }
 }
 
 impl Default for BlendWeights {

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use image::{GrayImage, Luma, RgbImage};
 use reality_sim_core::sequence::SequenceError;
-use reality_sim_sensor::{Chain, Model, ModelError, PoseError, Renderer, SceneColors};
+use reality_sim_sensor::{Chain, Model, ModelError, RenderError, Renderer, SceneColors};
 
 use crate::{
     measurement::frame::FrameCamera, measurement::visibility::Surroundings, recording::Recording,
@@ -38,7 +38,7 @@ pub enum PicturesError {
         /// Of the frame in the recording.
         index: usize,
         /// What is wrong with it.
-        source: PoseError,
+        source: RenderError,
     },
 }
 

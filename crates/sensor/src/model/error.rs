@@ -23,6 +23,7 @@ pub struct ModelError {
 
 /// What is wrong with a model. Every message says what to do.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ModelFault {
     /// There is no such file.
     #[error("there is no such file: check the name, or put the file there")]

@@ -1,0 +1,70 @@
+//! The options and commands that help against an error of the library, which knows nothing of a command line.
+
+#[cfg(feature = "gpu")]
+use reality_sim::gpu::GpuError;
+use reality_sim::{
+    SynthesisError,
+    db::{DbError, DbFault, index::NoNeighbours},
+};
+
+/// What to type, in a few words; `None` where the message says all.
+pub fn advice(error: &anyhow::Error) -> Option<&'static str> {
+    error.chain().find_map(|cause| {
+        if let Some(error) = cause.downcast_ref() {
+            return of_synthesis(error);
+        }
+        #[cfg(feature = "gpu")]
+        if let Some(error) = cause.downcast_ref() {
+            return of_graphics(error);
+        }
+        of_database(cause.downcast_ref()?)
+    })
+}
+
+fn of_synthesis(error: &SynthesisError) -> Option<&'static str> {
+    match error {
+        SynthesisError::Database(error) => of_database(error),
+        SynthesisError::Empty { .. } => Some("`reality-sim build RECORDING --out DATABASE`"),
+        SynthesisError::NoNeighbours { reason: NoNeighbours::OutOfReach { .. }, .. }
+        | SynthesisError::TooLittleSeen { .. } => Some("`--best-effort`"),
+        SynthesisError::OtherSize { .. } | SynthesisError::TooFewPoints { .. } => {
+            Some("`--method plane` or `--method blend`")
+        }
+        _ => None,
+    }
+}
+
+fn of_database(error: &DbError) -> Option<&'static str> {
+    match error {
+        DbError::Database { fault: DbFault::Missing, .. } => {
+            Some("`reality-sim build RECORDING --out DATABASE`")
+        }
+        DbError::Database { fault: DbFault::Older { .. }, .. } => {
+            Some("`reality-sim build`, with one of its recordings, opens it for writing")
+        }
+        _ => None,
+    }
+}
+
+#[cfg(feature = "gpu")]
+fn of_graphics(error: &GpuError) -> Option<&'static str> {
+    match error {
+        GpuError::NoSuchAdapter { .. } => Some("`reality-sim doctor` lists them"),
+        _ => Some("`--backend cpu`"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use anyhow::Context;
+
+    use super::*;
+
+    #[test]
+    fn an_option_of_the_command_is_found_behind_context_and_other_errors_have_none() {
+        let empty = SynthesisError::Empty { database: "walk.db".to_owned() };
+        let error = Err::<(), _>(empty).context("walk.db").expect_err("it is one");
+        assert!(advice(&error).is_some_and(|words| words.contains("--out")));
+        assert_eq!(advice(&anyhow::anyhow!("something else")), None);
+    }
+}
