@@ -11,10 +11,10 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let preprocessor = Preprocessor::new(&scene.walk.setup.camera, scene.walk.field.line_width_m);
     let mut group = criterion.benchmark_group("border");
     group.bench_function("detect", |bencher| {
-        bencher.iter(|| detector.detect(scene.picture(), scene.attitude()));
+        bencher.iter(|| detector.detect(scene.picture(), scene.mount()));
     });
     group.bench_function("prepare", |bencher| {
-        bencher.iter(|| preprocessor.prepare(scene.picture().clone(), scene.attitude()));
+        bencher.iter(|| preprocessor.prepare(scene.picture().clone(), scene.mount()));
     });
     group.finish();
 }

@@ -1,7 +1,7 @@
 //! Whole frames: what `reality-sim tag` does with every picture once it is decoded.
 
 use criterion::{BatchSize, Criterion, SamplingMode, Throughput};
-use reality_sim::{TagConfig, Tagger};
+use reality_sim::{Localizer, LocalizerConfig};
 
 use crate::{scene::Scene, scoring::MODELS};
 
@@ -13,9 +13,13 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     for (name, kind) in MODELS {
         group.bench_function(name, |bencher| {
             bencher.iter_batched_ref(
-                || Tagger::new(&walk.setup.camera, &walk.field, walk.start, TagConfig::new(kind)),
-                |tagger| {
-                    scene.recorded().map(|picture| tagger.tag(&picture)).last().expect("pictures").is_ok()
+                || {
+                    let builder = Localizer::builder(&walk.setup.camera, &walk.field).start(walk.start);
+                    builder.config(LocalizerConfig::new(kind)).build().expect("the processor never fails")
+                },
+                |localizer| {
+                    let frames = scene.observations().map(|observation| localizer.update(&observation));
+                    frames.last().expect("pictures").is_ok()
                 },
                 BatchSize::PerIteration,
             );

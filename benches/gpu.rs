@@ -10,13 +10,13 @@ use std::sync::Arc;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, SamplingMode, Throughput};
 use reality_sim::{
-    ObservationKind, TagConfig,
+    LocalizerConfig, ObservationKind,
     backend::{Backend, CpuBackend},
     filter::PlanarSigma,
     gpu::{GpuBackend, GpuContext, GpuFilter},
+    mount::MountPoseSigma,
     observation::{CpuScorer, ObservationConfig},
-    refine::AttitudeTolerance,
-    search::{GlobalSearch, SearchGrid},
+    search::{GlobalSearch, SearchConfig, SearchGrid},
 };
 
 use crate::{scene::Scene, scoring::MODELS, warp};
@@ -58,16 +58,16 @@ fn whole_frames(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dy
         let mut group = criterion.benchmark_group(format!("filter/{name}"));
         group.sampling_mode(SamplingMode::Flat);
         for (device, backend) in backends {
-            let config = TagConfig::new(kind);
+            let config = LocalizerConfig::new(kind);
             let mut filter = backend
                 .filter(&walk.setup.camera, &walk.field, config.observation, config.filter)
                 .expect("a device that works");
-            filter.place(&[(scene.pose(), 1.0)], SIGMA);
+            filter.initialize(&[(scene.pose(), 1.0)], SIGMA).expect("a device that works");
             group.bench_function(*device, |bencher| {
                 bencher.iter(|| {
-                    filter.load(scene.prepared());
-                    filter.predict(None);
-                    filter.update(scene.attitude(), SIGMA)
+                    filter.load(scene.prepared())?;
+                    filter.predict(None)?;
+                    filter.update(scene.mount(), SIGMA)
                 });
             });
         }
@@ -82,7 +82,7 @@ fn print_stages(scene: &Scene, context: &Arc<GpuContext>) {
     const FRAMES: usize = 8;
     let walk = &scene.walk;
     for (name, kind) in MODELS {
-        let config = TagConfig::new(kind);
+        let config = LocalizerConfig::new(kind);
         let filter = GpuFilter::new(
             context.clone(),
             &walk.setup.camera,
@@ -91,13 +91,13 @@ fn print_stages(scene: &Scene, context: &Arc<GpuContext>) {
             config.filter,
         );
         let mut filter = filter.expect("a device that works");
-        filter.place(&[(scene.pose(), 1.0)], SIGMA);
+        filter.initialize(&[(scene.pose(), 1.0)], SIGMA).expect("a device that works");
         let mut stages: Vec<(&str, f64)> = Vec::new();
         // The first frame warms everything up.
         for frame in 0..=FRAMES {
-            filter.load(scene.prepared());
-            filter.predict(None);
-            let timed = match filter.timed_update(scene.attitude(), SIGMA) {
+            filter.load(scene.prepared()).expect("a device that works");
+            filter.predict(None).expect("a device that works");
+            let timed = match filter.timed_update(scene.mount(), SIGMA) {
                 Ok(timed) => timed,
                 Err(error) => return println!("filter/{name}: stages: absent: {error}"),
             };
@@ -131,14 +131,14 @@ fn many_particles(
         group.sampling_mode(SamplingMode::Flat);
         group.throughput(Throughput::Elements((particles * samples) as u64));
         for (device, backend) in backends {
-            let mut config = TagConfig::new(ObservationKind::Gauss).filter;
+            let mut config = LocalizerConfig::new(ObservationKind::Gauss).filter;
             (config.particles, config.iterations) = (particles, 1);
             let mut filter = backend
                 .filter(&walk.setup.camera, &walk.field, observation, config)
                 .expect("a device that holds them");
-            filter.load(scene.prepared());
-            filter.place(&[(scene.pose(), 1.0)], SIGMA);
-            group.bench_function(*device, |bencher| bencher.iter(|| filter.update(scene.attitude(), SIGMA)));
+            filter.load(scene.prepared()).expect("a device that works");
+            filter.initialize(&[(scene.pose(), 1.0)], SIGMA).expect("a device that works");
+            group.bench_function(*device, |bencher| bencher.iter(|| filter.update(scene.mount(), SIGMA)));
         }
         group.finish();
     }
@@ -151,12 +151,12 @@ fn search(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dyn Back
     let mut group = criterion.benchmark_group("grid_search");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(poses as u64));
     for (device, backend) in backends {
-        let tolerance = AttitudeTolerance::default();
-        let mut search = GlobalSearch::with_backend(&walk.setup.camera, &walk.field, tolerance, *backend)
-            .expect("a device that works");
+        let (config, sigma) = (SearchConfig::default(), MountPoseSigma::default());
+        let search = GlobalSearch::with_backend(&walk.setup.camera, &walk.field, config, sigma, *backend);
+        let mut search = search.expect("a device that works");
         search.set_grid(GRID);
         group.bench_function(BenchmarkId::new(*device, poses), |bencher| {
-            bencher.iter(|| search.best_on_grid(scene.prepared(), scene.attitude(), None));
+            bencher.iter(|| search.best_on_grid(scene.prepared(), scene.mount(), None));
         });
     }
     group.finish();
@@ -170,7 +170,7 @@ fn start(criterion: &mut Criterion, scene: &Scene, context: &Arc<GpuContext>, ad
     group.bench_function(BenchmarkId::new("device", adapter), |bencher| {
         bencher.iter(|| GpuContext::new(None));
     });
-    let config = TagConfig::new(ObservationKind::Gauss);
+    let config = LocalizerConfig::new(ObservationKind::Gauss);
     group.bench_function(BenchmarkId::new("pipelines", adapter), |bencher| {
         bencher.iter_batched(
             || context.clone(),

@@ -13,9 +13,9 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let refiner = Refiner::new(&scene.walk.setup.camera, &scene.walk.field, RefineConfig::default());
     let texture = Texture::pack(&scene.prepared().whiteness);
     let contrast = f64::from(scene.prepared().levels.contrast());
-    let mut guess = scene.attitude().at(scene.pose());
+    let mut guess = scene.mount().at(scene.pose());
     guess.x_m += 0.03;
     criterion.bench_function("refinement", |bencher| {
-        bencher.iter(|| refiner.fit(&texture, guess, scene.attitude(), contrast, Reach::Wide));
+        bencher.iter(|| refiner.fit(&texture, guess, scene.mount(), contrast, Reach::Wide));
     });
 }

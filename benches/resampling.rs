@@ -4,7 +4,7 @@ use criterion::{Criterion, Throughput};
 use reality_sim::{
     ObservationKind,
     filter::{Purpose, Resampling, Stream, normalise},
-    observation::{CpuScorer, ObservationConfig, Scorer},
+    observation::{CpuScorer, ObservationConfig},
 };
 
 use crate::scene::Scene;
@@ -15,8 +15,8 @@ const PARTICLES: usize = 800;
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let config = ObservationConfig::new(ObservationKind::Gauss);
     let mut scorer = CpuScorer::new(&scene.walk.setup.camera, &scene.walk.field, config);
-    scorer.load(scene.prepared());
-    let weights = normalise(&scorer.log_weights(&scene.particles(PARTICLES)));
+    scorer.set_picture(scene.prepared());
+    let weights = normalise(&scorer.log_weights_of(&scene.particles(PARTICLES)));
     let stream = Stream::new(0, Purpose::Resample, 0, 0);
     let mut group = criterion.benchmark_group("resampling");
     group.throughput(Throughput::Elements(PARTICLES as u64));

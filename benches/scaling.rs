@@ -5,7 +5,7 @@ use rayon::ThreadPoolBuilder;
 use reality_sim::{
     ObservationKind,
     filter::{FilterConfig, ParticleFilter, PlanarSigma},
-    observation::{CpuScorer, ObservationConfig, Scorer},
+    observation::{CpuScorer, ObservationConfig},
 };
 
 use crate::scene::Scene;
@@ -17,7 +17,7 @@ const THREADS: [usize; 2] = [1, 2];
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let config = ObservationConfig::new(ObservationKind::Gauss);
     let mut scorer = CpuScorer::new(&scene.walk.setup.camera, &scene.walk.field, config);
-    scorer.load(scene.prepared());
+    scorer.set_picture(scene.prepared());
     let sigma = PlanarSigma { position_m: 0.03, yaw_rad: 0.03 };
     for threads in THREADS {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
@@ -31,7 +31,7 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
                 pool.install(|| {
                     bencher.iter_batched_ref(
                         || filter.clone(),
-                        |filter| filter.update(&scorer, scene.attitude(), sigma),
+                        |filter| filter.update(&scorer, scene.mount(), sigma),
                         BatchSize::LargeInput,
                     );
                 });

@@ -6,8 +6,9 @@ use image::RgbImage;
 use reality_sim::{
     CameraPose, Pose2, Sequence,
     filter::{Purpose, Stream},
-    preprocess::{Attitude, Prepared, Preprocessor},
-    tag::{Recorded, recorded},
+    localization::{Observation, mount_of_frame},
+    mount::MountPose,
+    preprocess::{Prepared, Preprocessor},
 };
 
 /// Pictures taken.
@@ -33,15 +34,16 @@ impl Scene {
         walk.frames.truncate(PICTURES);
         let picture = |index| Arc::new(walk.load_image(index).expect("a picture of the demonstration walk"));
         let pictures: Vec<Arc<RgbImage>> = (0..PICTURES).map(picture).collect();
-        let attitude = recorded(&walk, MIDDLE, &pictures[MIDDLE]).attitude;
+        let mount = mount_of_frame(&walk, MIDDLE);
         let preprocessor = Preprocessor::new(&walk.setup.camera, walk.field.line_width_m);
-        let prepared = preprocessor.prepare(pictures[MIDDLE].clone(), attitude);
+        let prepared = preprocessor.prepare(pictures[MIDDLE].clone(), mount);
         Self { walk, pictures, prepared }
     }
 
-    /// All pictures, as the tagger takes them.
-    pub fn recorded(&self) -> impl Iterator<Item = Recorded> {
-        self.pictures.iter().enumerate().map(|(index, picture)| recorded(&self.walk, index, picture))
+    /// All pictures, as the localizer takes them.
+    pub fn observations(&self) -> impl Iterator<Item = Observation> {
+        let pictures = self.pictures.iter().enumerate();
+        pictures.map(|(index, picture)| Observation::of_frame(&self.walk, index, picture))
     }
 
     /// The pictures around that one, from so many frames on, and where they were taken.
@@ -67,8 +69,8 @@ impl Scene {
     }
 
     /// What joints and IMU say of it.
-    pub fn attitude(&self) -> Attitude {
-        recorded(&self.walk, MIDDLE, self.picture()).attitude
+    pub fn mount(&self) -> MountPose {
+        mount_of_frame(&self.walk, MIDDLE)
     }
 
     /// Where it was taken.
@@ -85,7 +87,7 @@ impl Scene {
             let [place, heading] = SPREAD;
             let planar =
                 Pose2::new(pose.x_m + place * n[0], pose.y_m + place * n[1], pose.yaw_rad + heading * n[2]);
-            self.attitude().at(planar)
+            self.mount().at(planar)
         };
         (0..count as u32).map(particle).collect()
     }

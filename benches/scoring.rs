@@ -3,7 +3,7 @@
 use criterion::{Criterion, Throughput};
 use reality_sim::{
     ObservationKind,
-    observation::{CpuScorer, ObservationConfig, Scorer},
+    observation::{CpuScorer, ObservationConfig},
 };
 
 use crate::scene::Scene;
@@ -25,16 +25,16 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     for (name, kind) in MODELS {
         let mut scorer =
             CpuScorer::new(&scene.walk.setup.camera, &scene.walk.field, ObservationConfig::new(kind));
-        scorer.load(scene.prepared());
+        scorer.set_picture(scene.prepared());
         group.throughput(Throughput::Elements((PARTICLES * scorer.samples()) as u64));
-        group.bench_function(name, |bencher| bencher.iter(|| scorer.log_weights(&particles)));
+        group.bench_function(name, |bencher| bencher.iter(|| scorer.log_weights_of(&particles)));
     }
     group.finish();
     let mut group = criterion.benchmark_group("load");
     for (name, kind) in MODELS {
         let mut scorer =
             CpuScorer::new(&scene.walk.setup.camera, &scene.walk.field, ObservationConfig::new(kind));
-        group.bench_function(name, |bencher| bencher.iter(|| scorer.load(scene.prepared())));
+        group.bench_function(name, |bencher| bencher.iter(|| scorer.set_picture(scene.prepared())));
     }
     group.finish();
 }

@@ -1,18 +1,18 @@
 //! The whole field searched for where a picture was taken.
 
 use criterion::{Criterion, SamplingMode};
-use reality_sim::{refine::AttitudeTolerance, search::GlobalSearch};
+use reality_sim::{mount::MountPoseSigma, search::GlobalSearch};
 
 use crate::scene::Scene;
 
 /// Nothing is known but what joints and IMU say.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
-    let tolerance = AttitudeTolerance::default();
-    let mut search = GlobalSearch::new(&scene.walk.setup.camera, &scene.walk.field, tolerance);
+    let mount_sigma = MountPoseSigma::default();
+    let mut search = GlobalSearch::new(&scene.walk.setup.camera, &scene.walk.field, mount_sigma);
     let mut group = criterion.benchmark_group("search");
     group.sampling_mode(SamplingMode::Flat);
     group.bench_function("whole_field", |bencher| {
-        bencher.iter(|| search.search(scene.prepared(), scene.attitude(), None, 0));
+        bencher.iter(|| search.search(scene.prepared(), scene.mount(), None, 0));
     });
     group.finish();
 }

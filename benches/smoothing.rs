@@ -2,7 +2,7 @@
 
 use criterion::{Criterion, Throughput};
 use reality_sim::{
-    ObservationKind, TagConfig, Tagger,
+    Localizer,
     refine::{TrajectoryFrame, smooth_trajectory},
 };
 
@@ -14,17 +14,16 @@ const FRAMES: usize = 300;
 /// Elements are frames.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let walk = &scene.walk;
-    let config = TagConfig::new(ObservationKind::Contrast);
-    let mut tagger = Tagger::new(&walk.setup.camera, &walk.field, walk.start, config);
-    let tagged = scene.recorded().map(|picture| {
-        let attitude = picture.attitude;
-        (tagger.tag(&picture).expect("the processor never fails"), attitude)
-    });
-    let once: Vec<TrajectoryFrame> = tagged
-        .map(|(frame, attitude)| TrajectoryFrame {
+    let builder = Localizer::builder(&walk.setup.camera, &walk.field).start(walk.start);
+    let mut localizer = builder.build().expect("the processor never fails");
+    let config = *localizer.config();
+    let once: Vec<TrajectoryFrame> = scene
+        .observations()
+        .map(|observation| localizer.update(&observation).expect("the processor never fails"))
+        .map(|frame| TrajectoryFrame {
             guess: frame.pose,
             fit: frame.fit,
-            attitude,
+            mount: frame.mount,
             motion: frame.motion,
         })
         .collect();
@@ -32,7 +31,7 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let mut group = criterion.benchmark_group("smoothing");
     group.throughput(Throughput::Elements(FRAMES as u64));
     group.bench_function("trajectory", |bencher| {
-        bencher.iter(|| smooth_trajectory(&frames, config.tolerance, config.filter.noise));
+        bencher.iter(|| smooth_trajectory(&frames, config.mount_sigma, config.filter.noise));
     });
     group.finish();
 }

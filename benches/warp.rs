@@ -21,7 +21,7 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dyn B
     let camera = KernelCamera::new(&walk.setup.camera);
     let rays = RayTable::new(&walk.setup.camera);
     let Pose2 { x_m, y_m, yaw_rad } = scene.pose();
-    let pose = scene.attitude().at(Pose2::new(x_m + 0.1, y_m - 0.05, yaw_rad + 0.1));
+    let pose = scene.mount().at(Pose2::new(x_m + 0.1, y_m - 0.05, yaw_rad + 0.1));
     let hull = Hull::new(&Hall::usual(&walk.field), &walk.field).holding(pose);
     let target = Target { rays: &rays, placement: Placement::new(pose), hull: &hull };
     for (name, count) in METHODS {

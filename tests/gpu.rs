@@ -9,13 +9,13 @@ use std::{path::Path, process::Command, sync::Arc};
 use serde_json::Value;
 
 use reality_sim::{
-    CameraPose, ObservationKind, Pose2, Sequence, TagConfig, TaggedFrame, Tagger,
+    CameraPose, LocalizedFrame, Localizer, LocalizerConfig, ObservationKind, Pose2, Sequence,
     backend::{Backend, CpuBackend},
     evaluation::PoseError,
     filter::Resampling,
     gpu::{GpuBackend, GpuContext},
-    preprocess::{Attitude, Preprocessor},
-    tag::{recorded, tag_sequence},
+    localization::mount_of_frame,
+    preprocess::Preprocessor,
 };
 
 fn walk() -> Sequence {
@@ -30,14 +30,14 @@ fn gpu() -> Arc<dyn Backend> {
 
 fn tagged(
     sequence: &Sequence,
-    config: TagConfig,
+    config: LocalizerConfig,
     start: Option<Pose2>,
     backend: Arc<dyn Backend>,
-) -> Vec<TaggedFrame> {
+) -> Vec<LocalizedFrame> {
     let Sequence { setup, field, .. } = sequence;
-    let mut tagger =
-        Tagger::with_backend(&setup.camera, field, start, config, backend).expect("a device that works");
-    tag_sequence(sequence, &mut tagger, |_, _, _, _| Ok(())).expect("every picture can be read")
+    let builder = Localizer::builder(&setup.camera, field).config(config).start(start);
+    let mut localizer = builder.backend(backend).build().expect("a device that works");
+    localizer.run(sequence).collect::<Result<_, _>>().expect("every picture can be read")
 }
 
 fn distance_m(a: CameraPose, b: CameraPose) -> f64 {
@@ -60,10 +60,10 @@ fn the_walk_is_tagged_as_well_as_on_the_cpu() {
         (ObservationKind::Distance, 0.01, 0.025),
         (ObservationKind::Contrast, 0.0002, 0.001),
     ] {
-        let config = TagConfig::new(kind);
+        let config = LocalizerConfig::new(kind);
         let found = tagged(&sequence, config, sequence.start, gpu.clone());
         let expected = tagged(&sequence, config, sequence.start, Arc::new(CpuBackend));
-        let error = |frames: &[TaggedFrame]| {
+        let error = |frames: &[LocalizedFrame]| {
             let pairs = frames.iter().zip(sequence.reference_poses());
             mean(pairs.filter_map(|(frame, truth)| Some(PoseError::new(frame.pose, truth?).distance_m)))
         };
@@ -95,7 +95,7 @@ fn the_best_particle_is_that_of_the_cpu() {
         (ObservationKind::Contrast, 0.001),
     ] {
         for resampling in [Resampling::Residual, Resampling::Systematic] {
-            let mut config = TagConfig::new(kind);
+            let mut config = LocalizerConfig::new(kind);
             config.filter.resampling = resampling;
             let filter = |backend: &dyn Backend| {
                 let filter = backend.filter(&setup.camera, field, config.observation, config.filter);
@@ -105,16 +105,17 @@ fn the_best_particle_is_that_of_the_cpu() {
             let (mut same, mut apart_m) = (0, Vec::new());
             for (index, truth) in sequence.reference_poses().enumerate() {
                 let picture = Arc::new(sequence.load_image(index).expect("every picture can be read"));
-                let attitude: Attitude = recorded(&sequence, index, &picture).attitude;
-                let prepared = preprocessor.prepare(picture, attitude);
+                let mount = mount_of_frame(&sequence, index);
+                let prepared = preprocessor.prepare(picture, mount);
                 let sigma = config.filter.noise.sigma(None);
                 let near = truth.expect("exact truth").planar();
                 let [a, b] = [&mut found, &mut expected].map(|filter| {
-                    filter.load(&prepared);
-                    filter.predict(None);
-                    filter.place(&[(near, 1.0)], sigma);
-                    filter.update(attitude, sigma).pose
+                    filter.load(&prepared)?;
+                    filter.predict(None)?;
+                    filter.initialize(&[(near, 1.0)], sigma)?;
+                    filter.update(mount, sigma)
                 });
+                let [a, b] = [a, b].map(|estimate| estimate.expect("a device that works").pose);
                 same += usize::from(distance_m(a, b) < 1e-5 && (a.yaw_rad - b.yaw_rad).abs() < 1e-5);
                 apart_m.push(distance_m(a, b));
             }
@@ -131,7 +132,7 @@ fn the_best_particle_is_that_of_the_cpu() {
 fn a_start_that_nobody_knows_is_found_on_the_device() {
     let mut sequence = walk();
     sequence.frames.truncate(5);
-    let config = TagConfig::new(ObservationKind::Contrast);
+    let config = LocalizerConfig::new(ObservationKind::Contrast);
     let found = tagged(&sequence, config, None, gpu());
     let (last, truth) = (found[4].pose, sequence.frames[4].reference_pose.expect("exact truth"));
     assert!(distance_m(last, truth).min(distance_m(last.mirrored(), truth)) < 0.02, "{last:?}");

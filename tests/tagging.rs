@@ -1,10 +1,10 @@
 //! What a recording's tags are worth, on the demonstration walk: from nowhere, after being carried, and smoothed.
 
-use std::{path::Path, sync::Arc};
+use std::path::Path;
 
 use reality_sim::{
-    CameraPose, ObservationKind, Pose2, Sequence, TagConfig, TaggedFrame, Tagger,
-    tag::{smooth_sequence, tag_sequence},
+    CameraPose, LocalizedFrame, Localizer, LocalizerConfig, ObservationKind, Pose2, Sequence,
+    localization::Picture,
 };
 
 fn walk() -> Sequence {
@@ -17,10 +17,15 @@ fn cut(mut sequence: Sequence, frames: std::ops::Range<usize>) -> Sequence {
     sequence
 }
 
-fn tag(sequence: &Sequence, start: Option<Pose2>, config: TagConfig) -> (Tagger, Vec<TaggedFrame>) {
-    let mut tagger = Tagger::new(&sequence.setup.camera, &sequence.field, start, config);
-    let tagged = tag_sequence(sequence, &mut tagger, |_, _, _, _| Ok(())).expect("every picture can be read");
-    (tagger, tagged)
+fn tag(
+    sequence: &Sequence,
+    start: Option<Pose2>,
+    config: LocalizerConfig,
+) -> (Localizer, Vec<LocalizedFrame>) {
+    let builder = Localizer::builder(&sequence.setup.camera, &sequence.field).config(config).start(start);
+    let mut localizer = builder.build().expect("the processor never fails");
+    let frames: Result<_, _> = localizer.run(sequence).collect();
+    (localizer, frames.expect("every picture can be read"))
 }
 
 fn is_right(pose: CameraPose, truth: CameraPose) -> bool {
@@ -30,7 +35,7 @@ fn is_right(pose: CameraPose, truth: CameraPose) -> bool {
 
 #[test]
 fn found_from_nowhere_without_odometry_within_five_pictures() {
-    let config = TagConfig { odometry: false, ..TagConfig::new(ObservationKind::Contrast) };
+    let config = LocalizerConfig::default().with_odometry(false);
     for first in [0, 9, 21, 33, 47, 55] {
         let sequence = cut(walk(), first..first + 5);
         let (_, tagged) = tag(&sequence, None, config);
@@ -45,12 +50,12 @@ fn found_from_nowhere_without_odometry_within_five_pictures() {
 
 #[test]
 fn goals_of_two_colours_tell_the_halves_apart() {
-    let config = TagConfig::new(ObservationKind::Contrast);
+    let config = LocalizerConfig::default();
     let sequence = walk();
     let (_, tagged) = tag(&sequence, None, config);
     let last = tagged.last().expect("sixty pictures");
     assert!(is_right(last.pose, sequence.frames[59].reference_pose.expect("exact truth")));
-    assert!(last.mirror_probability < 0.05, "{}", last.mirror_probability);
+    assert!(last.mirrored_probability < 0.05, "{}", last.mirrored_probability);
 
     let plain = Sequence {
         field: reality_sim::FieldDimensions {
@@ -61,7 +66,7 @@ fn goals_of_two_colours_tell_the_halves_apart() {
         ..cut(sequence, 0..3)
     };
     let (_, tagged) = tag(&plain, None, config);
-    assert!(tagged.iter().all(|frame| frame.mirror_probability == 0.5), "nothing tells them apart");
+    assert!(tagged.iter().all(|frame| frame.mirrored_probability == 0.5), "nothing tells them apart");
 }
 
 /// Carried while nobody looked: pictures are missing, and the odometry starts again.
@@ -75,7 +80,7 @@ fn found_again_after_being_carried_and_never_sure_while_wrong() {
             frame.odometry = Some(Pose2::default().moved(motion));
         }
         sequence.frames.drain(10..40);
-        let (_, tagged) = tag(&sequence, sequence.start, TagConfig::new(kind));
+        let (_, tagged) = tag(&sequence, sequence.start, LocalizerConfig::new(kind));
         for (index, frame) in tagged.iter().enumerate() {
             let truth = sequence.frames[index].reference_pose.expect("exact truth");
             let right = is_right(frame.pose, truth);
@@ -91,9 +96,12 @@ fn found_again_after_being_carried_and_never_sure_while_wrong() {
 #[test]
 fn smoothed_poses_are_exact_and_their_covariances_honest() {
     let sequence = walk();
-    let config = TagConfig { refine: true, ..TagConfig::new(ObservationKind::Contrast) };
-    let (tagger, tagged) = tag(&sequence, sequence.start, config);
-    let smoothed = smooth_sequence(&sequence, &tagger, &tagged)
+    let config = LocalizerConfig::default().with_refinement(true);
+    let (localizer, tagged) = tag(&sequence, sequence.start, config);
+    let picture = |index| sequence.load_image(index).map(Picture::from);
+    let smoothed = localizer
+        .smoother()
+        .smooth(&tagged, picture)
         .expect("every picture can be read")
         .expect("there are lines");
     let (mut worst_m, mut inside) = (0.0_f64, [0; 3]);
@@ -124,17 +132,8 @@ fn tagging_without_memory_of_the_threads_it_ran_on() {
     let sequence = cut(walk(), 0..4);
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
-        let mut poses = Vec::new();
-        pool.install(|| {
-            let config = TagConfig::new(ObservationKind::Contrast);
-            let mut tagger = Tagger::new(&sequence.setup.camera, &sequence.field, None, config);
-            for index in 0..sequence.frames.len() {
-                let picture = Arc::new(sequence.load_image(index).expect("every picture can be read"));
-                let tagged = tagger.tag(&reality_sim::tag::recorded(&sequence, index, &picture));
-                poses.push(tagged.expect("the processor never fails").pose);
-            }
-        });
-        poses
+        let (_, frames) = pool.install(|| tag(&sequence, None, LocalizerConfig::default()));
+        frames.into_iter().map(|frame| frame.pose).collect::<Vec<_>>()
     };
     assert_eq!(run(1), run(3));
 }

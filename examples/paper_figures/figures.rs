@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use anyhow::Context;
 use plotters::prelude::*;
-use reality_sim::{ObservationKind, TagConfig};
+use reality_sim::{LocalizerConfig, ObservationKind};
 
 use crate::{
     OUT,
@@ -29,9 +29,8 @@ const CURVES: [(ObservationKind, &str); 4] = [
 const PARTICLES_ALONE: &str = "gauss, particles alone";
 
 /// A model as in the paper: neither search nor refinement.
-fn as_in_the_paper(kind: ObservationKind) -> TagConfig {
-    let config = TagConfig::new(kind);
-    TagConfig { recovery: false, refine: false, ..config }
+fn as_in_the_paper(kind: ObservationKind) -> LocalizerConfig {
+    LocalizerConfig::new(kind).with_relocalization(false).with_refinement(false)
 }
 
 /// Appends both tables and writes the plots.
@@ -54,7 +53,7 @@ fn table_2(recording: &Recording, seeds: u64, text: &mut String) -> anyhow::Resu
             let label = "Eq. 1 to the letter, as in the paper";
             table_2_row(recording, seeds, label, paper, Model::NormalSearch, text)?;
         }
-        let default = TagConfig::new(kind);
+        let default = LocalizerConfig::new(kind);
         table_2_row(recording, seeds, &format!("`{name}`, default"), default, Model::Configured, text)?;
     }
     Ok(())
@@ -64,7 +63,7 @@ fn table_2_row(
     recording: &Recording,
     seeds: u64,
     label: &str,
-    config: TagConfig,
+    config: LocalizerConfig,
     model: Model,
     text: &mut String,
 ) -> anyhow::Result<()> {
@@ -91,11 +90,11 @@ fn figure_9(recording: &Recording, seeds: u64, text: &mut String) -> anyhow::Res
     for particles in PARTICLES {
         write!(text, "| {particles} |")?;
         for (curve, (kind, name)) in curves.iter_mut().zip(CURVES) {
-            let mut config = TagConfig::new(kind);
+            let mut config = LocalizerConfig::new(kind);
             config.filter.particles = particles;
             if name == PARTICLES_ALONE {
                 config.filter.iterations = 1;
-                (config.odometry, config.recovery) = (false, false);
+                (config.uses_odometry, config.relocalizes) = (false, false);
             }
             let runs = recording.runs(seeds, config, Model::Configured)?;
             let [low, high] = runs.range_cm();

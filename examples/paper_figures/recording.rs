@@ -4,12 +4,11 @@ use std::{path::Path, sync::Arc};
 
 use image::RgbImage;
 use reality_sim::{
-    Camera, FieldDimensions, Sequence, TagConfig, Tagger,
+    Camera, FieldDimensions, Localizer, LocalizerConfig, Observation, Sequence,
     backend::{Backend, BackendError, CpuBackend},
     evaluation::{PoseError, percentile},
     filter::{Filter, FilterConfig, ScoredFilter},
     observation::{NormalSearch, ObservationConfig, Scorer},
-    tag::recorded,
     warp::Warper,
 };
 
@@ -55,10 +54,6 @@ impl Backend for NormalSearchBackend {
     fn warper(&self) -> Result<Arc<dyn Warper>, BackendError> {
         CpuBackend.warper()
     }
-
-    fn status(&self) -> Result<(), BackendError> {
-        CpuBackend.status()
-    }
 }
 
 /// What one run over the recording came to.
@@ -83,18 +78,17 @@ impl Recording {
         Ok(Self { sequence, pictures })
     }
 
-    fn run(&self, config: TagConfig, model: Model) -> anyhow::Result<Run> {
+    fn run(&self, config: LocalizerConfig, model: Model) -> anyhow::Result<Run> {
         let Sequence { setup, field, start, frames, .. } = &self.sequence;
         let camera = &setup.camera;
-        let mut tagger = match model {
-            Model::Configured => Tagger::new(camera, field, *start, config),
-            Model::NormalSearch => {
-                Tagger::with_backend(camera, field, *start, config, Arc::new(NormalSearchBackend))?
-            }
+        let builder = Localizer::builder(camera, field).config(config).start(*start);
+        let mut localizer = match model {
+            Model::Configured => builder.build()?,
+            Model::NormalSearch => builder.backend(Arc::new(NormalSearchBackend)).build()?,
         };
         let (mut errors, mut seconds) = (Vec::new(), Vec::new());
         for (index, picture) in self.pictures.iter().enumerate() {
-            let frame = tagger.tag(&recorded(&self.sequence, index, picture))?;
+            let frame = localizer.update(&Observation::of_frame(&self.sequence, index, picture))?;
             errors.extend(frames[index].reference_pose.map(|truth| PoseError::new(frame.pose, truth)));
             seconds.push(frame.seconds);
         }
@@ -109,7 +103,7 @@ impl Recording {
         })
     }
 
-    pub fn runs(&self, seeds: u64, config: TagConfig, model: Model) -> anyhow::Result<Runs> {
+    pub fn runs(&self, seeds: u64, config: LocalizerConfig, model: Model) -> anyhow::Result<Runs> {
         let seeded = |seed| {
             let mut config = config;
             config.filter.seed = seed;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use reality_sim::{ObservationKind, TagConfig, observation::ObservationConfig};
+use reality_sim::{LocalizerConfig, ObservationKind, observation::ObservationConfig};
 
 use crate::recording::{Model, Recording, Runs};
 
@@ -57,7 +57,7 @@ fn row(
     observation: ObservationConfig,
     text: &mut String,
 ) -> anyhow::Result<()> {
-    let config = TagConfig { observation, ..TagConfig::new(observation.kind) };
+    let config = LocalizerConfig::new(observation.kind).with_observation(observation);
     let runs: Vec<Runs> = recordings
         .iter()
         .map(|recording| recording.runs(seeds, config, Model::Configured))

@@ -4,12 +4,11 @@ use std::{fmt::Write, path::Path, sync::Arc};
 
 use image::{RgbImage, imageops::thumbnail};
 use reality_sim::{
-    ObservationKind, Sequence, TagConfig, Tagger,
+    Localizer, LocalizerConfig, Observation, ObservationKind, Sequence,
     evaluation::{ErrorStatistics, PoseError},
     montage::grid,
     sequence::save_image,
     synthesis::METHODS,
-    tag::recorded,
 };
 
 use crate::{IMAGES, synthesizer};
@@ -124,10 +123,11 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 /// Errors of the filter on pictures that stand for a part of a walk.
 fn tag(walk: &Sequence, first: usize, row: &Row, kind: ObservationKind) -> anyhow::Result<Vec<PoseError>> {
     let start = walk.frames[first].reference_pose.map(reality_sim::CameraPose::planar);
-    let mut tagger = Tagger::new(&walk.setup.camera, &walk.field, start, TagConfig::new(kind));
+    let builder = Localizer::builder(&walk.setup.camera, &walk.field).start(start);
+    let mut localizer = builder.config(LocalizerConfig::new(kind)).build()?;
     let mut errors = Vec::new();
     for (offset, picture) in row.pictures.iter().enumerate() {
-        let tagged = tagger.tag(&recorded(walk, first + offset, picture))?;
+        let tagged = localizer.update(&Observation::of_frame(walk, first + offset, picture))?;
         errors.extend(
             walk.frames[first + offset].reference_pose.map(|truth| PoseError::new(tagged.pose, truth)),
         );

@@ -55,15 +55,15 @@ struct Iteration {
     padding_1: u32,
 }
 
-const RIVALS: u32 = 6u;
+const ALTERNATIVES: u32 = 6u;
 
 /// What comes of an update.
 struct Outcome {
     /// The best particle of all iterations.
     best: Particle,
     estimate: Particle,
-    rivals: array<Particle, 6>,
-    rival_count: u32,
+    alternatives: array<Particle, 6>,
+    alternative_count: u32,
     best_log_weight: f32,
     effective_sample_size: f32,
     spread_m: f32,

@@ -12,9 +12,9 @@ use serde::Serialize;
 use reality_sim::{
     Archive, Sequence,
     db::{Database, IngestReport, PoseEstimate, PoseSource},
+    localization::Picture,
     sequence::{match_poses, read_tum},
     synthesis::measure_hall,
-    tag::smooth_sequence,
     warp::Hall,
 };
 
@@ -164,9 +164,10 @@ fn poses(args: &BuildArgs, sequence: &Sequence) -> anyhow::Result<Poses> {
 
 /// Poses by the filter, of the whole recording together.
 fn tagged_poses(args: &BuildArgs, sequence: &Sequence) -> anyhow::Result<Poses> {
-    let Tagged { frames: tagged, tagger, config, device } = tagged(sequence, &args.backend, args.seed)?;
-    let smoothed = smooth_sequence(sequence, &tagger, &tagged)?;
-    let estimates = PoseEstimate::of_tagged(&tagged, smoothed.as_deref(), args.unsure);
+    let Tagged { frames, localizer, config, device } = tagged(sequence, &args.backend, args.seed)?;
+    let smoothed =
+        localizer.smoother().smooth(&frames, |index| sequence.load_image(index).map(Picture::from))?;
+    let estimates = PoseEstimate::of_localized(&frames, smoothed.as_deref(), args.unsure);
     if estimates.iter().all(Option::is_none) {
         bail!(
             "{}: the filter is sure of no picture's pose: give the poses with --poses, or take them all with --unsure",

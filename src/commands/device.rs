@@ -98,9 +98,7 @@ impl BackendArgs {
 pub fn all() -> Vec<reality_sim_viewer::Device> {
     let choose = |name: String, backend: Choice, adapter: Option<String>| {
         let args = BackendArgs { backend, adapter };
-        let open = move || {
-            args.device().map(|device| device.backend).map_err(|error| BackendError(error.to_string()))
-        };
+        let open = move || args.device().map(|device| device.backend).map_err(BackendError::new);
         reality_sim_viewer::Device { name, open: Arc::new(open) }
     };
     let mut devices = vec![

@@ -6,9 +6,12 @@ use anyhow::bail;
 use clap::Args;
 use serde::Serialize;
 
-use reality_sim::gpu::{
-    AdapterSummary, GpuContext, GpuError, SCORE_TOLERANCE, ScoreComparison, adapters, compare_filters,
-    compare_scores, compare_warps,
+use reality_sim::{
+    backend::BackendError,
+    gpu::{
+        AdapterSummary, GpuContext, GpuError, SCORE_TOLERANCE, ScoreComparison, adapters, compare_filters,
+        compare_scores, compare_warps,
+    },
 };
 
 use super::output::{print, print_json};
@@ -97,12 +100,12 @@ fn examine(summary: &AdapterSummary) -> AdapterReport {
     let begin = Instant::now();
     let context = GpuContext::new(Some(&summary.name));
     let start_seconds = begin.elapsed().as_secs_f64();
-    let comparisons = context.and_then(|context| {
+    let comparisons = context.map_err(BackendError::from).and_then(|context| {
         let context = Arc::new(context);
         let scores = compare_scores(&context, SCENES)?;
         let filters = compare_filters(&context, SCENES)?;
         let warps = compare_warps(&context, PICTURES)?;
-        context.status().map(|()| (scores, filters, warps))
+        Ok((scores, filters, warps))
     });
     let report = AdapterReport {
         summary: summary.clone(),

@@ -1,8 +1,9 @@
 //! Where poses are scored, particles live and pictures are drawn: this processor, or a device of another package. Chosen
-//! once and handed down; nothing in this package knows which it is.
+//! once and handed down; nothing in this package knows which it is. A device that fails is an error of the call that failed.
 
 use std::sync::Arc;
 
+pub use crate::backend_error::BackendError;
 use crate::{
     camera::Camera,
     field::FieldDimensions,
@@ -10,11 +11,6 @@ use crate::{
     observation::{CpuScorer, ObservationConfig, Scorer},
     warp::{CpuWarper, Warper},
 };
-
-/// A device that cannot do what was asked for, or no longer works: what is wrong, and what to do about it.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{0}")]
-pub struct BackendError(pub String);
 
 /// Makes what runs on one device.
 pub trait Backend: Send + Sync {
@@ -26,7 +22,7 @@ pub trait Backend: Send + Sync {
         config: ObservationConfig,
     ) -> Result<Box<dyn Scorer>, BackendError>;
 
-    /// A particle filter with its observation model. It has no particles before its first [`Filter::place`].
+    /// A particle filter with its observation model. It has no particles before its first [`Filter::initialize`].
     fn filter(
         &self,
         camera: &Camera,
@@ -37,9 +33,6 @@ pub trait Backend: Send + Sync {
 
     /// What draws pictures from others; threads share it.
     fn warper(&self) -> Result<Arc<dyn Warper>, BackendError>;
-
-    /// What has gone wrong on the device so far. What was scored since is worth nothing.
-    fn status(&self) -> Result<(), BackendError>;
 }
 
 /// This processor. It never fails.
@@ -69,9 +62,5 @@ impl Backend for CpuBackend {
 
     fn warper(&self) -> Result<Arc<dyn Warper>, BackendError> {
         Ok(Arc::new(CpuWarper))
-    }
-
-    fn status(&self) -> Result<(), BackendError> {
-        Ok(())
     }
 }

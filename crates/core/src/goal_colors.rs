@@ -5,16 +5,39 @@ use image::RgbImage;
 
 use crate::{camera::Camera, field::FieldDimensions, pose::CameraPose};
 
-/// Evidence of one picture is cut here: pictures of the same wall are not independent.
-const MAX_LOG_ODDS: f64 = 2.0;
-/// Log-odds of one sample whose colour is clearly that of one goal.
-const SAMPLE_LOG_ODDS: f64 = 0.1;
-/// Samples along each post and crossbar.
-const SAMPLES: u32 = 24;
+/// What the colours of goals are worth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct GoalColorConfig {
+    /// Samples along each post and crossbar, 24.
+    pub samples: u32,
+    /// Log-odds of one sample whose colour is clearly that of one goal, 0.1: neighbouring samples are not independent.
+    pub sample_log_odds: f64,
+    /// Log-odds of one picture are cut here, 2: pictures of the same wall are not independent.
+    pub max_log_odds: f64,
+    /// Goals whose chromaticities lie nearer than this are of one colour, 0.05.
+    pub min_color_distance: f64,
+    /// A colour is a goal's within this fraction of the distance between both goals' colours, 0.35: below one half no
+    /// colour is both.
+    pub color_reach: f64,
+}
+
+impl Default for GoalColorConfig {
+    fn default() -> Self {
+        Self {
+            samples: 24,
+            sample_log_odds: 0.1,
+            max_log_odds: 2.0,
+            min_color_distance: 0.05,
+            color_reach: 0.35,
+        }
+    }
+}
 
 /// Compares the colours of goals in pictures with those the field says.
 #[derive(Debug, Clone)]
 pub struct GoalColors {
+    config: GoalColorConfig,
     camera: Camera,
     /// Points on the goals, world axes, and whether the goal is the one at +x.
     points: Vec<(DVec3, bool)>,
@@ -24,19 +47,20 @@ pub struct GoalColors {
 
 impl GoalColors {
     /// `None` where the field gives no colours, or the same for both goals.
-    pub fn new(camera: &Camera, field: &FieldDimensions) -> Option<Self> {
+    pub fn new(camera: &Camera, field: &FieldDimensions, config: GoalColorConfig) -> Option<Self> {
         let (positive, negative) = field.goal_srgb_positive_x.zip(field.goal_srgb_negative_x)?;
         let (positive, negative) = (chromaticity(positive)?, chromaticity(negative)?);
-        (distance(positive, negative) > 0.05).then(|| Self {
+        (distance(positive, negative) > config.min_color_distance).then(|| Self {
+            config,
             camera: camera.clone(),
-            points: goal_points(field),
+            points: goal_points(field, config.samples),
             positive,
             negative,
         })
     }
 
     /// Log-odds, from one picture, of the pose turned by 180° against the pose itself.
-    pub fn mirror_log_odds(&self, picture: &RgbImage, pose: CameraPose) -> f64 {
+    pub fn mirrored_log_odds(&self, picture: &RgbImage, pose: CameraPose) -> f64 {
         let sum: f64 = self
             .points
             .iter()
@@ -49,25 +73,25 @@ impl GoalColors {
                 } else {
                     (self.negative, self.positive)
                 };
-                let reach = 0.35 * distance(self.positive, self.negative);
+                let reach = self.config.color_reach * distance(self.positive, self.negative);
                 match (distance(color, here) < reach, distance(color, there) < reach) {
-                    (false, true) => Some(SAMPLE_LOG_ODDS),
-                    (true, false) => Some(-SAMPLE_LOG_ODDS),
+                    (false, true) => Some(self.config.sample_log_odds),
+                    (true, false) => Some(-self.config.sample_log_odds),
                     _ => None,
                 }
             })
             .sum();
-        sum.clamp(-MAX_LOG_ODDS, MAX_LOG_ODDS)
+        sum.clamp(-self.config.max_log_odds, self.config.max_log_odds)
     }
 }
 
-fn goal_points(field: &FieldDimensions) -> Vec<(DVec3, bool)> {
+fn goal_points(field: &FieldDimensions, samples: u32) -> Vec<(DVec3, bool)> {
     let mut points = Vec::new();
     for (goal, at_positive_x) in field.goals().iter().zip([false, true]) {
         let [left, right] = goal.posts;
         let bar_m = field.goal_height_m + field.goal_post_diameter_m / 2.0;
-        for i in 0..SAMPLES {
-            let fraction = (f64::from(i) + 0.5) / f64::from(SAMPLES);
+        for i in 0..samples {
+            let fraction = (f64::from(i) + 0.5) / f64::from(samples);
             points.push((left.center.extend(fraction * left.height_m), at_positive_x));
             points.push((right.center.extend(fraction * right.height_m), at_positive_x));
             points.push((left.center.lerp(right.center, fraction).extend(bar_m), at_positive_x));
@@ -94,12 +118,12 @@ mod tests {
     #[test]
     fn goals_of_the_right_colour_speak_for_a_pose_and_swapped_ones_against_it() {
         let (camera, field) = (test_scene::fisheye(), test_scene::field());
-        let colors = GoalColors::new(&camera, &field).unwrap();
+        let colors = GoalColors::new(&camera, &field, GoalColorConfig::default()).unwrap();
         let pose =
             CameraPose { x_m: 1.5, y_m: 0.2, yaw_rad: 0.0, height_m: 0.5, pitch_rad: 0.1, roll_rad: 0.0 };
         let painted = |color: Option<[u8; 3]>| {
             let mut picture = RgbImage::from_pixel(320, 240, image::Rgb([90, 90, 90]));
-            for (point, at_positive_x) in goal_points(&field) {
+            for (point, at_positive_x) in goal_points(&field, 24) {
                 if let (true, Ok(pixel)) = (at_positive_x, camera.project(pose.camera_from_world(point))) {
                     picture.put_pixel(
                         pixel.x.round() as u32,
@@ -110,9 +134,9 @@ mod tests {
             }
             picture
         };
-        assert!(colors.mirror_log_odds(&painted(field.goal_srgb_positive_x), pose) <= -1.0);
-        assert!(colors.mirror_log_odds(&painted(field.goal_srgb_negative_x), pose) >= 1.0);
+        assert!(colors.mirrored_log_odds(&painted(field.goal_srgb_positive_x), pose) <= -1.0);
+        assert!(colors.mirrored_log_odds(&painted(field.goal_srgb_negative_x), pose) >= 1.0);
         let plain = FieldDimensions { goal_srgb_positive_x: None, ..field };
-        assert!(GoalColors::new(&camera, &plain).is_none());
+        assert!(GoalColors::new(&camera, &plain, GoalColorConfig::default()).is_none());
     }
 }

@@ -2,9 +2,9 @@
 
 use nalgebra::Matrix6;
 use reality_sim_core::{
+    localization::{LocalizedFrame, LocalizerConfig},
     pose::CameraPose,
     refine::SmoothedPose,
-    tag::{TagConfig, TaggedFrame},
 };
 use rusqlite::{Row, types::Type};
 use serde_json::json;
@@ -29,23 +29,23 @@ impl From<CameraPose> for PoseEstimate {
 }
 
 impl PoseEstimate {
-    /// The poses of a tagged recording, one a frame: as smoothed, or where they were not, as tagged. Frames that the filter
+    /// The poses of a localized recording, one a frame: as smoothed, or where they were not, as localized. Frames that the filter
     /// is not sure of have none, unless `with_unsure`.
     ///
     /// # Panics
     ///
-    /// Where there are fewer smoothed poses than tagged ones: both are of the same frames.
-    pub fn of_tagged(
-        tagged: &[TaggedFrame],
+    /// Where there are fewer smoothed poses than frames: both are of the same frames.
+    pub fn of_localized(
+        frames: &[LocalizedFrame],
         smoothed: Option<&[SmoothedPose]>,
         with_unsure: bool,
     ) -> Vec<Option<Self>> {
-        let estimate = |(index, frame): (usize, &TaggedFrame)| match smoothed.map(|smoothed| smoothed[index])
-        {
-            Some(smoothed) => Self { pose: smoothed.pose, covariance: Some(smoothed.covariance) },
-            None => Self { pose: frame.pose, covariance: frame.fit.map(|fit| fit.covariance) },
-        };
-        let frames = tagged.iter().enumerate();
+        let estimate =
+            |(index, frame): (usize, &LocalizedFrame)| match smoothed.map(|smoothed| smoothed[index]) {
+                Some(smoothed) => Self { pose: smoothed.pose, covariance: Some(smoothed.covariance) },
+                None => Self { pose: frame.pose, covariance: frame.fit.map(|fit| fit.covariance) },
+            };
+        let frames = frames.iter().enumerate();
         frames.map(|frame| (frame.1.sure || with_unsure).then(|| estimate(frame))).collect()
     }
 
@@ -75,7 +75,7 @@ pub enum PoseSource {
 
 impl PoseSource {
     /// The particle filter with these settings, as a program ran it on a device, with or without smoothing.
-    pub fn of_filter(program: &str, config: &TagConfig, device: &str, is_smoothed: bool) -> Self {
+    pub fn of_filter(program: &str, config: &LocalizerConfig, device: &str, is_smoothed: bool) -> Self {
         let settings = json!({
             "program": program,
             "observation": config.observation.kind,

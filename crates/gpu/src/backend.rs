@@ -28,7 +28,7 @@ impl GpuBackend {
 
 impl From<GpuError> for BackendError {
     fn from(error: GpuError) -> Self {
-        Self(error.to_string())
+        Self::new(error)
     }
 }
 
@@ -54,9 +54,5 @@ impl Backend for GpuBackend {
 
     fn warper(&self) -> Result<Arc<dyn Warper>, BackendError> {
         Ok(Arc::new(GpuWarper::new(self.context.clone())?))
-    }
-
-    fn status(&self) -> Result<(), BackendError> {
-        Ok(self.context.status()?)
     }
 }

@@ -135,13 +135,6 @@ impl GpuContext {
         if errors.is_empty() { Ok(()) } else { Err(GpuError::Failed { reason: errors.join("; ") }) }
     }
 
-    /// Remembers an error that was dealt with where it happened.
-    pub(crate) fn report(&self, error: &GpuError) {
-        if !matches!(error, GpuError::Failed { .. }) {
-            keep(&self.errors, error.to_string());
-        }
-    }
-
     /// Submits what is encoded, as one piece of work.
     pub(crate) fn submit(&self, encode: impl FnOnce(&mut wgpu::CommandEncoder)) {
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

@@ -4,15 +4,16 @@ use std::sync::Arc;
 
 use image::RgbImage;
 use reality_sim_core::{
+    backend::BackendError,
     camera::Camera,
     field::FieldDimensions,
     filter::{
         Estimator, Filter, FilterConfig, FilterEstimate, PlanarSigma, Purpose, Resampling, Stream, placed,
     },
+    mount::{MountPose, MountPoseSigma},
     observation::{LineModel, ObservationConfig},
     pose::{CameraPose, Motion2, Pose2},
-    preprocess::{Attitude, Prepared},
-    refine::AttitudeTolerance,
+    preprocess::Prepared,
 };
 
 use crate::{
@@ -30,8 +31,7 @@ const THREADS: u32 = 64;
 /// Below every log-weight.
 const LOWEST: f32 = -3.4e38;
 
-/// The particle filter by compute shaders, see [`reality_sim_core::filter::ParticleFilter`]. Where the device fails its
-/// estimates are worth nothing, and [`GpuContext::status`] tells why.
+/// The particle filter by compute shaders, see [`reality_sim_core::filter::ParticleFilter`].
 #[derive(Debug)]
 pub struct GpuFilter {
     context: Arc<GpuContext>,
@@ -47,7 +47,7 @@ pub struct GpuFilter {
     next: Option<Arc<RgbImage>>,
     frame: u32,
     placements: u32,
-    rivals: Vec<CameraPose>,
+    alternatives: Vec<CameraPose>,
 }
 
 #[derive(Debug)]
@@ -67,7 +67,7 @@ struct Kernels {
     along_lines: BoundKernel,
     log_weights: BoundKernel,
     normalise: BoundKernel,
-    rivals: BoundKernel,
+    alternatives: BoundKernel,
     cumulate: BoundKernel,
     summarise: BoundKernel,
 }
@@ -107,18 +107,17 @@ impl GpuFilter {
             next: None,
             frame: 0,
             placements: 0,
-            rivals: Vec::new(),
+            alternatives: Vec::new(),
         })
     }
 
     /// What the kernels are told of an update.
-    fn frame_layout(&self, attitude: Attitude, sigma: PlanarSigma) -> FrameLayout {
+    fn frame_layout(&self, mount: MountPose, sigma: PlanarSigma) -> FrameLayout {
         let FilterConfig { seed, particles, noise, .. } = self.config;
         let motion = self.motion_waits.flatten();
         let predicted = noise.sigma(motion);
         let motion = motion.unwrap_or_default();
-        let tolerance =
-            self.config.attitude_tolerance.unwrap_or(AttitudeTolerance { height_m: 0.0, angle_rad: 0.0 });
+        let tolerance = self.config.mount_sigma.unwrap_or(MountPoseSigma { height_m: 0.0, angle_rad: 0.0 });
         let [per_value, per_seen] = self.scoring.model().per_sum();
         FrameLayout {
             seed: [seed as u32, (seed >> 32) as u32],
@@ -143,9 +142,9 @@ impl GpuFilter {
             predict_sigma_rad: predicted.yaw_rad as f32,
             diffuse_sigma_m: sigma.position_m as f32,
             diffuse_sigma_rad: sigma.yaw_rad as f32,
-            height_m: attitude.height_m as f32,
-            pitch_rad: attitude.pitch_rad as f32,
-            roll_rad: attitude.roll_rad as f32,
+            height_m: mount.height_m as f32,
+            pitch_rad: mount.pitch_rad as f32,
+            roll_rad: mount.roll_rad as f32,
             height_sigma_m: tolerance.height_m as f32,
             angle_sigma_rad: tolerance.angle_rad as f32,
             per_value: per_value as f32,
@@ -157,9 +156,9 @@ impl GpuFilter {
     }
 
     /// Tells the kernels what they need to know; gives what there is to run.
-    fn prepared(&self, attitude: Attitude, sigma: PlanarSigma) -> Vec<Step<'_>> {
+    fn prepared(&self, mount: MountPose, sigma: PlanarSigma) -> Vec<Step<'_>> {
         let context = &*self.context;
-        write(context, &self.buffers.frame, &[self.frame_layout(attitude, sigma)]);
+        write(context, &self.buffers.frame, &[self.frame_layout(mount, sigma)]);
         let nothing = OutcomeLayout { best_log_weight: LOWEST, ..bytemuck::Zeroable::zeroed() };
         write(context, &self.buffers.outcome, &[nothing]);
         let for_lines = self.scoring.configure(context, self.config.particles);
@@ -169,9 +168,9 @@ impl GpuFilter {
         picture.chain(predict).chain(self.kernels.iterations(for_each, for_lines)).collect()
     }
 
-    fn run(&mut self, attitude: Attitude, sigma: PlanarSigma) -> Result<OutcomeLayout, GpuError> {
+    fn run(&mut self, mount: MountPose, sigma: PlanarSigma) -> Result<OutcomeLayout, GpuError> {
         let context = &*self.context;
-        let steps = self.prepared(attitude, sigma);
+        let steps = self.prepared(mount, sigma);
         let bytes = size_of::<OutcomeLayout>() as u64;
         context.submit(|encoder| {
             run_steps(encoder, steps);
@@ -188,10 +187,10 @@ impl GpuFilter {
     /// [`Filter::update`], which lets the device go from one to the next.
     pub fn timed_update(
         &mut self,
-        attitude: Attitude,
+        mount: MountPose,
         sigma: PlanarSigma,
     ) -> Result<Vec<(&'static str, f64)>, GpuError> {
-        let steps = self.prepared(attitude, sigma);
+        let steps = self.prepared(mount, sigma);
         let names: Vec<&'static str> = steps.iter().map(|(kernel, _)| kernel.name).collect();
         let seconds = timed_steps(&self.context, &steps)?;
         (self.picture_waits, self.motion_waits) = (false, None);
@@ -225,65 +224,61 @@ impl GpuFilter {
 }
 
 impl Filter for GpuFilter {
-    fn load(&mut self, picture: &Prepared) {
+    fn load(&mut self, picture: &Prepared) -> Result<(), BackendError> {
         self.scoring.set_levels(picture.levels);
         self.picture.load(&self.context, picture);
         self.picture_waits = true;
+        Ok(self.context.status()?)
     }
 
-    fn announce(&mut self, next: &Arc<RgbImage>) {
+    fn prefetch(&mut self, next: &Arc<RgbImage>) {
         self.next = Some(next.clone());
     }
 
-    fn place(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) {
+    fn reset(&mut self, seed: u64) {
+        self.config.seed = seed;
+        (self.frame, self.placements) = (0, 0);
+        self.motion_waits = None;
+        self.alternatives.clear();
+    }
+
+    fn initialize(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) -> Result<(), BackendError> {
         let stream = Stream::new(self.config.seed, Purpose::Initialise, self.frame, self.placements);
         self.placements += 1;
         // Whatever motion came before, the particles are where they are put now.
         self.motion_waits = None;
         self.write_particles(&placed(&self.config, modes, sigma, stream));
+        Ok(self.context.status()?)
     }
 
-    fn predict(&mut self, motion: Option<Motion2>) {
+    fn predict(&mut self, motion: Option<Motion2>) -> Result<(), BackendError> {
         self.frame += 1;
         self.placements = 0;
         self.motion_waits = Some(motion);
+        Ok(())
     }
 
-    fn update(&mut self, attitude: Attitude, sigma: PlanarSigma) -> FilterEstimate {
-        match self.run(attitude, sigma) {
-            Ok(outcome) => {
-                let count = (outcome.rival_count as usize).min(outcome.rivals.len());
-                self.rivals = outcome.rivals[..count].iter().map(|&rival| rival.into()).collect();
-                self.estimate(&outcome)
-            }
-            Err(error) => {
-                self.context.report(&error);
-                self.rivals.clear();
-                FilterEstimate {
-                    pose: attitude.at(Pose2::default()),
-                    log_weight: f64::NEG_INFINITY,
-                    effective_sample_size: 0.0,
-                    spread_m: 0.0,
-                    particles: self.config.particles,
-                }
-            }
-        }
+    fn update(&mut self, mount: MountPose, sigma: PlanarSigma) -> Result<FilterEstimate, BackendError> {
+        self.alternatives.clear();
+        let outcome = self.run(mount, sigma)?;
+        let count = (outcome.alternative_count as usize).min(outcome.alternatives.len());
+        self.alternatives.extend(outcome.alternatives[..count].iter().map(|&pose| CameraPose::from(pose)));
+        Ok(self.estimate(&outcome))
     }
 
-    fn mirror(&mut self) {
-        let mirrored: Vec<CameraPose> = self.particles().into_iter().map(CameraPose::mirrored).collect();
+    fn mirror(&mut self) -> Result<(), BackendError> {
+        let mirrored: Vec<CameraPose> =
+            self.read_particles()?.into_iter().map(CameraPose::mirrored).collect();
         self.write_particles(&mirrored);
+        Ok(())
     }
 
-    fn particles(&self) -> Vec<CameraPose> {
-        self.read_particles().unwrap_or_else(|error| {
-            self.context.report(&error);
-            Vec::new()
-        })
+    fn particles(&self) -> Result<Vec<CameraPose>, BackendError> {
+        Ok(self.read_particles()?)
     }
 
-    fn rivals(&self) -> Vec<CameraPose> {
-        self.rivals.clone()
+    fn alternatives(&self) -> &[CameraPose] {
+        &self.alternatives
     }
 }
 
@@ -300,7 +295,7 @@ impl Kernels {
                 (&self.normalise, FOR_ALL),
             ]);
             if number == 0 {
-                steps.push((&self.rivals, FOR_ALL));
+                steps.push((&self.alternatives, FOR_ALL));
             }
             steps.extend([(&self.cumulate, FOR_ALL), (&iteration.resample, for_each)]);
         }
@@ -345,7 +340,7 @@ fn bound(
         along_lines: scoring.bind(context, picture.texels(), &poses, &sums),
         log_weights: bind("log_weights", &[&frame, &particles, &sums, &weights]),
         normalise: bind("normalise", &[&frame, &particles, &weights, &probabilities, &outcome]),
-        rivals: bind("rivals", &[&frame, &particles, &weights, &outcome]),
+        alternatives: bind("alternatives", &[&frame, &particles, &weights, &outcome]),
         cumulate: bind("cumulate", &[&frame, &probabilities, &shares]),
         summarise: bind("summarise", &[&frame, &particles, &probabilities, &outcome]),
     };
@@ -398,7 +393,7 @@ mod tests {
                 iterations: 1,
                 resampling: schemes[(seed / 4) as usize % 4],
                 estimator: estimators[seed as usize % 3],
-                attitude_tolerance: seed.is_multiple_of(2).then(AttitudeTolerance::default),
+                mount_sigma: seed.is_multiple_of(2).then(MountPoseSigma::default),
                 ..FilterConfig::default()
             };
             let observation = ObservationConfig {
@@ -407,20 +402,20 @@ mod tests {
                 ..ObservationConfig::new(ObservationKind::Gauss)
             };
             let (picture, poses) = twins::scene(camera, seed);
-            let (attitude, start) = (Attitude::of(poses[0]), poses[0].planar());
-            let prepared = preprocessor.prepare(picture, attitude);
+            let (mount, start) = (MountPose::of(poses[0]), poses[0].planar());
+            let prepared = preprocessor.prepare(picture, mount);
 
             let mut scorer = CpuScorer::new(camera, &field, observation);
-            scorer.load(&prepared);
+            scorer.load(&prepared).unwrap();
             let mut cpu = ParticleFilter::empty(config);
             let mut gpu = GpuFilter::new(context.clone(), camera, &field, observation, config).unwrap();
-            gpu.load(&prepared);
-            cpu.place(&[(start, 0.7), (start.mirrored(), 0.3)], SIGMA);
-            gpu.place(&[(start, 0.7), (start.mirrored(), 0.3)], SIGMA);
+            gpu.load(&prepared).unwrap();
+            cpu.initialize(&[(start, 0.7), (start.mirrored(), 0.3)], SIGMA);
+            gpu.initialize(&[(start, 0.7), (start.mirrored(), 0.3)], SIGMA).unwrap();
             cpu.predict(Some(MOTION));
-            gpu.predict(Some(MOTION));
-            let expected = cpu.update(&scorer, attitude, SIGMA);
-            let found = gpu.update(attitude, SIGMA);
+            gpu.predict(Some(MOTION)).unwrap();
+            let expected = cpu.update(&scorer, mount, SIGMA).unwrap();
+            let found = gpu.update(mount, SIGMA).unwrap();
 
             let about = format!("{config:?}: {found:?} instead of {expected:?}");
             assert!(distance(found.pose, expected.pose) < 2e-4, "{about}");
@@ -431,13 +426,13 @@ mod tests {
             let relative = |a: f64, b: f64| (a - b).abs() / b.abs().max(1e-3);
             assert!(relative(found.effective_sample_size, expected.effective_sample_size) < 1e-2, "{about}");
             assert!(relative(found.spread_m, expected.spread_m) < 1e-2, "{about}");
-            assert_eq!(gpu.rivals().len(), cpu.rivals().len(), "{about}");
-            for (found, expected) in gpu.rivals().into_iter().zip(cpu.rivals()) {
-                assert!(distance(found, *expected) < 1e-5, "{about}");
+            assert_eq!(gpu.alternatives().len(), cpu.alternatives().len(), "{about}");
+            for (found, expected) in gpu.alternatives().iter().zip(cpu.alternatives()) {
+                assert!(distance(*found, *expected) < 1e-5, "{about}");
             }
             // A particle whose expected copies lie at a whole number may get one more or less; in the residual scheme that
             // moves all slots behind it.
-            let (found, expected) = (gpu.particles(), cpu.particles());
+            let (found, expected) = (gpu.particles().unwrap(), cpu.particles());
             assert_eq!(found.len(), expected.len());
             let same = |a: CameraPose, b: CameraPose| distance(a, b) < 1e-5;
             if config.resampling != Resampling::Residual {
@@ -476,16 +471,16 @@ mod tests {
     fn a_device_that_is_gone_is_an_error_and_no_panic() {
         let context = test_context();
         let mut filter = filter_on(&context, FilterConfig::default()).unwrap();
-        filter.place(&[(Pose2::default(), 1.0)], SIGMA);
+        filter.initialize(&[(Pose2::default(), 1.0)], SIGMA).unwrap();
         context.device.destroy();
-        let attitude = Attitude { height_m: 0.5, pitch_rad: 0.3, roll_rad: 0.0 };
+        let mount = MountPose { height_m: 0.5, pitch_rad: 0.3, roll_rad: 0.0 };
         for _ in 0..3 {
-            filter.predict(None);
-            let estimate = filter.update(attitude, SIGMA);
-            assert!(estimate.pose.x_m.is_finite() && filter.particles().is_empty());
+            filter.predict(None).unwrap();
+            let error = filter.update(mount, SIGMA).unwrap_err();
+            assert!(matches!(error.get_ref().downcast_ref(), Some(GpuError::Failed { .. })), "{error}");
+            assert!(error.to_string().len() < 2000, "{error}");
+            assert!(filter.particles().is_err() && filter.alternatives().is_empty());
         }
-        let error = context.status().unwrap_err().to_string();
-        assert!(error.contains("use the CPU") && error.len() < 2000, "{error}");
         assert!(filter_on(&context, FilterConfig::default()).is_err());
     }
 }

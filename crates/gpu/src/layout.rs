@@ -117,8 +117,8 @@ pub(crate) struct IterationLayout {
 pub(crate) struct OutcomeLayout {
     pub best: ParticleLayout,
     pub estimate: ParticleLayout,
-    pub rivals: [ParticleLayout; 6],
-    pub rival_count: u32,
+    pub alternatives: [ParticleLayout; 6],
+    pub alternative_count: u32,
     pub best_log_weight: f32,
     pub effective_sample_size: f32,
     pub spread_m: f32,
@@ -383,7 +383,7 @@ mod tests {
             angle_sigma_rad per_value per_seen padding_0 padding_1 padding_2);
         assert_same_layout!(IterationLayout in "diffuse.wgsl" as "Iteration": number scale padding_0 padding_1);
         assert_same_layout!(OutcomeLayout in "summarise.wgsl" as "Outcome":
-            best estimate rivals rival_count best_log_weight effective_sample_size spread_m);
+            best estimate alternatives alternative_count best_log_weight effective_sample_size spread_m);
         assert_same_layout!(CameraLayout in "blend.wgsl" as "Camera":
             focal_px centre_px largest_px min_cos is_radial circle lens_parameters);
         assert_same_layout!(PlacementLayout in "blend.wgsl" as "Placement": right down forward position);

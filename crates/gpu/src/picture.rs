@@ -249,8 +249,9 @@ mod tests {
         camera::{Distortion, OpencvFisheye},
         field::FieldDimensions,
         filter::{Purpose, Stream},
+        mount::MountPose,
         observation::ObservationConfig,
-        preprocess::{Attitude, Preprocessor, Texture},
+        preprocess::{Preprocessor, Texture},
     };
 
     use super::*;
@@ -300,7 +301,7 @@ mod tests {
     fn pictures_are_prepared_as_on_the_cpu() {
         let context = test_context();
         let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
-        let attitude = Attitude { height_m: 0.5, pitch_rad: 0.4, roll_rad: 0.05 };
+        let mount = MountPose { height_m: 0.5, pitch_rad: 0.4, roll_rad: 0.05 };
         for [width, height] in [[320, 240], [317, 239]] {
             let lens = Distortion::OpencvFisheye(OpencvFisheye { k: [-0.05, 0.008, 0.0, 0.0] });
             let centre = [f64::from(width) / 2.0, f64::from(height) / 2.0];
@@ -322,7 +323,7 @@ mod tests {
                     if seed % 2 == 1 {
                         stage.upload_next(&context, &picture);
                     }
-                    let prepared = preprocessor.prepare(picture, attitude);
+                    let prepared = preprocessor.prepare(picture, mount);
                     stage.load(&context, &prepared);
                     let image = model.image(&prepared);
                     assert!(!model.is_masked() || image.contains(&0), "something is masked");

@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use reality_sim_core::{
+    backend::BackendError,
     camera::Camera,
     field::FieldDimensions,
     observation::{CameraFromGround, LineModel, ObservationConfig, Scorer},
@@ -22,7 +23,7 @@ use crate::{
 /// Poses scored by one dispatch at most: what is uploaded and read back at once stays below a few megabytes.
 const POSES_PER_DISPATCH: usize = 1 << 17;
 
-/// Log-weights by compute shaders. Where the device fails they are NaN, and [`GpuContext::status`] tells why.
+/// Log-weights by compute shaders.
 #[derive(Debug)]
 pub struct GpuScorer {
     context: Arc<GpuContext>,
@@ -87,20 +88,16 @@ impl GpuScorer {
 }
 
 impl Scorer for GpuScorer {
-    fn load(&mut self, picture: &Prepared) {
+    fn load(&mut self, picture: &Prepared) -> Result<(), BackendError> {
         self.scoring.set_levels(picture.levels);
         self.picture.load(&self.context, picture);
         self.context.submit(|encoder| run_steps(encoder, self.picture.steps()));
+        Ok(self.context.status()?)
     }
 
-    fn log_weights(&self, poses: &[CameraPose]) -> Vec<f64> {
-        match self.sums(poses) {
-            Ok(sums) => sums.into_iter().map(|sums| self.scoring.model().log_weight(sums)).collect(),
-            Err(error) => {
-                self.context.report(&error);
-                vec![f64::NAN; poses.len()]
-            }
-        }
+    fn log_weights(&self, poses: &[CameraPose]) -> Result<Vec<f64>, BackendError> {
+        let sums = self.sums(poses)?;
+        Ok(sums.into_iter().map(|sums| self.scoring.model().log_weight(sums)).collect())
     }
 }
 

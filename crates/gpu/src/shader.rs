@@ -9,6 +9,7 @@ macro_rules! files {
 
 /// Every file in `shaders/`, by its path from there.
 pub(crate) const FILES: &[(&str, &str)] = files![
+    "alternatives.wgsl",
     "blend.wgsl",
     "blur_columns.wgsl",
     "blur_rows.wgsl",
@@ -26,7 +27,6 @@ pub(crate) const FILES: &[(&str, &str)] = files![
     "pack.wgsl",
     "predict.wgsl",
     "resample.wgsl",
-    "rivals.wgsl",
     "shared/angles.wgsl",
     "shared/camera.wgsl",
     "shared/color.wgsl",

@@ -4,16 +4,17 @@ use std::sync::Arc;
 
 use image::{Rgb, RgbImage};
 use reality_sim_core::{
+    backend::BackendError,
     camera::{Camera, Distortion, ImageCircle, InvalidCamera, Opencv, OpencvFisheye},
     field::FieldDimensions,
     filter::{Filter, FilterConfig, PlanarSigma, Purpose, Resampling, ScoredFilter, Stream},
+    mount::{MountPose, MountPoseSigma},
     observation::{CpuScorer, ObservationConfig, ObservationKind, Scorer},
     pose::{CameraPose, Pose2, wrap_angle},
-    preprocess::{Attitude, Preprocessor},
-    refine::AttitudeTolerance,
+    preprocess::Preprocessor,
 };
 
-use crate::{GpuContext, GpuError, GpuFilter, GpuScorer};
+use crate::{GpuContext, GpuFilter, GpuScorer};
 
 /// Sums along the lines may differ by this, relative to what they sum up: the order of the additions differs.
 pub const SCORE_TOLERANCE: f64 = 1e-4;
@@ -47,7 +48,7 @@ impl ScoreComparison {
 }
 
 /// Compares every model with every lens on so many scenes.
-pub fn compare_scores(context: &Arc<GpuContext>, scenes: u64) -> Result<Vec<ScoreComparison>, GpuError> {
+pub fn compare_scores(context: &Arc<GpuContext>, scenes: u64) -> Result<Vec<ScoreComparison>, BackendError> {
     let field = FieldDimensions::preset("humanoid-kidsize-2010").expect("a preset of the core");
     let cameras = cameras().expect("lenses that are valid");
     let mut comparisons = Vec::new();
@@ -84,7 +85,7 @@ impl FilterComparison {
 }
 
 /// Compares an iteration of the filter, systematic resampling, on so many scenes.
-pub fn compare_filters(context: &Arc<GpuContext>, scenes: u64) -> Result<FilterComparison, GpuError> {
+pub fn compare_filters(context: &Arc<GpuContext>, scenes: u64) -> Result<FilterComparison, BackendError> {
     let field = FieldDimensions::preset("humanoid-kidsize-2010").expect("a preset of the core");
     let camera = &cameras().expect("lenses that are valid")[0];
     let observation = ObservationConfig {
@@ -99,20 +100,20 @@ pub fn compare_filters(context: &Arc<GpuContext>, scenes: u64) -> Result<FilterC
             seed,
             iterations: 1,
             resampling: Resampling::Systematic,
-            attitude_tolerance: Some(AttitudeTolerance::default()),
+            mount_sigma: Some(MountPoseSigma::default()),
             ..FilterConfig::default()
         };
         let (picture, poses) = scene(camera, seed);
-        let attitude = Attitude::of(poses[0]);
-        let prepared = Preprocessor::new(camera, field.line_width_m).prepare(picture, attitude);
+        let mount = MountPose::of(poses[0]);
+        let prepared = Preprocessor::new(camera, field.line_width_m).prepare(picture, mount);
         let mut gpu = GpuFilter::new(context.clone(), camera, &field, observation, config)?;
         let mut cpu = ScoredFilter::new(Box::new(CpuScorer::new(camera, &field, observation)), config);
-        let [found, expected] = [&mut gpu as &mut dyn Filter, &mut cpu].map(|filter| {
-            filter.load(&prepared);
-            filter.place(&[(poses[0].planar(), 1.0)], sigma);
-            (filter.update(attitude, sigma).pose, filter.particles())
-        });
-        context.status()?;
+        let iterate = |filter: &mut dyn Filter| -> Result<_, BackendError> {
+            filter.load(&prepared)?;
+            filter.initialize(&[(poses[0].planar(), 1.0)], sigma)?;
+            Ok((filter.update(mount, sigma)?.pose, filter.particles()?))
+        };
+        let (found, expected) = (iterate(&mut gpu)?, iterate(&mut cpu)?);
         let is_same = |a: CameraPose, b: CameraPose| {
             let turn_rad = wrap_angle(a.yaw_rad - b.yaw_rad).abs();
             (a.x_m - b.x_m).abs().max((a.y_m - b.y_m).abs()).max(turn_rad) < 1e-4
@@ -133,15 +134,16 @@ fn compare(
     mut gpu: GpuScorer,
     mut cpu: CpuScorer,
     scenes: u64,
-) -> Result<ScoreComparison, GpuError> {
+) -> Result<ScoreComparison, BackendError> {
     let lens = camera.distortion.colmap_name();
     let mut comparison = ScoreComparison { kind, lens, poses: 0, seeing: 0, worst: 0.0, edges: 0.0 };
     let mut edges = 0;
     for seed in 0..scenes {
         let (picture, poses) = scene(camera, seed);
-        let prepared = Preprocessor::new(camera, field.line_width_m).prepare(picture, Attitude::of(poses[0]));
-        gpu.load(&prepared);
-        cpu.load(&prepared);
+        let prepared =
+            Preprocessor::new(camera, field.line_width_m).prepare(picture, MountPose::of(poses[0]));
+        gpu.load(&prepared)?;
+        cpu.set_picture(&prepared);
         for (pose, gpu) in poses.iter().zip(gpu.sums(&poses)?) {
             let ([sum, weight], [gpu_sum, gpu_weight]) = (cpu.sums(pose).map(f64::from), gpu.map(f64::from));
             // One sample more or less at the edge adds its value and its weight.
@@ -184,12 +186,12 @@ pub(crate) fn scene(camera: &Camera, seed: u64) -> (RgbImage, Vec<CameraPose>) {
     });
     let poses = (0..POSES).map(|index| {
         let n = stream.normals(index + 1000);
-        let attitude = Attitude {
+        let mount = MountPose {
             height_m: 0.5 + 0.05 * n[3].clamp(-3.0, 3.0),
             pitch_rad: 0.3 + 0.2 * n[4],
             roll_rad: 0.1 * n[5],
         };
-        attitude.at(Pose2::new(1.5 * n[0], n[1], 2.0 * n[2]))
+        mount.at(Pose2::new(1.5 * n[0], n[1], 2.0 * n[2]))
     });
     (picture, poses.collect())
 }

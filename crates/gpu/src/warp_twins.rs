@@ -6,8 +6,8 @@ use reality_sim_core::{
     camera::{Camera, Distortion, ImageCircle, InvalidCamera, KernelCamera, Opencv, OpencvFisheye},
     field::FieldDimensions,
     filter::{Purpose, Stream},
+    mount::MountPose,
     pose::{CameraPose, Pose2},
-    preprocess::Attitude,
     warp::{
         BlendWeights, Hall, Hull, MAX_SOURCES, Origin, Picture, Placement, RayTable, Source, Target, blend,
     },
@@ -110,25 +110,25 @@ impl Scene {
         let round = seed as usize / (MAX_SOURCES + 1);
         let camera = |number: usize| (seed as usize + round % 2 * number) % cameras.len();
         let n = stream.normals(0);
-        let attitude = Attitude { height_m: 0.5, pitch_rad: 0.3 + 0.1 * n[3], roll_rad: 0.1 * n[4] };
+        let mount = MountPose { height_m: 0.5, pitch_rad: 0.3 + 0.1 * n[3], roll_rad: 0.1 * n[4] };
         let planar = Pose2::new(1.5 * n[0], n[1], 2.0 * n[2]);
         let view = |number: usize| {
             let n = stream.normals(number as u32 + 1);
             let planar =
                 Pose2::new(planar.x_m + 0.3 * n[0], planar.y_m + 0.3 * n[1], planar.yaw_rad + 0.3 * n[2]);
-            let attitude = Attitude {
-                height_m: attitude.height_m * (1.0 + 0.1 * n[5].clamp(-3.0, 3.0)),
-                pitch_rad: attitude.pitch_rad + 0.1 * n[3],
-                roll_rad: attitude.roll_rad + 0.1 * n[4],
+            let mount = MountPose {
+                height_m: mount.height_m * (1.0 + 0.1 * n[5].clamp(-3.0, 3.0)),
+                pitch_rad: mount.pitch_rad + 0.1 * n[3],
+                roll_rad: mount.roll_rad + 0.1 * n[4],
             };
             let camera = camera(number);
             let gain =
                 [0, 1, 2].map(|channel| 0.8 + 0.5 * stream.uniform(100 + 3 * number as u32 + channel) as f32);
             let picture = Arc::new(picture(&cameras[camera], &stream, number as u32));
-            View { camera, pose: attitude.at(planar), picture, gain }
+            View { camera, pose: mount.at(planar), picture, gain }
         };
         let views = (0..seed as usize % (MAX_SOURCES + 1)).map(view).collect();
-        Self { camera: camera(1), pose: attitude.at(planar), views }
+        Self { camera: camera(1), pose: mount.at(planar), views }
     }
 }
 

@@ -36,24 +36,23 @@
 //! # }
 //! ```
 //!
-//! A recording without poses is tagged:
+//! A recording without poses is localized; [`localization`] shows the same for a camera that delivers now:
 //!
 //! ```
 //! use std::path::Path;
 //!
-//! use reality_sim::{ObservationKind, Sequence, TagConfig, Tagger, tag_sequence};
+//! use reality_sim::{Localizer, Sequence};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! # std::env::set_current_dir("../..")?;
 //! let mut walk = Sequence::open(Path::new("assets/walk"))?;
 //! walk.frames.truncate(3);
 //!
-//! let config = TagConfig::new(ObservationKind::Contrast);
-//! let mut tagger = Tagger::new(&walk.setup.camera, &walk.field, walk.start, config);
-//! let tagged = tag_sequence(&walk, &mut tagger, |_, _, _, _| Ok(()))?;
+//! let mut localizer = Localizer::builder(&walk.setup.camera, &walk.field).start(walk.start).build()?;
+//! let frames = localizer.run(&walk).collect::<Result<Vec<_>, _>>()?;
 //!
 //! let truth = walk.frames[2].reference_pose.ok_or("the walk has ground truth")?;
-//! assert!((tagged[2].pose.x_m - truth.x_m).abs() < 0.03);
+//! assert!((frames[2].pose.x_m - truth.x_m).abs() < 0.03);
 //! # Ok(())
 //! # }
 //! ```
@@ -71,15 +70,16 @@ pub use reality_sim_gpu as gpu;
 pub use {glam, image, nalgebra};
 
 pub use reality_sim_core::{
-    backend, camera, field, filter, observation, pose, preprocess, refine, search, sequence, tag, warp,
+    backend, camera, field, filter, localization, mount, observation, pose, preprocess, refine, search,
+    sequence, warp,
 };
 pub use reality_sim_core::{
     camera::Camera,
     field::FieldDimensions,
+    localization::{LocalizationError, LocalizedFrame, Localizer, LocalizerConfig, Observation},
     observation::ObservationKind,
     pose::{CameraPose, Pose2},
     sequence::{Sequence, SequenceError, StampedPose, write_tum},
-    tag::{TagConfig, TagError, TaggedFrame, Tagger, tag_sequence},
 };
 pub use reality_sim_db as db;
 pub use reality_sim_gap as gap;

@@ -3,18 +3,17 @@
 mod options;
 mod report;
 
-use std::sync::Arc;
-
 use anyhow::bail;
 use image::RgbImage;
+use indicatif::ProgressBar;
 
 use reality_sim::{
-    CameraPose, Pose2, Sequence, StampedPose, TaggedFrame, Tagger,
+    CameraPose, LocalizedFrame, Localizer, Observation, Pose2, Sequence, StampedPose,
     evaluation::PoseError,
+    localization::Picture,
     overlay::{BorderOutline, Overlay},
     refine::SmoothedPose,
     sequence::{save_image, write_atomically},
-    tag::{recorded, smooth_sequence, tag_sequence},
     write_tum,
 };
 
@@ -30,29 +29,14 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     let config = args.config();
     let device = args.device()?;
     let Sequence { setup, field, start, .. } = &sequence;
-    let mut tagger = Tagger::with_backend(&setup.camera, field, *start, config, device.backend.clone())?;
+    let builder = Localizer::builder(&setup.camera, field).config(config).start(*start);
+    let mut localizer = builder.backend(device.backend.clone()).build()?;
     let progress = frame_progress(sequence.frames.len())?;
-    let mut path = Vec::new();
-    let first = args.frames.map_or(0, |range| range.first);
-    let tagged = tag_sequence(&sequence, &mut tagger, |index, frame, picture, tagger| {
-        progress.inc(1);
-        if let Some(truth) = sequence.frames[index].reference_pose {
-            let error_cm = 100.0 * PoseError::new(frame.pose, truth).distance_m;
-            progress.set_message(format!("{error_cm:.1} cm off"));
-        }
-        match &args.overlay {
-            Some(folder) => {
-                path.push(frame.pose);
-                let file = folder.join(format!("{:06}.jpg", first + index));
-                save_image(&file, &draw(&sequence, index, frame, picture, tagger, &path))
-            }
-            None => Ok(()),
-        }
-    })
-    .inspect_err(|_| progress.finish_and_clear())?;
+    let tagged = localize(args, &sequence, &mut localizer, &progress);
     progress.finish_and_clear();
+    let tagged = tagged?;
 
-    let results = if args.smooth { smoothed(&sequence, &tagger, &tagged)? } else { filtered(&tagged) };
+    let results = if args.smooth { smoothed(&sequence, &localizer, &tagged)? } else { filtered(&tagged) };
     let poses: Vec<CameraPose> = results.iter().map(|result| result.pose).collect();
     if let Some(details) = &args.details {
         write_atomically(details, details_csv(&sequence, &tagged, &results).as_bytes())?;
@@ -68,15 +52,49 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     if args.json { print_json(&report) } else { print(&report.text(&sequence.name)) }
 }
 
+/// Localizes every picture, and draws it where that is asked for.
+fn localize(
+    args: &TagArgs,
+    sequence: &Sequence,
+    localizer: &mut Localizer,
+    progress: &ProgressBar,
+) -> anyhow::Result<Vec<LocalizedFrame>> {
+    let first = args.frames.map_or(0, |range| range.first);
+    let (mut frames, mut path) = (Vec::with_capacity(sequence.frames.len()), Vec::new());
+    let mut run = localizer.run(sequence);
+    while let Some(frame) = run.next() {
+        let (frame, index) = (frame?, frames.len());
+        progress.inc(1);
+        if let Some(truth) = sequence.frames[index].reference_pose {
+            let error_cm = 100.0 * PoseError::new(frame.pose, truth).distance_m;
+            progress.set_message(format!("{error_cm:.1} cm off"));
+        }
+        if let (Some(folder), Some(observation)) = (&args.overlay, run.observation()) {
+            path.push(frame.pose);
+            let file = folder.join(format!("{:06}.jpg", first + index));
+            let truth = sequence.frames[index].reference_pose;
+            save_image(&file, &draw(sequence, observation, &frame, truth, run.localizer(), &path)?)?;
+        }
+        frames.push(frame);
+    }
+    Ok(frames)
+}
+
 /// Every picture's pose as it was found when the picture came.
-fn filtered(tagged: &[TaggedFrame]) -> Vec<PoseResult> {
-    let sigmas = |frame: &TaggedFrame| frame.fit.map(|fit| fit.covariance.diagonal().map(f64::sqrt).into());
+fn filtered(tagged: &[LocalizedFrame]) -> Vec<PoseResult> {
+    let sigmas =
+        |frame: &LocalizedFrame| frame.fit.map(|fit| fit.covariance.diagonal().map(f64::sqrt).into());
     tagged.iter().map(|frame| PoseResult { pose: frame.pose, sigmas: sigmas(frame) }).collect()
 }
 
 /// The most probable poses of the whole recording.
-fn smoothed(sequence: &Sequence, tagger: &Tagger, tagged: &[TaggedFrame]) -> anyhow::Result<Vec<PoseResult>> {
-    let Some(smoothed) = smooth_sequence(sequence, tagger, tagged)? else {
+fn smoothed(
+    sequence: &Sequence,
+    localizer: &Localizer,
+    frames: &[LocalizedFrame],
+) -> anyhow::Result<Vec<PoseResult>> {
+    let picture = |index| sequence.load_image(index).map(Picture::from);
+    let Some(smoothed) = localizer.smoother().smooth(frames, picture)? else {
         bail!(
             "{}: no picture shows enough of the lines to smooth the poses: tag without --smooth",
             sequence.folder.display()
@@ -105,25 +123,24 @@ fn check_outputs(args: &TagArgs, sequence: &Sequence) -> anyhow::Result<()> {
 
 fn draw(
     sequence: &Sequence,
-    index: usize,
-    frame: &TaggedFrame,
-    picture: &Arc<RgbImage>,
-    tagger: &Tagger,
+    observation: &Observation,
+    frame: &LocalizedFrame,
+    truth: Option<CameraPose>,
+    localizer: &Localizer,
     path: &[CameraPose],
-) -> RgbImage {
-    let attitude = recorded(sequence, index, picture).attitude;
-    let border = tagger.border(picture, attitude);
+) -> anyhow::Result<RgbImage> {
+    let border = localizer.border(observation);
     let overlay = Overlay {
         camera: &sequence.setup.camera,
         field: &sequence.field,
         pose: frame.pose,
-        truth: sequence.frames[index].reference_pose,
+        truth,
         border: Some(BorderOutline {
             corners_in_heading: &border.outline_in_heading,
-            camera_in_heading: attitude.at(Pose2::default()),
+            camera_in_heading: observation.mount.at(Pose2::default()),
         }),
-        particles: &tagger.particles(),
+        particles: &localizer.particles()?,
         path,
     };
-    overlay.draw((**picture).clone())
+    Ok(overlay.draw((**observation.picture.pixels()).clone()))
 }

@@ -9,7 +9,7 @@ use anyhow::bail;
 use clap::{Args, ValueEnum};
 
 use reality_sim::{
-    FieldDimensions, ObservationKind, Pose2, Sequence, TagConfig,
+    FieldDimensions, LocalizerConfig, ObservationKind, Pose2, Sequence,
     field::preset_names,
     filter::{Estimator, KldConfig, Resampling},
     sequence::{read_camera, read_field},
@@ -223,8 +223,8 @@ impl TagArgs {
     }
 
     /// The filter's settings.
-    pub fn config(&self) -> TagConfig {
-        let mut config = TagConfig::new(self.observation.into());
+    pub fn config(&self) -> LocalizerConfig {
+        let mut config = LocalizerConfig::new(self.observation.into());
         let observation = &mut config.observation;
         observation.blur_sigma_px = self.blur.unwrap_or(observation.blur_sigma_px);
         observation.alpha = self.alpha.unwrap_or(observation.alpha);
@@ -235,9 +235,9 @@ impl TagArgs {
         config.filter.estimator = self.estimator.into();
         config.filter.seed = self.seed;
         config.filter.adaptive = self.adaptive.then(KldConfig::default);
-        config.odometry = !self.no_odometry;
-        config.recovery = !self.no_recovery;
-        config.refine |= self.smooth;
+        config.uses_odometry = !self.no_odometry;
+        config.relocalizes = !self.no_recovery;
+        config.refines |= self.smooth;
         config
     }
 

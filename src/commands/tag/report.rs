@@ -5,7 +5,7 @@ use std::{fmt::Write, path::Path};
 use serde::Serialize;
 
 use reality_sim::{
-    CameraPose, ObservationKind, Sequence, TagConfig, TaggedFrame,
+    CameraPose, LocalizedFrame, LocalizerConfig, ObservationKind, Sequence,
     evaluation::{ErrorStatistics, PoseError, percentile},
     filter::{Estimator, Resampling},
 };
@@ -21,7 +21,7 @@ pub struct PoseResult {
 }
 
 /// One line a picture; what is not known is empty.
-pub fn details_csv(sequence: &Sequence, tagged: &[TaggedFrame], results: &[PoseResult]) -> String {
+pub fn details_csv(sequence: &Sequence, tagged: &[LocalizedFrame], results: &[PoseResult]) -> String {
     const DEGREES_OF_FREEDOM: [&str; 6] = ["x_m", "y_m", "yaw_rad", "height_m", "pitch_rad", "roll_rad"];
     let mut csv = String::from("timestamp_s");
     let sigmas = DEGREES_OF_FREEDOM.map(|name| format!("sigma_{name}"));
@@ -52,7 +52,7 @@ pub fn details_csv(sequence: &Sequence, tagged: &[TaggedFrame], results: &[PoseR
             frame.filter.particles,
             frame.line_fraction,
             frame.sure,
-            frame.mirror_probability,
+            frame.mirrored_probability,
             frame.searched
         );
         let _ = match sequence.frames[index].reference_pose.map(|truth| PoseError::new(pose, truth)) {
@@ -97,9 +97,9 @@ impl Report {
     pub fn new(
         args: &TagArgs,
         sequence: &Sequence,
-        config: &TagConfig,
+        config: &LocalizerConfig,
         device: &Device,
-        tagged: &[TaggedFrame],
+        tagged: &[LocalizedFrame],
         poses: &[CameraPose],
     ) -> Self {
         let truths = sequence.reference_poses().zip(poses);

@@ -13,7 +13,7 @@ pub use self::{
     estimate::{Estimator, spread_m, weighted_mean},
     kld::KldConfig,
     motion::{MotionNoise, PlanarSigma},
-    particle_filter::{FilterConfig, FilterEstimate, ParticleFilter, placed, rivals},
+    particle_filter::{FilterConfig, FilterEstimate, ParticleFilter, alternatives, placed},
     resample::Resampling,
     rng::{Purpose, Stream},
     scored::{Filter, ScoredFilter},

@@ -8,10 +8,10 @@ use super::{
     effective_sample_size, normalise, spread_m, weighted_mean,
 };
 use crate::{
+    backend_error::BackendError,
+    mount::{MountPose, MountPoseSigma},
     observation::Scorer,
     pose::{CameraPose, Motion2, Pose2},
-    preprocess::Attitude,
-    refine::AttitudeTolerance,
 };
 
 /// Settings of the particle filter.
@@ -35,7 +35,7 @@ pub struct FilterConfig {
     /// Adapt the number of particles to their spread.
     pub adaptive: Option<KldConfig>,
     /// Particles also differ in height, pitch and roll, by this much; without it these are what joints and IMU say.
-    pub attitude_tolerance: Option<AttitudeTolerance>,
+    pub mount_sigma: Option<MountPoseSigma>,
 }
 
 impl Default for FilterConfig {
@@ -49,7 +49,7 @@ impl Default for FilterConfig {
             noise: MotionNoise::default(),
             shrink: 0.6,
             adaptive: None,
-            attitude_tolerance: None,
+            mount_sigma: None,
         }
     }
 }
@@ -69,10 +69,10 @@ pub struct FilterEstimate {
     pub particles: usize,
 }
 
-/// Particles nearer than this to a better one, metres and radians, are no rivals of it.
-const RIVAL_DISTANCE: PlanarSigma = PlanarSigma { position_m: 0.12, yaw_rad: 0.08 };
-/// Rivals kept.
-const RIVALS: usize = 6;
+/// Particles nearer than this to a better one, metres and radians, are no alternatives to it.
+const ALTERNATIVE_DISTANCE: PlanarSigma = PlanarSigma { position_m: 0.12, yaw_rad: 0.08 };
+/// Alternatives kept.
+const ALTERNATIVES: usize = 6;
 
 /// Particles, and how they follow a recording.
 #[derive(Debug, Clone)]
@@ -83,20 +83,20 @@ pub struct ParticleFilter {
     /// Rounds of placing particles anew in this frame: each needs random numbers of its own.
     placements: u32,
     /// The best particles of the first iteration of this frame that lie apart from each other.
-    rivals: Vec<CameraPose>,
+    alternatives: Vec<CameraPose>,
 }
 
 impl ParticleFilter {
     /// Particles around a start pose.
     pub fn new(config: FilterConfig, start: Pose2, sigma: PlanarSigma) -> Self {
         let mut filter = Self::empty(config);
-        filter.place(&[(start, 1.0)], sigma);
+        filter.initialize(&[(start, 1.0)], sigma);
         filter
     }
 
     /// No particles yet.
     pub fn empty(config: FilterConfig) -> Self {
-        Self { config, particles: Vec::new(), frame: 0, placements: 0, rivals: Vec::new() }
+        Self { config, particles: Vec::new(), frame: 0, placements: 0, alternatives: Vec::new() }
     }
 
     /// The particles after the last iteration.
@@ -106,8 +106,8 @@ impl ParticleFilter {
 
     /// The best particles of the last update's first iteration that lie apart from each other, best first: other places
     /// the picture may have been taken at.
-    pub fn rivals(&self) -> &[CameraPose] {
-        &self.rivals
+    pub fn alternatives(&self) -> &[CameraPose] {
+        &self.alternatives
     }
 
     /// Settings in use.
@@ -121,13 +121,13 @@ impl ParticleFilter {
     }
 
     /// Places all particles anew, around several poses in proportion to their weights.
-    pub fn place(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) {
+    pub fn initialize(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) {
         self.particles =
             placed(&self.config, modes, sigma, self.stream(Purpose::Initialise, self.placements));
         self.placements += 1;
     }
 
-    /// Carries the particles to the next picture. Without odometry the previous picture alone predicts this one, as in
+    /// Moves the particles to the next picture. Without odometry the previous picture alone predicts this one, as in
     /// the paper.
     pub fn predict(&mut self, motion: Option<Motion2>) {
         self.frame += 1;
@@ -141,21 +141,26 @@ impl ParticleFilter {
     }
 
     /// Weighs and resamples T times against the picture the scorer holds. `sigma` is the diffusion of the first
-    /// iteration.
-    pub fn update(&mut self, scorer: &dyn Scorer, attitude: Attitude, sigma: PlanarSigma) -> FilterEstimate {
+    /// iteration. Fails where the scorer's device does.
+    pub fn update(
+        &mut self,
+        scorer: &dyn Scorer,
+        mount: MountPose,
+        sigma: PlanarSigma,
+    ) -> Result<FilterEstimate, BackendError> {
         let mut best: Option<(CameraPose, f64)> = None;
         let mut last = (Vec::new(), Vec::new());
         for iteration in 0..self.config.iterations.max(1) {
             let scale = self.config.shrink.powi(iteration as i32);
-            self.diffuse(iteration, scale, sigma, attitude);
-            let log_weights = self.log_weights(scorer, attitude);
+            self.diffuse(iteration, scale, sigma, mount);
+            let log_weights = self.log_weights(scorer, mount)?;
             if let Some(index) = best_index(&log_weights)
                 && best.is_none_or(|(_, largest)| log_weights[index] > largest)
             {
                 best = Some((self.particles[index], log_weights[index]));
             }
             if iteration == 0 {
-                self.rivals = rivals(&self.particles, &log_weights);
+                self.alternatives = alternatives(&self.particles, &log_weights);
             }
             let weights = normalise(&log_weights);
             let count = self.config.adaptive.map_or(self.config.particles, |adaptive| {
@@ -166,7 +171,7 @@ impl ParticleFilter {
             let survivors = chosen.iter().map(|&index| self.particles[index]).collect();
             last = (std::mem::replace(&mut self.particles, survivors), weights);
         }
-        self.summarise(best, &last.0, &last.1, attitude)
+        Ok(self.summarise(best, &last.0, &last.1, mount))
     }
 
     fn summarise(
@@ -174,11 +179,11 @@ impl ParticleFilter {
         best: Option<(CameraPose, f64)>,
         particles: &[CameraPose],
         weights: &[f64],
-        attitude: Attitude,
+        mount: MountPose,
     ) -> FilterEstimate {
         // Without any usable weight every particle is as good as any other.
         let (best, log_weight) = best.unwrap_or_else(|| {
-            (particles.first().copied().unwrap_or(attitude.at(Pose2::default())), f64::NEG_INFINITY)
+            (particles.first().copied().unwrap_or(mount.at(Pose2::default())), f64::NEG_INFINITY)
         });
         let pose = match self.config.estimator {
             Estimator::Best => best,
@@ -194,33 +199,32 @@ impl ParticleFilter {
         }
     }
 
-    /// The first iteration only gives the particles their attitude: prediction has spread them already.
-    fn diffuse(&mut self, iteration: u32, scale: f64, sigma: PlanarSigma, attitude: Attitude) {
+    /// The first iteration only gives the particles their mount pose: prediction has spread them already.
+    fn diffuse(&mut self, iteration: u32, scale: f64, sigma: PlanarSigma, mount: MountPose) {
         let stream = self.stream(Purpose::Diffuse, iteration);
-        let tolerance =
-            self.config.attitude_tolerance.unwrap_or(AttitudeTolerance { height_m: 0.0, angle_rad: 0.0 });
+        let mount_sigma = self.config.mount_sigma.unwrap_or(MountPoseSigma { height_m: 0.0, angle_rad: 0.0 });
         let planar = PlanarSigma { position_m: scale * sigma.position_m, yaw_rad: scale * sigma.yaw_rad };
         self.particles.par_iter_mut().enumerate().for_each(|(index, particle)| {
             let normals = stream.normals(index as u32);
             if iteration == 0 {
-                *particle = attitude.at(particle.planar());
+                *particle = mount.at(particle.planar());
             } else {
                 *particle = particle.with_planar(diffused(particle.planar(), planar, &normals));
             }
-            particle.height_m += scale * tolerance.height_m * normals[3];
-            particle.pitch_rad += scale * tolerance.angle_rad * normals[4];
-            particle.roll_rad += scale * tolerance.angle_rad * normals[5];
+            particle.height_m += scale * mount_sigma.height_m * normals[3];
+            particle.pitch_rad += scale * mount_sigma.angle_rad * normals[4];
+            particle.roll_rad += scale * mount_sigma.angle_rad * normals[5];
         });
     }
 
-    fn log_weights(&self, scorer: &dyn Scorer, attitude: Attitude) -> Vec<f64> {
-        let mut log_weights = scorer.log_weights(&self.particles);
-        if let Some(tolerance) = self.config.attitude_tolerance {
+    fn log_weights(&self, scorer: &dyn Scorer, mount: MountPose) -> Result<Vec<f64>, BackendError> {
+        let mut log_weights = scorer.log_weights(&self.particles)?;
+        if let Some(mount_sigma) = self.config.mount_sigma {
             for (log_weight, particle) in log_weights.iter_mut().zip(&self.particles) {
-                *log_weight += tolerance.log_prior(*particle, attitude);
+                *log_weight += mount_sigma.log_prior(*particle, mount);
             }
         }
-        log_weights
+        Ok(log_weights)
     }
 
     fn stream(&self, purpose: Purpose, iteration: u32) -> Stream {
@@ -236,7 +240,7 @@ pub fn placed(
     stream: Stream,
 ) -> Vec<CameraPose> {
     let weights: Vec<f64> = modes.iter().map(|(_, weight)| *weight).collect();
-    let origin = Attitude { height_m: 0.0, pitch_rad: 0.0, roll_rad: 0.0 };
+    let origin = MountPose { height_m: 0.0, pitch_rad: 0.0, roll_rad: 0.0 };
     Resampling::Systematic
         .resample(&weights, config.particles, stream)
         .into_iter()
@@ -254,21 +258,21 @@ fn diffused(pose: Pose2, sigma: PlanarSigma, normals: &[f64; 6]) -> Pose2 {
 }
 
 /// The best particles that lie apart from each other, best first.
-pub fn rivals(particles: &[CameraPose], log_weights: &[f64]) -> Vec<CameraPose> {
+pub fn alternatives(particles: &[CameraPose], log_weights: &[f64]) -> Vec<CameraPose> {
     let mut order: Vec<usize> = (0..particles.len()).filter(|&index| !log_weights[index].is_nan()).collect();
     order.sort_by(|&a, &b| log_weights[b].total_cmp(&log_weights[a]));
-    let mut rivals: Vec<CameraPose> = Vec::new();
+    let mut alternatives: Vec<CameraPose> = Vec::new();
     for pose in order.into_iter().map(|index| particles[index]) {
-        let apart = rivals.iter().all(|other| {
-            (pose.x_m - other.x_m).hypot(pose.y_m - other.y_m) > RIVAL_DISTANCE.position_m
-                || crate::pose::wrap_angle(pose.yaw_rad - other.yaw_rad).abs() > RIVAL_DISTANCE.yaw_rad
+        let apart = alternatives.iter().all(|other| {
+            (pose.x_m - other.x_m).hypot(pose.y_m - other.y_m) > ALTERNATIVE_DISTANCE.position_m
+                || crate::pose::wrap_angle(pose.yaw_rad - other.yaw_rad).abs() > ALTERNATIVE_DISTANCE.yaw_rad
         });
         if apart {
-            rivals.push(pose);
-            if rivals.len() == RIVALS {
+            alternatives.push(pose);
+            if alternatives.len() == ALTERNATIVES {
                 break;
             }
         }
     }
-    rivals
+    alternatives
 }

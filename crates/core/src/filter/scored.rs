@@ -1,42 +1,48 @@
 //! A particle filter and the observation model that weighs its particles, as one.
 
-use std::sync::Arc;
+use std::{fmt, sync::Arc};
 
 use image::RgbImage;
 
 use super::{FilterConfig, FilterEstimate, ParticleFilter, PlanarSigma};
 use crate::{
+    backend_error::BackendError,
+    mount::MountPose,
     observation::Scorer,
     pose::{CameraPose, Motion2, Pose2},
-    preprocess::{Attitude, Prepared},
+    preprocess::Prepared,
 };
 
 /// One picture at a time: load it, predict, update. The particles may live on another device; what is asked of them
-/// between updates may take a while to come from there.
+/// between updates may take a while to come from there. A device that fails is an error of the call that failed, and what
+/// the filter holds is worth nothing until [`Filter::reset`].
 pub trait Filter: Send + Sync {
     /// Takes over a new picture.
-    fn load(&mut self, picture: &Prepared);
+    fn load(&mut self, picture: &Prepared) -> Result<(), BackendError>;
 
-    /// The picture that follows the one loaded: a device takes it over while it computes.
-    fn announce(&mut self, _next: &Arc<RgbImage>) {}
+    /// Hands over the picture that follows the one loaded: a device takes it while it computes.
+    fn prefetch(&mut self, _next: &Arc<RgbImage>) {}
+
+    /// Forgets all particles, and begins again as a new filter with this seed would.
+    fn reset(&mut self, seed: u64);
 
     /// Places all particles anew, around several poses in proportion to their weights.
-    fn place(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma);
+    fn initialize(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) -> Result<(), BackendError>;
 
-    /// Carries the particles to the next picture, see [`ParticleFilter::predict`].
-    fn predict(&mut self, motion: Option<Motion2>);
+    /// Moves the particles to the next picture, see [`ParticleFilter::predict`].
+    fn predict(&mut self, motion: Option<Motion2>) -> Result<(), BackendError>;
 
     /// Weighs and resamples T times, see [`ParticleFilter::update`].
-    fn update(&mut self, attitude: Attitude, sigma: PlanarSigma) -> FilterEstimate;
+    fn update(&mut self, mount: MountPose, sigma: PlanarSigma) -> Result<FilterEstimate, BackendError>;
 
     /// Turns all particles by 180° about the field's centre.
-    fn mirror(&mut self);
+    fn mirror(&mut self) -> Result<(), BackendError>;
 
     /// The particles after the last iteration.
-    fn particles(&self) -> Vec<CameraPose>;
+    fn particles(&self) -> Result<Vec<CameraPose>, BackendError>;
 
-    /// Other places the picture may have been taken at, see [`ParticleFilter::rivals`].
-    fn rivals(&self) -> Vec<CameraPose>;
+    /// Other places the picture may have been taken at, see [`ParticleFilter::alternatives`].
+    fn alternatives(&self) -> &[CameraPose];
 }
 
 /// A [`ParticleFilter`] on this processor, weighed by any scorer.
@@ -45,9 +51,9 @@ pub struct ScoredFilter {
     filter: ParticleFilter,
 }
 
-impl std::fmt::Debug for ScoredFilter {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("ScoredFilter").field("filter", &self.filter).finish_non_exhaustive()
+impl fmt::Debug for ScoredFilter {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_struct("ScoredFilter").field("filter", &self.filter).finish_non_exhaustive()
     }
 }
 
@@ -59,31 +65,38 @@ impl ScoredFilter {
 }
 
 impl Filter for ScoredFilter {
-    fn load(&mut self, picture: &Prepared) {
-        self.scorer.load(picture);
+    fn load(&mut self, picture: &Prepared) -> Result<(), BackendError> {
+        self.scorer.load(picture)
     }
 
-    fn place(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) {
-        self.filter.place(modes, sigma);
+    fn reset(&mut self, seed: u64) {
+        self.filter = ParticleFilter::empty(FilterConfig { seed, ..*self.filter.config() });
     }
 
-    fn predict(&mut self, motion: Option<Motion2>) {
+    fn initialize(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) -> Result<(), BackendError> {
+        self.filter.initialize(modes, sigma);
+        Ok(())
+    }
+
+    fn predict(&mut self, motion: Option<Motion2>) -> Result<(), BackendError> {
         self.filter.predict(motion);
+        Ok(())
     }
 
-    fn update(&mut self, attitude: Attitude, sigma: PlanarSigma) -> FilterEstimate {
-        self.filter.update(&*self.scorer, attitude, sigma)
+    fn update(&mut self, mount: MountPose, sigma: PlanarSigma) -> Result<FilterEstimate, BackendError> {
+        self.filter.update(&*self.scorer, mount, sigma)
     }
 
-    fn mirror(&mut self) {
+    fn mirror(&mut self) -> Result<(), BackendError> {
         self.filter.mirror();
+        Ok(())
     }
 
-    fn particles(&self) -> Vec<CameraPose> {
-        self.filter.particles().to_vec()
+    fn particles(&self) -> Result<Vec<CameraPose>, BackendError> {
+        Ok(self.filter.particles().to_vec())
     }
 
-    fn rivals(&self) -> Vec<CameraPose> {
-        self.filter.rivals().to_vec()
+    fn alternatives(&self) -> &[CameraPose] {
+        self.filter.alternatives()
     }
 }

@@ -1,7 +1,92 @@
-//! What a localizer carries from picture to picture, and its settings.
+//! The pose of a camera from its pictures, one after the other: Monte Carlo localization on a soccer field.
+//!
+//! | type | |
+//! |---|---|
+//! | [`Localizer`] | finds the pose of every picture as it comes; [`Localizer::builder`] makes one |
+//! | [`Observation`] | a picture with its time, odometry and mount pose |
+//! | [`Picture`] | RGB or grey; owned, shared or copied from a buffer |
+//! | [`LocalizedFrame`] | the pose of a picture, and how far to trust it |
+//! | [`Run`] | the frames of a recording, by [`Localizer::run`] |
+//! | [`Smoother`] | all frames together, by [`Localizer::smoother`] |
+//! | [`LocalizerConfig`] | every number that can be tuned |
+//!
+//! An update is that of a textbook (Thrun, Burgard and Fox, "Probabilistic Robotics", 2005, chapter 8): particles are moved
+//! by the odometry, weighed by the picture and resampled. Where the prediction is worth too little, or the picture
+//! contradicts it, the whole field is searched. The best pose is fitted to a fraction of a pixel, and the colours of the
+//! goals tell it from its mirror image on the field.
+//!
+//! A camera that delivers pictures now:
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! use reality_sim_core::{
+//!     localization::{Localizer, LocalizerConfig, Observation, Picture, mount_of_frame},
+//!     observation::ObservationKind,
+//!     sequence::Sequence,
+//! };
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let walk = Sequence::open(Path::new("../../assets/walk"))?;
+//! let mut localizer = Localizer::builder(&walk.setup.camera, &walk.field)
+//!     .config(LocalizerConfig::new(ObservationKind::Contrast).with_seed(7))
+//!     .start(walk.start)
+//!     .build()?;
+//!
+//! // What a driver hands over: a buffer, the time, what the joints say, the odometry.
+//! let buffer = walk.load_image(0)?.into_raw();
+//! let picture = Picture::from_rgb([640, 480], &buffer)?;
+//! let observation = Observation::new(0.0, picture, mount_of_frame(&walk, 0));
+//! let odometry = walk.frames[0].odometry.ok_or("the walk has odometry")?;
+//!
+//! let frame = localizer.update(&observation.with_odometry(odometry))?;
+//! assert!(frame.sure && frame.pose.x_m.is_finite());
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! A recording, and then all of its frames together:
+//!
+//! ```
+//! # use std::path::Path;
+//! # use reality_sim_core::{localization::{Localizer, Picture}, sequence::Sequence};
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let mut walk = Sequence::open(Path::new("../../assets/walk"))?;
+//! # walk.frames.truncate(3);
+//! let mut localizer = Localizer::builder(&walk.setup.camera, &walk.field).start(walk.start).build()?;
+//! let frames = localizer.run(&walk).collect::<Result<Vec<_>, _>>()?;
+//! let smoothed = localizer.smoother().smooth(&frames, |index| walk.load_image(index).map(Picture::from))?;
+//! assert_eq!(smoothed.map(|poses| poses.len()), Some(3));
+//! # Ok(())
+//! # }
+//! ```
 
+mod builder;
 mod config;
+mod error;
+mod frame;
+mod localizer;
+mod observation;
+mod picture;
+mod playback;
+mod relocalization;
+mod run;
+mod smoothing;
 mod track;
 
-pub use self::config::TrackConfig;
-pub(crate) use self::track::{Beginning, Prediction, Track};
+pub use self::{
+    builder::LocalizerBuilder,
+    config::{LocalizerConfig, RelocalizationConfig, TrackConfig},
+    error::LocalizationError,
+    frame::LocalizedFrame,
+    localizer::Localizer,
+    observation::{Observation, mount_of_frame},
+    picture::{InvalidPicture, Picture},
+    playback::Playback,
+    run::Run,
+    smoothing::{Smoother, Smoothing},
+};
+pub use crate::goal_colors::GoalColorConfig;
+
+#[cfg(test)]
+mod tests;

@@ -20,6 +20,7 @@ pub use self::{
     normal_search::NormalSearch,
 };
 use crate::{
+    backend_error::BackendError,
     camera::Camera,
     field::FieldDimensions,
     pose::CameraPose,
@@ -32,12 +33,12 @@ const POSES_PER_TASK: usize = 16;
 /// Scores poses against the picture that was loaded last. The particle filter knows only this, so that the same filter
 /// runs with any model.
 ///
-/// A scorer whose device has failed gives NaN for every pose; [`crate::backend::Backend::status`] tells why.
+/// A device that fails is an error of the call that failed; the processor never does.
 pub trait Scorer: Send + Sync {
     /// Takes over a new picture.
-    fn load(&mut self, picture: &Prepared);
+    fn load(&mut self, picture: &Prepared) -> Result<(), BackendError>;
     /// Log-weight of every pose, up to one constant for the whole picture.
-    fn log_weights(&self, poses: &[CameraPose]) -> Vec<f64>;
+    fn log_weights(&self, poses: &[CameraPose]) -> Result<Vec<f64>, BackendError>;
 }
 
 /// The observation models on the CPU.
@@ -86,6 +87,17 @@ impl CpuScorer {
         }
     }
 
+    /// Takes over a new picture, as [`Scorer::load`]; the processor never fails.
+    pub fn set_picture(&mut self, picture: &Prepared) {
+        self.texture = Texture::pack(&self.model.image(picture));
+        self.scale = self.model.contrast_scale(&picture.levels);
+    }
+
+    /// Log-weights of poses, as [`Scorer::log_weights`]; the processor never fails.
+    pub fn log_weights_of(&self, poses: &[CameraPose]) -> Vec<f64> {
+        poses.par_iter().with_min_len(POSES_PER_TASK).map(|pose| self.log_weight(pose)).collect()
+    }
+
     /// Log-weight of one pose.
     pub(crate) fn log_weight(&self, pose: &CameraPose) -> f64 {
         self.model.log_weight(self.sums(pose))
@@ -93,13 +105,13 @@ impl CpuScorer {
 }
 
 impl Scorer for CpuScorer {
-    fn load(&mut self, picture: &Prepared) {
-        self.texture = Texture::pack(&self.model.image(picture));
-        self.scale = self.model.contrast_scale(&picture.levels);
+    fn load(&mut self, picture: &Prepared) -> Result<(), BackendError> {
+        self.set_picture(picture);
+        Ok(())
     }
 
-    fn log_weights(&self, poses: &[CameraPose]) -> Vec<f64> {
-        poses.par_iter().with_min_len(POSES_PER_TASK).map(|pose| self.log_weight(pose)).collect()
+    fn log_weights(&self, poses: &[CameraPose]) -> Result<Vec<f64>, BackendError> {
+        Ok(self.log_weights_of(poses))
     }
 }
 

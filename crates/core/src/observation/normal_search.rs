@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::{ObservationConfig, POSES_PER_TASK, Scorer};
 use crate::{
+    backend_error::BackendError,
     camera::Camera,
     field::{FieldDimensions, LineSample, sample_lines},
     pose::CameraPose,
@@ -67,12 +68,13 @@ impl NormalSearch {
 }
 
 impl Scorer for NormalSearch {
-    fn load(&mut self, picture: &Prepared) {
+    fn load(&mut self, picture: &Prepared) -> Result<(), BackendError> {
         self.evidence = picture.evidence();
+        Ok(())
     }
 
-    fn log_weights(&self, poses: &[CameraPose]) -> Vec<f64> {
-        poses.par_iter().with_min_len(POSES_PER_TASK).map(|pose| self.log_weight(*pose)).collect()
+    fn log_weights(&self, poses: &[CameraPose]) -> Result<Vec<f64>, BackendError> {
+        Ok(poses.par_iter().with_min_len(POSES_PER_TASK).map(|pose| self.log_weight(*pose)).collect())
     }
 }
 
@@ -80,8 +82,9 @@ impl Scorer for NormalSearch {
 mod tests {
     use super::*;
     use crate::{
+        mount::MountPose,
         observation::{CpuScorer, ObservationKind},
-        preprocess::{Attitude, Preprocessor},
+        preprocess::Preprocessor,
         test_scene,
     };
 
@@ -94,11 +97,11 @@ mod tests {
             (NormalSearch::new(&camera, &field, config), CpuScorer::new(&camera, &field, config));
         for pose in test_scene::poses() {
             let picture = Preprocessor::new(&camera, field.line_width_m)
-                .prepare(test_scene::render(&camera, pose, &field), Attitude::of(pose));
-            across.load(&picture);
-            any.load(&picture);
+                .prepare(test_scene::render(&camera, pose, &field), MountPose::of(pose));
+            across.load(&picture).unwrap();
+            any.load(&picture).unwrap();
             let beside = [0.0, 0.03, 0.1, 0.5].map(|dx| CameraPose { x_m: pose.x_m + dx, ..pose });
-            let (across, any) = (across.log_weights(&beside), any.log_weights(&beside));
+            let (across, any) = (across.log_weights(&beside).unwrap(), any.log_weights(&beside).unwrap());
             for (across, any) in across.iter().zip(&any) {
                 assert!(*across <= 1.03 * any, "{across} along the normals, {any} in any direction");
             }

@@ -11,8 +11,9 @@ use super::{
 use crate::{
     camera::{Distortion, KernelCamera, LANES, Opencv, OpencvFisheye},
     field::sample_lines,
+    mount::MountPose,
     pose::Pose2,
-    preprocess::{Attitude, Preprocessor},
+    preprocess::Preprocessor,
     test_scene,
 };
 
@@ -125,12 +126,12 @@ proptest! {
 fn the_true_pose_scores_best() {
     let (camera, field) = (test_scene::fisheye(), test_scene::field());
     for pose in test_scene::poses() {
-        let attitude = Attitude::of(pose);
+        let mount = MountPose::of(pose);
         let picture = test_scene::render(&camera, pose, &field);
-        let prepared = Preprocessor::new(&camera, field.line_width_m).prepare(picture, attitude);
+        let prepared = Preprocessor::new(&camera, field.line_width_m).prepare(picture, mount);
         for kind in [ObservationKind::Gauss, ObservationKind::Distance, ObservationKind::Contrast] {
             let mut scorer = CpuScorer::new(&camera, &field, ObservationConfig::new(kind));
-            scorer.load(&prepared);
+            scorer.load(&prepared).unwrap();
             let moved = |x: f64, y: f64, yaw: f64| CameraPose {
                 x_m: pose.x_m + x,
                 y_m: pose.y_m + y,
@@ -146,7 +147,7 @@ fn the_true_pose_scores_best() {
                 ]);
                 poses.extend([moved(step, 0.3, 0.9), moved(0.5 * step, -0.7, -1.4)]);
             }
-            let scores = scorer.log_weights(&poses);
+            let scores = scorer.log_weights(&poses).unwrap();
             assert!(scores[1..].iter().all(|score| *score < scores[0]), "{kind:?} at {pose:?}: {scores:?}");
         }
     }
@@ -156,13 +157,13 @@ fn the_true_pose_scores_best() {
 #[test]
 fn contrast_does_not_depend_on_the_light() {
     let (camera, field, pose) = (test_scene::fisheye(), test_scene::field(), test_scene::poses()[0]);
-    let attitude = Attitude::of(pose);
+    let mount = MountPose::of(pose);
     let bright = test_scene::render(&camera, pose, &field);
     let mut dim = bright.clone();
     dim.iter_mut().for_each(|value| *value = (f32::from(*value) * 0.55) as u8);
     let fraction = |picture: image::RgbImage| {
         let mut scorer = CpuScorer::new(&camera, &field, ObservationConfig::new(ObservationKind::Contrast));
-        scorer.load(&Preprocessor::new(&camera, field.line_width_m).prepare(picture, attitude));
+        scorer.load(&Preprocessor::new(&camera, field.line_width_m).prepare(picture, mount)).unwrap();
         scorer.line_fraction(pose).unwrap()
     };
     let (bright, dim) = (fraction(bright), fraction(dim));
@@ -176,6 +177,6 @@ fn poses_without_sense_have_a_weight_all_the_same() {
         let scorer = CpuScorer::new(&camera, &field, ObservationConfig::new(kind));
         let nowhere = CameraPose { x_m: f64::NAN, ..Default::default() };
         let far = CameraPose { x_m: 1e30, height_m: -3.0, ..Default::default() };
-        assert!(scorer.log_weights(&[nowhere, far]).iter().all(|weight| weight.is_finite()));
+        assert!(scorer.log_weights(&[nowhere, far]).unwrap().iter().all(|weight| weight.is_finite()));
     }
 }

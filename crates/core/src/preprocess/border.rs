@@ -10,11 +10,8 @@ use glam::Vec2;
 use image::{GrayImage, RgbImage};
 use rayon::prelude::*;
 
-use super::{
-    Attitude,
-    carpet::{CarpetColor, ColorSum},
-};
-use crate::camera::Camera;
+use super::carpet::{CarpetColor, ColorSum};
+use crate::{camera::Camera, mount::MountPose};
 
 /// The picture is looked at in cells of this many pixels, along each side.
 pub const CELL_PX: u32 = 2;
@@ -82,9 +79,9 @@ impl BorderDetector {
         Self { columns, rows, rays_in_camera }
     }
 
-    /// Finds the border in a picture taken with this attitude.
-    pub fn detect(&self, picture: &RgbImage, attitude: Attitude) -> FieldBorder {
-        let cells = self.ground_cells(attitude);
+    /// Finds the border in a picture taken with this mount pose.
+    pub fn detect(&self, picture: &RgbImage, mount: MountPose) -> FieldBorder {
+        let cells = self.ground_cells(mount);
         let color = |index: usize| {
             let (column, row) = (index as u32 % self.columns, index as u32 / self.columns);
             picture
@@ -107,19 +104,19 @@ impl BorderDetector {
             strips[usize::from(cell.bearing)][depression_bin(cell.depression)].add(color(index), &carpet);
         }
         let ends = carpet_ends(&strips, &carpet);
-        let mut places = border_points(&ends, attitude.height_m as f32);
+        let mut places = border_points(&ends, mount.height_m as f32);
         // The robot stands on the carpet too: without its own place, a narrow view's outline would cut off what lies near.
         places.push(Vec2::ZERO);
         let outline_in_heading = convex_hull(places);
-        let limits = hull_depressions(&outline_in_heading, attitude.height_m as f32);
+        let limits = hull_depressions(&outline_in_heading, mount.height_m as f32);
         let inside = |cell: &GroundCell| cell.depression >= limits[usize::from(cell.bearing)];
         let depressions =
             cells.iter().map(|cell| cell.filter(inside).map_or(0.0, |cell| cell.depression)).collect();
         FieldBorder { columns: self.columns, depressions, carpet, outline_in_heading }
     }
 
-    fn ground_cells(&self, attitude: Attitude) -> Vec<Option<GroundCell>> {
-        let rotation = attitude.rotation_heading_from_camera().as_mat3();
+    fn ground_cells(&self, mount: MountPose) -> Vec<Option<GroundCell>> {
+        let rotation = mount.rotation_heading_from_camera().as_mat3();
         debug_assert_eq!(self.rays_in_camera.len(), (self.columns * self.rows) as usize);
         self.rays_in_camera
             .par_iter()
@@ -334,7 +331,7 @@ mod tests {
     /// Fractions of carpet called outside, and of anything else called inside, among pixels not near the border.
     fn mistakes(picture: &RgbImage, pose: CameraPose) -> (f64, f64) {
         let (camera, field) = (test_scene::fisheye(), test_scene::field());
-        let border = BorderDetector::new(&camera).detect(picture, Attitude::of(pose));
+        let border = BorderDetector::new(&camera).detect(picture, MountPose::of(pose));
         let extent = field.carpet_half_extent_m();
         let (mut carpet, mut lost, mut other, mut kept) = (0.0, 0.0, 0.0, 0.0);
         for (u, v, _) in picture.enumerate_pixels() {
@@ -421,7 +418,7 @@ mod tests {
         for value in [0, 255] {
             let flat = RgbImage::from_pixel(320, 240, Rgb([value; 3]));
             let pose = test_scene::poses()[1];
-            BorderDetector::new(&test_scene::fisheye()).detect(&flat, Attitude::of(pose));
+            BorderDetector::new(&test_scene::fisheye()).detect(&flat, MountPose::of(pose));
         }
     }
 

@@ -1,12 +1,12 @@
 //! Everything the observation models read of one picture.
 
+use crate::mount::MountPose;
 use std::sync::Arc;
 
 use image::{GrayImage, RgbImage};
 
 use super::{
-    Attitude, BorderDetector, FieldBorder, LineScale, WhiteLevels, luma, white_levels, white_line_evidence,
-    whiteness,
+    BorderDetector, FieldBorder, LineScale, WhiteLevels, luma, white_levels, white_line_evidence, whiteness,
 };
 use crate::camera::Camera;
 
@@ -51,15 +51,14 @@ impl Preprocessor {
         Self { border: BorderDetector::new(camera), focal_px, line_width_m: line_width_m as f32 }
     }
 
-    /// Prepares a picture taken with this attitude.
-    pub fn prepare(&self, picture: impl Into<Arc<RgbImage>>, attitude: Attitude) -> Prepared {
+    /// Prepares a picture taken with this mount pose.
+    pub fn prepare(&self, picture: impl Into<Arc<RgbImage>>, mount: MountPose) -> Prepared {
         let picture = picture.into();
-        let (border, whiteness) =
-            rayon::join(|| self.border.detect(&picture, attitude), || whiteness(&picture));
+        let (border, whiteness) = rayon::join(|| self.border.detect(&picture, mount), || whiteness(&picture));
         let scale = LineScale {
             focal_px: self.focal_px,
             line_width_m: self.line_width_m,
-            height_m: attitude.height_m as f32,
+            height_m: mount.height_m as f32,
         };
         let levels = white_levels(&whiteness, &border, scale);
         Prepared { picture, whiteness, levels, border, scale }

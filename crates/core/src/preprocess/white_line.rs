@@ -141,15 +141,15 @@ impl WhiteLevels {
 
 #[cfg(test)]
 mod tests {
-    use crate::{preprocess::Attitude, preprocess::Preprocessor, test_scene};
+    use crate::{mount::MountPose, preprocess::Preprocessor, test_scene};
 
     #[test]
     fn evidence_is_where_lines_are_drawn() {
         let (camera, field) = (test_scene::fisheye(), test_scene::field());
         for pose in test_scene::poses() {
-            let attitude = Attitude::of(pose);
+            let mount = MountPose::of(pose);
             let picture = test_scene::render(&camera, pose, &field);
-            let prepared = Preprocessor::new(&camera, field.line_width_m).prepare(picture, attitude);
+            let prepared = Preprocessor::new(&camera, field.line_width_m).prepare(picture, mount);
             let evidence = prepared.evidence();
             let (mut right, mut wrong) = (0, 0);
             for (u, v, _) in evidence.enumerate_pixels().filter(|(_, _, pixel)| pixel.0[0] > 0) {

@@ -7,6 +7,6 @@ mod trajectory;
 
 pub use self::{
     measure::{LineOffset, MeasureConfig, measure_offsets},
-    picture::{AttitudeTolerance, PoseFit, Reach, RefineConfig, Refiner},
+    picture::{PoseFit, Reach, RefineConfig, Refiner},
     trajectory::{SmoothedPose, TrajectoryFrame, smooth_trajectory},
 };

@@ -7,41 +7,10 @@ use super::measure::{LineOffset, MeasureConfig, measure_offsets};
 use crate::{
     camera::Camera,
     field::{FieldDimensions, LineSample, sample_lines, visible_samples},
+    mount::{MountPose, MountPoseSigma},
     pose::{CameraPose, wrap_angle},
-    preprocess::{Attitude, Texture},
+    preprocess::Texture,
 };
-
-/// How far the camera may stand from what joints and IMU say: standard deviations.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct AttitudeTolerance {
-    /// Of the height, from gait and stance, metres.
-    pub height_m: f64,
-    /// Of pitch and roll each, radians.
-    pub angle_rad: f64,
-}
-
-impl Default for AttitudeTolerance {
-    fn default() -> Self {
-        Self { height_m: 0.03, angle_rad: 0.01 }
-    }
-}
-
-impl AttitudeTolerance {
-    /// Inverse covariance that joints and IMU give the six numbers of a pose.
-    pub(super) fn information(&self) -> Matrix6<f64> {
-        let [height, angle] = [self.height_m, self.angle_rad].map(|sigma| 1.0 / (sigma * sigma));
-        Matrix6::from_diagonal(&Vector6::new(0.0, 0.0, 0.0, height, angle, angle))
-    }
-
-    /// Log-probability, up to a constant, of a pose's height, pitch and roll, given what joints and IMU say.
-    pub fn log_prior(&self, pose: CameraPose, attitude: Attitude) -> f64 {
-        let height = (pose.height_m - attitude.height_m) / self.height_m;
-        let pitch = (pose.pitch_rad - attitude.pitch_rad) / self.angle_rad;
-        let roll = wrap_angle(pose.roll_rad - attitude.roll_rad) / self.angle_rad;
-        -0.5 * (height * height + pitch * pitch + roll * roll)
-    }
-}
 
 /// Settings of [`Refiner`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,7 +28,7 @@ pub struct RefineConfig {
     /// Length of line over which errors of the offsets are one and the same error, pixels.
     pub correlation_px: f64,
     /// What joints and IMU are worth.
-    pub tolerance: AttitudeTolerance,
+    pub mount_sigma: MountPoseSigma,
     /// Fewer lines found than this are no fit.
     pub min_offsets: usize,
 }
@@ -73,7 +42,7 @@ impl Default for RefineConfig {
             narrow_search_px: [4.0; 5],
             offset_sigma_px: 0.08,
             correlation_px: 40.0,
-            tolerance: AttitudeTolerance::default(),
+            mount_sigma: MountPoseSigma::default(),
             min_offsets: 12,
         }
     }
@@ -152,8 +121,8 @@ impl Refiner {
     }
 
     /// What joints and IMU are worth.
-    pub fn tolerance(&self) -> AttitudeTolerance {
-        self.config.tolerance
+    pub fn mount_sigma(&self) -> MountPoseSigma {
+        self.config.mount_sigma
     }
 
     /// Fits a picture from a first guess. `None` where too few lines are found for six degrees of freedom.
@@ -161,7 +130,7 @@ impl Refiner {
         &self,
         texture: &Texture,
         guess: CameraPose,
-        attitude: Attitude,
+        mount: MountPose,
         contrast: f64,
         reach: Reach,
     ) -> Option<PoseFit> {
@@ -179,9 +148,9 @@ impl Refiner {
             if offsets.len() < self.config.min_offsets {
                 return None;
             }
-            let step = self.solve(pose, &offsets, attitude)?;
+            let step = self.solve(pose, &offsets, mount)?;
             pose = moved(pose, &step.step);
-            if !pose.is_finite() || pose.height_m < 0.3 * attitude.height_m {
+            if !pose.is_finite() || pose.height_m < 0.3 * mount.height_m {
                 return None;
             }
             fit = Some(PoseFit {
@@ -197,13 +166,13 @@ impl Refiner {
     }
 
     /// Iteratively reweighted Gauss–Newton on one set of offsets.
-    fn solve(&self, pose: CameraPose, offsets: &[LineOffset], attitude: Attitude) -> Option<Step> {
+    fn solve(&self, pose: CameraPose, offsets: &[LineOffset], mount: MountPose) -> Option<Step> {
         let rows: Vec<(Vector6<f64>, f64)> = offsets
             .iter()
             .filter_map(|offset| Some((self.gradient(pose, offset)?, offset.offset_px)))
             .collect();
-        let prior = self.config.tolerance.information();
-        let attitude_error = attitude_error(pose, attitude);
+        let prior = self.config.mount_sigma.information();
+        let mount_error = mount_error(pose, mount);
         // The samples' density decides how many of them tell something new.
         let repeats = (self.config.correlation_px / self.config.spacing_px).max(1.0);
         let mut step = Vector6::zeros();
@@ -218,7 +187,7 @@ impl Refiner {
                 information += scale * weight * gradient * gradient.transpose();
                 right += scale * weight * offset * gradient;
             }
-            step = (information + prior).cholesky()?.solve(&(right - prior * attitude_error));
+            step = (information + prior).cholesky()?.solve(&(right - prior * mount_error));
             sigma = robust_sigma(rows.iter().map(|(g, o)| o - g.dot(&step))).max(self.config.offset_sigma_px);
         }
         let covariance = (information + prior).try_inverse()?;
@@ -248,14 +217,14 @@ struct Step {
     residual_px: f64,
 }
 
-pub(super) fn attitude_error(pose: CameraPose, attitude: Attitude) -> Vector6<f64> {
+pub(super) fn mount_error(pose: CameraPose, mount: MountPose) -> Vector6<f64> {
     Vector6::new(
         0.0,
         0.0,
         0.0,
-        pose.height_m - attitude.height_m,
-        pose.pitch_rad - attitude.pitch_rad,
-        wrap_angle(pose.roll_rad - attitude.roll_rad),
+        pose.height_m - mount.height_m,
+        pose.pitch_rad - mount.pitch_rad,
+        wrap_angle(pose.roll_rad - mount.roll_rad),
     )
 }
 
@@ -305,7 +274,7 @@ mod tests {
         for pose in test_scene::poses() {
             let texture = Texture::pack(&whiteness(&test_scene::render(&camera, pose, &field)));
             let guess = moved(pose, &Vector6::new(0.02, -0.03, 0.015, 0.01, 0.006, -0.005));
-            let fit = refiner.fit(&texture, guess, Attitude::of(guess), 160.0, Reach::Wide).unwrap();
+            let fit = refiner.fit(&texture, guess, MountPose::of(guess), 160.0, Reach::Wide).unwrap();
             let error = pose_difference(pose, fit.pose);
             assert!(error.fixed_rows::<2>(0).norm() < 0.006, "{error:?}");
             assert!(error[2].abs() < 0.003 && error[3].abs() < 0.005, "{error:?}");
@@ -322,9 +291,9 @@ mod tests {
         let (camera, field, pose) = (test_scene::fisheye(), test_scene::field(), test_scene::poses()[0]);
         let refiner = Refiner::new(&camera, &field, RefineConfig::default());
         let grey = Texture::pack(&image::GrayImage::from_pixel(320, 240, image::Luma([90])));
-        assert!(refiner.fit(&grey, pose, Attitude::of(pose), 100.0, Reach::Wide).is_none());
+        assert!(refiner.fit(&grey, pose, MountPose::of(pose), 100.0, Reach::Wide).is_none());
         let nowhere = CameraPose { x_m: f64::NAN, ..pose };
-        assert!(refiner.fit(&grey, nowhere, Attitude::of(pose), 100.0, Reach::Wide).is_none());
+        assert!(refiner.fit(&grey, nowhere, MountPose::of(pose), 100.0, Reach::Wide).is_none());
     }
 
     #[test]

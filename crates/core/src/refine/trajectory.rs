@@ -4,13 +4,11 @@
 
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Vector3, Vector6};
 
-use super::picture::{
-    AttitudeTolerance, PoseFit, attitude_error, median, moved, pose_difference, robust_sigma,
-};
+use super::picture::{PoseFit, median, mount_error, moved, pose_difference, robust_sigma};
 use crate::{
     filter::MotionNoise,
+    mount::{MountPose, MountPoseSigma},
     pose::{CameraPose, Motion2},
-    preprocess::Attitude,
 };
 
 /// Rounds of Gauss–Newton; the chain is nearly linear.
@@ -30,7 +28,7 @@ pub struct TrajectoryFrame {
     /// What the picture says, where it says anything.
     pub fit: Option<PoseFit>,
     /// What joints and IMU say.
-    pub attitude: Attitude,
+    pub mount: MountPose,
     /// Motion from the frame before, by odometry.
     pub motion: Option<Motion2>,
 }
@@ -50,7 +48,7 @@ pub struct SmoothedPose {
 /// fit.
 pub fn smooth_trajectory(
     frames: &[TrajectoryFrame],
-    tolerance: AttitudeTolerance,
+    mount_sigma: MountPoseSigma,
     noise: MotionNoise,
 ) -> Option<Vec<SmoothedPose>> {
     if !frames.iter().any(|frame| frame.fit.is_some()) {
@@ -62,7 +60,7 @@ pub fn smooth_trajectory(
     let mut used: Vec<bool> = frames.iter().map(|frame| frame.fit.is_some()).collect();
     let mut covariances = Vec::new();
     for round in 0..ROUNDS {
-        let chain = Chain::build(frames, &poses, &used, &odometry, tolerance);
+        let chain = Chain::build(frames, &poses, &used, &odometry, mount_sigma);
         let (steps, marginals) = chain.solve()?;
         for (pose, step) in poses.iter_mut().zip(&steps) {
             *pose = moved(*pose, step);
@@ -99,9 +97,9 @@ impl Chain {
         poses: &[CameraPose],
         used: &[bool],
         odometry: &OdometryNoise,
-        tolerance: AttitudeTolerance,
+        mount_sigma: MountPoseSigma,
     ) -> Self {
-        let prior = tolerance.information();
+        let prior = mount_sigma.information();
         let count = frames.len();
         let mut chain = Self {
             diagonal: vec![Matrix6::zeros(); count],
@@ -110,7 +108,7 @@ impl Chain {
         };
         for index in 0..count {
             chain.diagonal[index] += prior;
-            chain.right[index] -= prior * attitude_error(poses[index], frames[index].attitude);
+            chain.right[index] -= prior * mount_error(poses[index], frames[index].mount);
             // The weakest of ties keeps poses that nothing else determines where they are.
             chain.diagonal[index] += Matrix6::identity() * 1e-6;
             if let (Some(fit), true) = (frames[index].fit, used[index]) {
@@ -279,7 +277,7 @@ mod tests {
         unknown_m: 0.0,
         unknown_rad: 0.0,
     };
-    const TOLERANCE: AttitudeTolerance = AttitudeTolerance { height_m: 0.03, angle_rad: 0.01 };
+    const TOLERANCE: MountPoseSigma = MountPoseSigma { height_m: 0.03, angle_rad: 0.01 };
 
     /// A walk whose pictures and odometry err as their covariances say; every third picture shows nothing.
     fn walk(seed: u64, count: u32) -> (Vec<CameraPose>, Vec<TrajectoryFrame>) {
@@ -321,12 +319,12 @@ mod tests {
                     }
                 });
                 let a = normals(Purpose::Initialise, i);
-                let attitude = Attitude {
+                let mount = MountPose {
                     height_m: 0.5 + 0.03 * a[0],
                     pitch_rad: 0.4 + 0.01 * a[1],
                     roll_rad: 0.01 * a[2],
                 };
-                TrajectoryFrame { guess: pose, fit: (i % 3 != 2).then_some(fit), attitude, motion }
+                TrajectoryFrame { guess: pose, fit: (i % 3 != 2).then_some(fit), mount, motion }
             })
             .collect();
         (truth, frames)

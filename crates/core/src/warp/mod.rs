@@ -19,7 +19,7 @@ pub use self::{
     picture::Picture,
     rays::RayTable,
 };
-use crate::backend::BackendError;
+use crate::backend_error::BackendError;
 
 /// Draws pictures from others on some device.
 pub trait Warper: Send + Sync {

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use image::RgbImage;
 use reality_sim_core::{
+    localization::{LocalizedFrame, Localizer, LocalizerConfig, Picture},
     observation::ObservationKind,
     pose::CameraPose,
     sequence::Sequence,
-    tag::{TagConfig, TaggedFrame, Tagger, recorded, smooth_sequence},
 };
 use reality_sim_db::{Database, PoseEstimate, PoseSource, metric::PixelMetric};
 use reality_sim_synthesis::{Archive, measure_hall};
@@ -119,9 +119,10 @@ impl Poses {
     /// Found by the particle filter, of the whole recording together; those that it is not sure of are left out.
     pub fn found(sequence: &Sequence, device: Option<&Device>, progress: &Progress) -> Result<Self, String> {
         progress.begin("Finding the poses …");
-        let (tagger, tagged) = tagged(sequence, device, progress)?;
-        let smoothed = smooth_sequence(sequence, &tagger, &tagged).map_err(|error| error.to_string())?;
-        let estimates = PoseEstimate::of_tagged(&tagged, smoothed.as_deref(), false);
+        let (localizer, frames) = localized(sequence, device, progress)?;
+        let picture = |index| sequence.load_image(index).map(Picture::from);
+        let smoothed = localizer.smoother().smooth(&frames, picture).map_err(|error| error.to_string())?;
+        let estimates = PoseEstimate::of_localized(&frames, smoothed.as_deref(), false);
         if estimates.iter().all(Option::is_none) {
             return Err(format!(
                 "{}: the filter is sure of no picture's pose: watch it in Walk, or make a database with `reality-sim build` and `--poses`",
@@ -130,35 +131,31 @@ impl Poses {
         }
         let program = concat!("reality-sim viewer ", env!("CARGO_PKG_VERSION"));
         let device = device.map_or("processor", |device| &device.name);
-        let source = PoseSource::of_filter(program, &TagConfig::new(MODEL), device, smoothed.is_some());
+        let source = PoseSource::of_filter(program, &LocalizerConfig::new(MODEL), device, smoothed.is_some());
         Ok(Self { estimates, source })
     }
 }
 
-fn tagged(
+fn localized(
     sequence: &Sequence,
     device: Option<&Device>,
     progress: &Progress,
-) -> Result<(Tagger, Vec<TaggedFrame>), String> {
-    let config = TagConfig::new(MODEL);
+) -> Result<(Localizer, Vec<LocalizedFrame>), String> {
     let Sequence { setup, field, start, .. } = sequence;
-    let mut tagger = match device {
-        Some(device) => {
-            let backend = (device.open)().map_err(|error| error.to_string())?;
-            Tagger::with_backend(&setup.camera, field, *start, config, backend)
-                .map_err(|error| error.to_string())?
-        }
-        None => Tagger::new(&setup.camera, field, *start, config),
-    };
-    let count = sequence.frames.len();
-    let mut tagged = Vec::with_capacity(count);
-    for index in 0..count {
-        stop_if_cancelled(progress)?;
-        let picture = Arc::new(sequence.load_image(index).map_err(|error| error.to_string())?);
-        tagged.push(tagger.tag(&recorded(sequence, index, &picture)).map_err(|error| error.to_string())?);
-        progress.set(index + 1, count);
+    let config = LocalizerConfig::new(MODEL);
+    let mut builder = Localizer::builder(&setup.camera, field).config(config).start(*start);
+    if let Some(device) = device {
+        builder = builder.backend((device.open)().map_err(|error| error.to_string())?);
     }
-    Ok((tagger, tagged))
+    let mut localizer = builder.build().map_err(|error| error.to_string())?;
+    let count = sequence.frames.len();
+    let mut frames = Vec::with_capacity(count);
+    for frame in localizer.run(sequence) {
+        frames.push(frame.map_err(|error| error.to_string())?);
+        progress.set(frames.len(), count);
+        stop_if_cancelled(progress)?;
+    }
+    Ok((localizer, frames))
 }
 
 /// Makes a database of a recording in a temporary file, measures the hall, and holds some pictures back as probes. The file

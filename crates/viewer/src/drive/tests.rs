@@ -397,7 +397,7 @@ fn a_device_that_cannot_be_opened_is_told_and_the_processor_draws() {
     let source = source();
     let device = Device {
         name: "broken".to_owned(),
-        open: Arc::new(|| Err(BackendError("no driver: install one".to_owned()))),
+        open: Arc::new(|| Err(BackendError::new("no driver: install one"))),
     };
     let mut painter = Painter::spawn(&Context::default(), source.clone());
     painter.wish(Wish { device: Some(device), ..wish(&source, probe(&source).1) });

@@ -8,11 +8,12 @@ use glam::DVec2;
 use reality_sim_core::{
     field::{project_lines, project_polygon},
     filter::{best_index, normalise},
-    observation::{CpuScorer, Scorer},
+    localization::LocalizedFrame,
+    mount::MountPose,
+    observation::CpuScorer,
     pose::{CameraPose, Pose2, wrap_angle},
-    preprocess::{Attitude, Prepared, distance_field, gaussian_blur},
+    preprocess::{Prepared, distance_field, gaussian_blur},
     sequence::Sequence,
-    tag::TaggedFrame,
 };
 
 use super::settings::Veil;
@@ -38,7 +39,7 @@ pub struct Record {
 }
 
 impl Record {
-    pub fn new(index: usize, tagged: &TaggedFrame, truth: Option<CameraPose>) -> Self {
+    pub fn new(index: usize, tagged: &LocalizedFrame, truth: Option<CameraPose>) -> Self {
         let pose = tagged.pose;
         let offset_m = |truth: CameraPose| (pose.x_m - truth.x_m).hypot(pose.y_m - truth.y_m);
         Self {
@@ -84,8 +85,8 @@ pub struct FrameView {
 pub struct Seen {
     pub index: usize,
     pub prepared: Prepared,
-    pub attitude: Attitude,
-    pub tagged: TaggedFrame,
+    pub mount: MountPose,
+    pub tagged: LocalizedFrame,
     pub particles: Vec<CameraPose>,
     /// Made once: only the veil changes while a picture stays.
     pub picture: Arc<ColorImage>,
@@ -95,12 +96,12 @@ impl Seen {
     pub fn new(
         index: usize,
         prepared: Prepared,
-        attitude: Attitude,
-        tagged: TaggedFrame,
+        mount: MountPose,
+        tagged: LocalizedFrame,
         particles: Vec<CameraPose>,
     ) -> Self {
         let picture = color_image(&prepared.picture);
-        Self { index, prepared, attitude, tagged, particles, picture }
+        Self { index, prepared, mount, tagged, particles, picture }
     }
 
     /// What is to be seen of it.
@@ -128,7 +129,7 @@ impl Seen {
             pose_lines: edges(self.tagged.pose),
             best_lines: edges(self.tagged.filter.pose),
             truth_lines: truth.map_or_else(Vec::new, |truth| lines(truth, 0.0)),
-            border: project_polygon(camera, &corners, self.attitude.at(Pose2::default())),
+            border: project_polygon(camera, &corners, self.mount.at(Pose2::default())),
         }
     }
 
@@ -144,8 +145,8 @@ impl Seen {
 
     /// The particles by the weight that the observation model gives each of them: of many every so many, and the best one.
     fn weighted_particles(&self, scorer: &mut CpuScorer) -> Vec<WeightedParticle> {
-        scorer.load(&self.prepared);
-        let log_weights = scorer.log_weights(&self.particles);
+        scorer.set_picture(&self.prepared);
+        let log_weights = scorer.log_weights_of(&self.particles);
         let Some(best) = best_index(&log_weights) else { return Vec::new() };
         let weights = normalise(&log_weights);
         let most = weights[best].max(f64::MIN_POSITIVE);

@@ -13,11 +13,11 @@ use eframe::egui::Context;
 use image::RgbImage;
 use reality_sim_core::{
     backend::{Backend, BackendError, CpuBackend},
+    localization::{LocalizationError, Localizer, Observation},
     observation::CpuScorer,
     pose::Pose2,
     preprocess::Preprocessor,
     sequence::Sequence,
-    tag::{Tagger, recorded},
 };
 
 use super::{
@@ -152,6 +152,15 @@ impl From<BackendError> for Fault {
     }
 }
 
+impl From<LocalizationError> for Fault {
+    fn from(error: LocalizationError) -> Self {
+        match error {
+            LocalizationError::Backend(error) => error.into(),
+            error => Self::Picture(error.to_string()),
+        }
+    }
+}
+
 /// The thread's own state.
 struct Playing {
     sequence: Arc<Sequence>,
@@ -164,8 +173,10 @@ struct Playing {
     /// With the name of the device it was opened for.
     backend: Option<(String, Arc<dyn Backend>)>,
     scorer: CpuScorer,
-    /// None before the first frame, and after settings that it does not have yet.
-    tagger: Option<Tagger>,
+    /// None before the first frame, after settings that it does not have yet, and after a fault.
+    localizer: Option<Localizer>,
+    /// What the localizer has seen counts no longer.
+    begins_anew: bool,
     state: State,
     seen: Option<Seen>,
     timeline: Timeline,
@@ -197,7 +208,8 @@ impl Playing {
             veil,
             outbox,
             backend: None,
-            tagger: None,
+            localizer: None,
+            begins_anew: true,
             state: State::default(),
             seen: None,
             due: None,
@@ -256,7 +268,7 @@ impl Playing {
                 self.settings = settings;
                 let Sequence { setup, field, .. } = &*self.sequence;
                 self.scorer = CpuScorer::new(&setup.camera, field, self.settings.observation);
-                self.tagger = None;
+                self.localizer = None;
             }
             Command::Place(pose) => todo.place = Some(pose),
         }
@@ -280,9 +292,9 @@ impl Playing {
         if todo.restart {
             self.outbox.send(Message::Begun)?;
             self.poses.fill(None);
-            self.tagger = None;
+            self.begins_anew = true;
         }
-        let looks = todo.restart || todo.go_to.is_some() || todo.place.is_some() || self.tagger.is_none();
+        let looks = todo.restart || todo.go_to.is_some() || todo.place.is_some() || self.localizer.is_none();
         let worked = if looks { self.look(todo) } else { Ok(()) };
         match worked {
             Ok(()) if looks || todo.show => self.show()?,
@@ -313,10 +325,10 @@ impl Playing {
         self.schedule(index);
         let picture = self.sequence.load_image(index).map_err(|error| Fault::Picture(error.to_string()))?;
         let follows = todo.place.is_none() && (before + 1 == index || self.poses[index].is_none());
-        if self.tagger.is_none() || !follows {
+        if self.begins_anew || self.localizer.is_none() || !follows {
             self.begin(todo.place.or(self.poses[index]).or(self.nearest_known(index)))?;
         }
-        self.tag(index, &Arc::new(picture))
+        self.localize(index, &Arc::new(picture))
     }
 
     /// The pose of the last frame that was seen before this one, or the recording's start, carried on by the odometry.
@@ -330,12 +342,17 @@ impl Playing {
         Some(pose.moved(odometry(known)?.motion_to(odometry(index)?)))
     }
 
-    /// A new filter around a pose, or all over the field.
-    fn begin(&mut self, start: Option<Pose2>) -> Result<(), BackendError> {
+    /// The filter anew around a pose, or all over the field.
+    fn begin(&mut self, start: Option<Pose2>) -> Result<(), Fault> {
+        self.begins_anew = false;
+        if let Some(localizer) = &mut self.localizer {
+            localizer.reset(start);
+            return Ok(());
+        }
         let backend = self.backend()?;
         let Sequence { setup, field, .. } = &*self.sequence;
-        let config = self.settings.config();
-        self.tagger = Some(Tagger::with_backend(&setup.camera, field, start, config, backend)?);
+        let builder = Localizer::builder(&setup.camera, field).config(self.settings.config());
+        self.localizer = Some(builder.start(start).backend(backend).build()?);
         Ok(())
     }
 
@@ -351,16 +368,16 @@ impl Playing {
         Ok(backend)
     }
 
-    fn tag(&mut self, index: usize, picture: &Arc<RgbImage>) -> Result<(), Fault> {
-        let Some(tagger) = &mut self.tagger else { return Ok(()) };
-        let recorded = recorded(&self.sequence, index, picture);
-        let tagged = tagger.tag(&recorded);
+    fn localize(&mut self, index: usize, picture: &Arc<RgbImage>) -> Result<(), Fault> {
+        let Some(localizer) = &mut self.localizer else { return Ok(()) };
+        let observation = Observation::of_frame(&self.sequence, index, picture);
+        let found = localizer.update(&observation);
+        let found = found.and_then(|frame| Ok((frame, localizer.particles()?)));
         // A device that has failed is opened anew the next time.
-        let tagged = tagged.inspect_err(|_| (self.tagger, self.backend) = (None, None))?;
-        let particles = self.tagger.as_ref().map_or_else(Vec::new, Tagger::particles);
-        let prepared = self.preprocessor.prepare(picture.clone(), recorded.attitude);
-        self.poses[index] = Some(tagged.pose.planar());
-        self.seen = Some(Seen::new(index, prepared, recorded.attitude, tagged, particles));
+        let (frame, particles) = found.inspect_err(|_| (self.localizer, self.backend) = (None, None))?;
+        let prepared = self.preprocessor.prepare(picture.clone(), observation.mount);
+        self.poses[index] = Some(frame.pose.planar());
+        self.seen = Some(Seen::new(index, prepared, observation.mount, frame, particles));
         Ok(())
     }
 

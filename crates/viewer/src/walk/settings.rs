@@ -2,8 +2,8 @@
 
 use reality_sim_core::{
     filter::Resampling,
+    localization::LocalizerConfig,
     observation::{ObservationConfig, ObservationKind},
-    tag::TagConfig,
 };
 use serde::{Deserialize, Serialize};
 
@@ -34,15 +34,15 @@ pub struct FilterSettings {
 
 impl Default for FilterSettings {
     fn default() -> Self {
-        let TagConfig { observation, filter, odometry, recovery, .. } =
-            TagConfig::new(ObservationKind::default());
+        let LocalizerConfig { observation, filter, uses_odometry, relocalizes, .. } =
+            LocalizerConfig::default();
         Self {
             observation,
             particles: filter.particles,
             iterations: filter.iterations,
             resampling: filter.resampling,
-            recovery,
-            odometry,
+            recovery: relocalizes,
+            odometry: uses_odometry,
             seed: filter.seed,
             device: String::new(),
         }
@@ -56,15 +56,15 @@ impl FilterSettings {
     }
 
     /// As the filter takes it.
-    pub fn config(&self) -> TagConfig {
-        let mut config = TagConfig::new(self.observation.kind);
+    pub fn config(&self) -> LocalizerConfig {
+        let mut config = LocalizerConfig::new(self.observation.kind);
         config.observation = self.observation;
         config.filter.particles = self.particles;
         config.filter.iterations = self.iterations;
         config.filter.resampling = self.resampling;
         config.filter.seed = self.seed;
-        config.recovery = self.recovery;
-        config.odometry = self.odometry;
+        config.relocalizes = self.recovery;
+        config.uses_odometry = self.odometry;
         config
     }
 }

@@ -33,7 +33,7 @@ fn walk(frames: usize) -> Arc<Sequence> {
 }
 
 fn devices() -> Vec<Device> {
-    let broken = || Err(BackendError("no such card: choose another one".to_owned()));
+    let broken = || Err(BackendError::new("no such card: choose another one"));
     vec![
         Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) },
         Device { name: "broken".to_owned(), open: Arc::new(broken) },

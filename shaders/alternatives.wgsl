@@ -1,4 +1,4 @@
-// The best particles that lie apart from each other, best first. Twin: `rivals` in
+// The best particles that lie apart from each other, best first. Twin: `alternatives` in
 // crates/core/src/filter/particle_filter.rs.
 
 #import shared/filter.wgsl
@@ -10,7 +10,7 @@
 @group(0) @binding(2) var<storage, read> weights: array<f32>;
 @group(0) @binding(3) var<storage, read_write> outcome: Outcome;
 
-/// `RIVAL_DISTANCE`.
+/// `ALTERNATIVE_DISTANCE`.
 const DISTANCE_M: f32 = 0.12;
 const DISTANCE_RAD: f32 = 0.08;
 
@@ -29,11 +29,11 @@ fn is_apart_from_all(particle: Particle, count: u32, others: ptr<function, array
 }
 
 @compute @workgroup_size(ALL_THREADS)
-fn rivals(@builtin(local_invocation_index) thread: u32) {
+fn alternatives(@builtin(local_invocation_index) thread: u32) {
     let run = run_of(thread, frame.particles);
     var found: array<Particle, 6>;
     var count = 0u;
-    for (var round = 0u; round < RIVALS; round++) {
+    for (var round = 0u; round < ALTERNATIVES; round++) {
         var mine = Place(LOWEST, frame.particles);
         for (var i = run.x; i < run.y; i++) {
             if weights[i] > mine.value && is_apart_from_all(particles[i], count, &found) {
@@ -48,7 +48,7 @@ fn rivals(@builtin(local_invocation_index) thread: u32) {
         }
     }
     if thread == 0u {
-        outcome.rivals = found;
-        outcome.rival_count = count;
+        outcome.alternatives = found;
+        outcome.alternative_count = count;
     }
 }

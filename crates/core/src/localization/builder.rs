@@ -1,0 +1,77 @@
+//! How a localizer is put together.
+
+use std::{fmt, sync::Arc};
+
+use super::{config::LocalizerConfig, error::LocalizationError, localizer::Localizer};
+use crate::{
+    backend::{Backend, CpuBackend},
+    camera::Camera,
+    field::FieldDimensions,
+    goal_colors::GoalColors,
+    pose::Pose2,
+    preprocess::Preprocessor,
+    refine::{RefineConfig, Refiner},
+    search::GlobalSearch,
+};
+
+/// Settings of a [`Localizer`] that is to be built.
+#[derive(Clone)]
+pub struct LocalizerBuilder<'a> {
+    camera: &'a Camera,
+    field: &'a FieldDimensions,
+    config: LocalizerConfig,
+    backend: Arc<dyn Backend>,
+    start: Option<Pose2>,
+}
+
+impl Localizer {
+    /// Localizes a camera on a field: with the usual settings, on this processor, from an unknown start, unless told
+    /// otherwise.
+    pub fn builder<'a>(camera: &'a Camera, field: &'a FieldDimensions) -> LocalizerBuilder<'a> {
+        let backend = Arc::new(CpuBackend);
+        LocalizerBuilder { camera, field, config: LocalizerConfig::default(), backend, start: None }
+    }
+}
+
+impl LocalizerBuilder<'_> {
+    /// With these settings.
+    pub fn config(self, config: LocalizerConfig) -> Self {
+        Self { config, ..self }
+    }
+
+    /// On another device.
+    pub fn backend(self, backend: Arc<dyn Backend>) -> Self {
+        Self { backend, ..self }
+    }
+
+    /// From a pose where the camera is at the first picture; `None` where nobody knows.
+    pub fn start(self, start: impl Into<Option<Pose2>>) -> Self {
+        Self { start: start.into(), ..self }
+    }
+
+    /// Builds the localizer. Fails where the device cannot do what the settings ask for.
+    pub fn build(self) -> Result<Localizer, LocalizationError> {
+        let Self { camera, field, config, backend, start } = self;
+        let refine = RefineConfig { mount_sigma: config.mount_sigma, ..RefineConfig::default() };
+        let search = config.relocalization.search;
+        Ok(Localizer {
+            config,
+            size: [camera.width, camera.height],
+            preprocessor: Preprocessor::new(camera, field.line_width_m),
+            filter: backend.filter(camera, field, config.observation, config.filter)?,
+            refiner: Refiner::new(camera, field, refine),
+            search: GlobalSearch::with_backend(camera, field, search, config.mount_sigma, &*backend)?,
+            goal_colors: GoalColors::new(camera, field, config.goal_colors),
+            start,
+            track: None,
+            frame: 0,
+        })
+    }
+}
+
+impl fmt::Debug for LocalizerBuilder<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut debug = formatter.debug_struct("LocalizerBuilder");
+        debug.field("config", &self.config).field("start", &self.start).finish_non_exhaustive()
+    }
+}

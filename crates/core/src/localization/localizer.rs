@@ -1,0 +1,323 @@
+//! Monte Carlo localization, one picture at a time.
+
+use std::{fmt, sync::Arc, time::Instant};
+
+use image::RgbImage;
+
+use super::{
+    config::LocalizerConfig,
+    error::LocalizationError,
+    frame::LocalizedFrame,
+    observation::Observation,
+    track::{Beginning, Track},
+};
+use crate::{
+    filter::{Filter, FilterEstimate},
+    goal_colors::GoalColors,
+    mount::MountPose,
+    pose::{CameraPose, Motion2, Pose2},
+    preprocess::{FieldBorder, Prepared, Preprocessor},
+    refine::{PoseFit, Refiner},
+    search::{GlobalSearch, Mode, Prior},
+};
+
+/// Finds the pose of a camera, picture after picture, by a particle filter over white lines. Made by
+/// [`Localizer::builder`].
+pub struct Localizer {
+    pub(super) config: LocalizerConfig,
+    /// Width and height, pixels.
+    pub(super) size: [u32; 2],
+    pub(super) preprocessor: Preprocessor,
+    pub(super) filter: Box<dyn Filter>,
+    pub(super) refiner: Refiner,
+    pub(super) search: GlobalSearch,
+    pub(super) goal_colors: Option<GoalColors>,
+    pub(super) start: Option<Pose2>,
+    /// None before the first picture.
+    pub(super) track: Option<Track>,
+    /// Pictures so far.
+    pub(super) frame: u32,
+}
+
+/// What prediction, search and filter came to.
+struct Posterior {
+    track: Track,
+    estimate: FilterEstimate,
+    motion: Option<Motion2>,
+    searched: bool,
+}
+
+impl Localizer {
+    /// Finds the pose of the next picture.
+    ///
+    /// After an error the track is as it was before the picture; where a device has failed, the particles may not be, and
+    /// [`Localizer::reset`] begins again.
+    pub fn update(&mut self, observation: &Observation) -> Result<LocalizedFrame, LocalizationError> {
+        let begin = Instant::now();
+        let picture = self.load(observation)?;
+        let mount = observation.mount;
+        let posterior = match self.track {
+            Some(track) => self.follow(track, &picture, observation)?,
+            None => self.begin(&picture, observation)?,
+        };
+        let Posterior { mut track, estimate, motion, searched } = posterior;
+        let (pose, fit) = self.refine(&track, mount, estimate.pose)?;
+        let line_fraction = self.line_fraction_near(pose, mount, track.fits_from());
+        let settled = track.settle(pose.planar(), line_fraction);
+        let mut frame = LocalizedFrame {
+            timestamp_s: observation.timestamp_s,
+            pose,
+            fit,
+            filter: estimate,
+            mount,
+            motion,
+            line_fraction,
+            settled,
+            sure: settled && track.is_half_sure(),
+            mirrored_probability: track.mirrored_probability(),
+            searched,
+            seconds: 0.0,
+        };
+        self.resolve_symmetry(&mut track, &mut frame, observation)?;
+        self.track = Some(track);
+        self.frame += 1;
+        frame.seconds = begin.elapsed().as_secs_f64();
+        Ok(frame)
+    }
+
+    /// Begins again at a pose, or anywhere on the field, as if no picture had been seen. Nothing is built anew.
+    pub fn reset(&mut self, start: Option<Pose2>) {
+        self.reset_with_seed(start, self.config.filter.seed);
+    }
+
+    /// As [`Localizer::reset`], with another seed of the random numbers.
+    pub fn reset_with_seed(&mut self, start: Option<Pose2>, seed: u64) {
+        self.config.filter.seed = seed;
+        self.filter.reset(seed);
+        (self.start, self.track, self.frame) = (start, None, 0);
+    }
+
+    /// Hands over the picture that follows the one localized next, where it is known already: a device takes it while it
+    /// computes.
+    pub fn prefetch(&mut self, next: &Arc<RgbImage>) {
+        self.filter.prefetch(next);
+    }
+
+    /// Settings in use.
+    pub fn config(&self) -> &LocalizerConfig {
+        &self.config
+    }
+
+    /// The particles after the last picture.
+    pub fn particles(&self) -> Result<Vec<CameraPose>, LocalizationError> {
+        Ok(self.filter.particles()?)
+    }
+
+    /// The field's border in a picture, for drawing.
+    pub fn border(&self, observation: &Observation) -> FieldBorder {
+        self.preprocessor.prepare(observation.picture.pixels().clone(), observation.mount).border
+    }
+
+    fn load(&mut self, observation: &Observation) -> Result<Prepared, LocalizationError> {
+        let (found, expected) = (observation.picture.size(), self.size);
+        if found != expected {
+            return Err(LocalizationError::PictureSize { found, expected });
+        }
+        let pixels = observation.picture.pixels().clone();
+        let picture = self.preprocessor.prepare(pixels, observation.mount);
+        rayon::join(|| self.filter.load(&picture), || self.search.load(&picture)).0?;
+        Ok(picture)
+    }
+
+    /// The first picture: particles around the start, or around the places that a search finds.
+    fn begin(
+        &mut self,
+        picture: &Prepared,
+        observation: &Observation,
+    ) -> Result<Posterior, LocalizationError> {
+        self.filter.initialize(&[(self.start.unwrap_or_default(), 1.0)], self.config.start_sigma)?;
+        let mut beginning = Beginning::Given;
+        if self.start.is_none() {
+            let modes = self.search(picture, observation.mount, None)?;
+            beginning = Beginning::Searched { is_clear: self.config.relocalization.is_clear(&modes) };
+        }
+        let estimate = self.filter.update(observation.mount, self.config.filter.noise.sigma(None))?;
+        let pose = estimate.pose.planar();
+        let track = Track::new(self.config.track, pose, self.odometry(observation), beginning);
+        Ok(Posterior { track, estimate, motion: None, searched: self.start.is_none() })
+    }
+
+    /// Predict, relocalize where the prediction is worth too little, update, relocalize where the picture contradicts.
+    fn follow(
+        &mut self,
+        mut track: Track,
+        picture: &Prepared,
+        observation: &Observation,
+    ) -> Result<Posterior, LocalizationError> {
+        let mount = observation.mount;
+        let prediction = track.predict(self.odometry(observation), &self.config.filter.noise);
+        self.filter.predict(prediction.motion)?;
+
+        let mut diffusion = prediction.sigma;
+        let mut searched = self.config.relocalizes && track.needs_search(&prediction);
+        if searched {
+            let prior = track.prior();
+            let modes = self.search(picture, mount, Some(prior))?;
+            self.relocalize(&mut track, &modes, prior);
+            diffusion = self.config.relocalization.found_sigma;
+        }
+        // After a long way there may be more than one place that fits.
+        let is_long_way = track.is_long_way(&prediction);
+        if is_long_way {
+            track.confirm_after_long_way();
+        }
+
+        let mut estimate = self.filter.update(mount, diffusion)?;
+
+        let may_be_lost = || is_long_way || self.may_be_lost(&track, estimate.pose, mount);
+        if self.config.relocalizes && !searched && may_be_lost() {
+            searched = true;
+            estimate = self.recover(&mut track, picture, mount, estimate)?;
+        }
+        Ok(Posterior { track, estimate, motion: prediction.motion, searched })
+    }
+
+    fn odometry(&self, observation: &Observation) -> Option<Pose2> {
+        observation.odometry.filter(|_| self.config.uses_odometry)
+    }
+
+    fn may_be_lost(&self, track: &Track, pose: CameraPose, mount: MountPose) -> bool {
+        let least = track.lost_below();
+        track.is_unconfirmed() || self.line_fraction_near(pose, mount, least) < least
+    }
+
+    /// The line fraction of a pose, or where that is less than `enough`, of the pose next to it that fits the picture
+    /// best: joints and IMU that are wrong by a degree hide narrow lines from a pose in the right place.
+    fn line_fraction_near(&self, pose: CameraPose, mount: MountPose, enough: f64) -> f64 {
+        let own = self.search.line_fraction(pose);
+        if own >= enough {
+            return own;
+        }
+        match self.search.best_of(&[pose], mount, None) {
+            Some(near) if self.config.relocalization.is_same_place(near.pose, pose) => {
+                own.max(self.search.line_fraction(near.pose))
+            }
+            _ => own,
+        }
+    }
+
+    /// Searches the field; moves the particles only where another place fits clearly better than the filter's.
+    fn recover(
+        &mut self,
+        track: &mut Track,
+        picture: &Prepared,
+        mount: MountPose,
+        estimate: FilterEstimate,
+    ) -> Result<FilterEstimate, LocalizationError> {
+        let prior = track.prior_of_lost();
+        let mut modes = self.modes(picture, mount, Some(prior))?;
+        // From many places no line is in view, which fits every picture a little and none well.
+        modes.retain(|mode| self.search.line_fraction(mode.pose) >= self.config.track.lost_line_fraction);
+        let Some(best) = modes.first() else { return Ok(estimate) };
+        let Some(own) = self.search.best_of(&[estimate.pose], mount, Some(prior)) else {
+            return Ok(estimate);
+        };
+        if !self.config.relocalization.is_better_elsewhere(best, &own) {
+            return Ok(estimate);
+        }
+        self.place(&modes)?;
+        self.relocalize(track, &modes, prior);
+        Ok(self.filter.update(mount, self.config.relocalization.found_sigma)?)
+    }
+
+    /// Searches the field, and places the particles where the picture fits.
+    fn search(
+        &mut self,
+        picture: &Prepared,
+        mount: MountPose,
+        prior: Option<Prior>,
+    ) -> Result<Vec<Mode>, LocalizationError> {
+        let modes = self.modes(picture, mount, prior)?;
+        self.place(&modes)?;
+        Ok(modes)
+    }
+
+    fn modes(
+        &mut self,
+        picture: &Prepared,
+        mount: MountPose,
+        prior: Option<Prior>,
+    ) -> Result<Vec<Mode>, LocalizationError> {
+        let seed = self.config.filter.seed ^ u64::from(self.frame).rotate_left(48);
+        Ok(self.search.search(picture, mount, prior, seed)?)
+    }
+
+    fn place(&mut self, modes: &[Mode]) -> Result<(), LocalizationError> {
+        let seeds = self.config.relocalization.seeds(modes);
+        if !seeds.is_empty() {
+            self.filter.initialize(&seeds, self.config.relocalization.found_sigma)?;
+        }
+        Ok(())
+    }
+
+    fn relocalize(&self, track: &mut Track, modes: &[Mode], prior: Prior) {
+        let best = modes.first().map(|mode| mode.pose.planar());
+        track.relocalize(best, self.config.relocalization.is_clear(modes), prior);
+    }
+
+    /// The best particle, its alternatives and the prediction, each fitted to the picture: the most probable of them, by
+    /// picture and prediction together.
+    fn refine(
+        &mut self,
+        track: &Track,
+        mount: MountPose,
+        best: CameraPose,
+    ) -> Result<(CameraPose, Option<PoseFit>), LocalizationError> {
+        if !self.config.refines {
+            return Ok((best, None));
+        }
+        let prior = track.prior();
+        let mut candidates = vec![best, mount.at(prior.pose)];
+        candidates.extend(self.filter.alternatives());
+        let Some(Mode { pose, fit, .. }) = self.search.best_of(&candidates, mount, Some(prior)) else {
+            return Ok((best, None));
+        };
+        if !self.config.relocalization.is_same_place(pose, best) {
+            // The particles follow, or they would go on from a place that was given up.
+            self.filter.initialize(&[(pose.planar(), 1.0)], self.config.relocalization.found_sigma)?;
+        }
+        Ok((pose, fit))
+    }
+
+    /// Lets the colours of the goals decide between a pose and its mirror image, and turns everything round when they
+    /// speak for the other.
+    fn resolve_symmetry(
+        &mut self,
+        track: &mut Track,
+        frame: &mut LocalizedFrame,
+        observation: &Observation,
+    ) -> Result<(), LocalizationError> {
+        let Some(goal_colors) = &self.goal_colors else { return Ok(()) };
+        if observation.picture.is_grey() || !track.asks_for_half(frame.line_fraction) {
+            return Ok(());
+        }
+        let log_odds = goal_colors.mirrored_log_odds(observation.picture.pixels(), frame.pose);
+        if track.weigh_halves(log_odds) {
+            self.filter.mirror()?;
+            frame.pose = frame.pose.mirrored();
+            frame.filter.pose = frame.filter.pose.mirrored();
+            frame.fit = frame.fit.map(PoseFit::mirrored);
+        }
+        frame.mirrored_probability = track.mirrored_probability();
+        frame.sure = frame.settled && track.is_half_sure();
+        Ok(())
+    }
+}
+
+impl fmt::Debug for Localizer {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut debug = formatter.debug_struct("Localizer");
+        debug.field("config", &self.config).field("track", &self.track).field("frame", &self.frame);
+        debug.finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,88 @@
+//! A recording as a stream of observations.
+
+use std::{
+    iter::Peekable,
+    sync::{Arc, mpsc},
+    thread,
+};
+
+use super::{observation::Observation, picture::Picture};
+use crate::sequence::{Sequence, SequenceError};
+
+/// Pictures that wait decoded at most, besides the one being decoded.
+const QUEUE: usize = 1;
+
+/// The frames of a recording in order, with their pictures: these are decoded ahead on a thread of their own, which ends
+/// with this. After an error there are no more.
+#[derive(Debug)]
+pub struct Playback {
+    sequence: Arc<Sequence>,
+    next: usize,
+    /// None once it has ended.
+    pictures: Option<Peekable<mpsc::IntoIter<Result<Picture, SequenceError>>>>,
+    thread: Option<thread::JoinHandle<()>>,
+}
+
+impl Playback {
+    /// Begins to decode the pictures of a recording.
+    pub fn new(sequence: Arc<Sequence>) -> Self {
+        let (sender, receiver) = mpsc::sync_channel(QUEUE);
+        let decoded = sequence.clone();
+        let thread = thread::spawn(move || {
+            for index in 0..decoded.frames.len() {
+                let picture = decoded.load_image(index).map(Picture::from);
+                // The receiver is gone once nobody wants any more.
+                if sender.send(picture).is_err() {
+                    break;
+                }
+            }
+        });
+        Self { sequence, next: 0, pictures: Some(receiver.into_iter().peekable()), thread: Some(thread) }
+    }
+
+    /// The recording.
+    pub fn sequence(&self) -> &Arc<Sequence> {
+        &self.sequence
+    }
+
+    /// The picture of the observation after the one given last, once it is decoded; `None` at the end.
+    pub fn peek(&mut self) -> Option<&Picture> {
+        self.pictures.as_mut()?.peek()?.as_ref().ok()
+    }
+
+    /// Ends the thread; a panic in it goes on here.
+    fn end(&mut self) {
+        self.pictures = None;
+        if let Some(Err(panic)) = self.thread.take().map(thread::JoinHandle::join)
+            && !thread::panicking()
+        {
+            std::panic::resume_unwind(panic);
+        }
+    }
+}
+
+impl Iterator for Playback {
+    type Item = Result<Observation, SequenceError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let index = self.next;
+        self.next += 1;
+        match self.pictures.as_mut()?.next() {
+            Some(Ok(picture)) => Some(Ok(Observation::of_frame(&self.sequence, index, picture))),
+            Some(Err(error)) => {
+                self.end();
+                Some(Err(error))
+            }
+            None => {
+                self.end();
+                None
+            }
+        }
+    }
+}
+
+impl Drop for Playback {
+    fn drop(&mut self) {
+        self.end();
+    }
+}

@@ -1,0 +1,96 @@
+//! All frames together: nothing forces a recording to be localized causally.
+
+use super::{config::LocalizerConfig, frame::LocalizedFrame, localizer::Localizer, picture::Picture};
+use crate::{
+    preprocess::{Preprocessor, Texture},
+    refine::{Reach, Refiner, SmoothedPose, TrajectoryFrame, smooth_trajectory},
+};
+
+/// Finds the most probable poses of all frames together, see [`smooth_trajectory`]. Made by [`Localizer::smoother`].
+#[derive(Debug)]
+pub struct Smoother<'a> {
+    config: &'a LocalizerConfig,
+    preprocessor: &'a Preprocessor,
+    refiner: &'a Refiner,
+}
+
+/// Frames that were smoothed once, and what is known of them.
+#[derive(Debug, Clone)]
+pub struct Smoothing {
+    frames: Vec<TrajectoryFrame>,
+    unexplained: Vec<usize>,
+}
+
+impl Localizer {
+    /// Smooths what this localizer has found.
+    pub fn smoother(&self) -> Smoother<'_> {
+        Smoother { config: &self.config, preprocessor: &self.preprocessor, refiner: &self.refiner }
+    }
+}
+
+impl Smoother<'_> {
+    /// The most probable poses of all frames together, one a frame. Pictures whose own fit was missing, or contradicts the
+    /// others, are looked at once more from where the others say they were taken: `picture` gives them by their number.
+    ///
+    /// `None` where no picture could be fitted at all; an error is that of `picture`.
+    pub fn smooth<E>(
+        &self,
+        frames: &[LocalizedFrame],
+        mut picture: impl FnMut(usize) -> Result<Picture, E>,
+    ) -> Result<Option<Vec<SmoothedPose>>, E> {
+        let Some(mut smoothing) = self.begin(frames) else { return Ok(None) };
+        for index in smoothing.unexplained.clone() {
+            self.revisit(&mut smoothing, index, &picture(index)?);
+        }
+        Ok(self.finish(&smoothing))
+    }
+
+    /// The first pass, with the fits that the frames have. `None` where there is none at all.
+    pub fn begin(&self, frames: &[LocalizedFrame]) -> Option<Smoothing> {
+        let least = self.config.track.fitting_line_fraction;
+        let mut frames: Vec<TrajectoryFrame> = frames
+            .iter()
+            .map(|frame| TrajectoryFrame {
+                guess: frame.pose,
+                fit: frame.fit.filter(|_| frame.line_fraction >= least),
+                mount: frame.mount,
+                motion: frame.motion,
+            })
+            .collect();
+        let smoothed = self.pass(&frames)?;
+        for (frame, smoothed) in frames.iter_mut().zip(&smoothed) {
+            frame.guess = smoothed.pose;
+        }
+        let unexplained = (0..frames.len()).filter(|&index| !smoothed[index].picture_used).collect();
+        Some(Smoothing { frames, unexplained })
+    }
+
+    /// Looks at a picture again, from where the first pass says it was taken.
+    ///
+    /// # Panics
+    ///
+    /// Where there is no frame of this number.
+    pub fn revisit(&self, smoothing: &mut Smoothing, index: usize, picture: &Picture) {
+        let frame = &mut smoothing.frames[index];
+        let prepared = self.preprocessor.prepare(picture.pixels().clone(), frame.mount);
+        let texture = Texture::pack(&prepared.whiteness);
+        let contrast = f64::from(prepared.levels.contrast());
+        frame.fit = self.refiner.fit(&texture, frame.guess, frame.mount, contrast, Reach::Wide);
+    }
+
+    /// The second pass, with what was seen again.
+    pub fn finish(&self, smoothing: &Smoothing) -> Option<Vec<SmoothedPose>> {
+        self.pass(&smoothing.frames)
+    }
+
+    fn pass(&self, frames: &[TrajectoryFrame]) -> Option<Vec<SmoothedPose>> {
+        smooth_trajectory(frames, self.config.mount_sigma, self.config.filter.noise)
+    }
+}
+
+impl Smoothing {
+    /// Numbers of the frames whose pictures the first pass could not use.
+    pub fn unexplained(&self) -> &[usize] {
+        &self.unexplained
+    }
+}

@@ -1,0 +1,210 @@
+//! The localizer as a whole, on small pictures, and on a device that fails.
+
+use std::{
+    io,
+    sync::{
+        Arc,
+        atomic::{AtomicU32, Ordering},
+    },
+};
+
+use image::{GrayImage, RgbImage};
+
+use super::*;
+use crate::{
+    backend::{Backend, BackendError, CpuBackend},
+    camera::Camera,
+    field::FieldDimensions,
+    filter::{Filter, FilterConfig, FilterEstimate, PlanarSigma},
+    mount::MountPose,
+    observation::{ObservationConfig, Scorer},
+    pose::{CameraPose, Motion2, Pose2},
+    preprocess::{Prepared, luma},
+    test_scene,
+    warp::{CpuWarper, Warper},
+};
+
+fn observation(picture: impl Into<Picture>) -> Observation {
+    Observation::new(0.0, picture, MountPose::of(pose()))
+}
+
+fn pose() -> CameraPose {
+    test_scene::poses()[0]
+}
+
+fn picture() -> RgbImage {
+    test_scene::render(&test_scene::fisheye(), pose(), &test_scene::field())
+}
+
+fn is_right(found: CameraPose) -> bool {
+    (found.x_m - pose().x_m).hypot(found.y_m - pose().y_m) < 0.03
+}
+
+#[test]
+fn a_grey_picture_gives_the_pose_and_never_the_half() {
+    let (camera, field) = (test_scene::fisheye(), test_scene::field());
+    assert!(field.goal_srgb_positive_x.is_some(), "a field that colours could tell the halves of");
+    let grey: GrayImage = luma(&picture());
+    let mut localizer = Localizer::builder(&camera, &field).start(pose().planar()).build().unwrap();
+    let frame = localizer.update(&observation(&grey)).unwrap();
+    assert!(frame.settled && is_right(frame.pose), "{frame:?}");
+
+    localizer.reset(None);
+    let frame = localizer.update(&observation(&grey)).unwrap();
+    assert!(is_right(frame.pose) || is_right(frame.pose.mirrored()), "{frame:?}");
+    assert!(!frame.sure && frame.mirrored_probability == 0.5);
+}
+
+#[test]
+fn a_picture_of_another_size_is_refused_and_the_next_one_goes_on() {
+    let (camera, field) = (test_scene::fisheye(), test_scene::field());
+    let mut localizer = Localizer::builder(&camera, &field).start(pose().planar()).build().unwrap();
+    let error = localizer.update(&observation(RgbImage::new(4, 3))).unwrap_err();
+    assert!(matches!(error, LocalizationError::PictureSize { found: [4, 3], expected: [320, 240] }));
+    assert!(localizer.update(&observation(picture())).is_ok());
+}
+
+#[test]
+fn after_a_reset_everything_is_as_if_it_had_just_been_built() {
+    let (camera, field) = (test_scene::fisheye(), test_scene::field());
+    let observation = observation(picture());
+    let three = |localizer: &mut Localizer| -> Vec<LocalizedFrame> {
+        let frames = (0..3).map(|_| localizer.update(&observation).unwrap());
+        frames.map(|frame| LocalizedFrame { seconds: 0.0, ..frame }).collect()
+    };
+    let build = |start: Option<Pose2>, seed| {
+        let config = LocalizerConfig::default().with_seed(seed);
+        Localizer::builder(&camera, &field).config(config).start(start).build().unwrap()
+    };
+    let mut localizer = build(None, 0);
+    let from_nowhere = three(&mut localizer);
+    localizer.reset(Some(pose().planar()));
+    assert_eq!(three(&mut localizer), three(&mut build(Some(pose().planar()), 0)));
+    localizer.reset_with_seed(Some(pose().planar()), 9);
+    assert_eq!(three(&mut localizer), three(&mut build(Some(pose().planar()), 9)));
+    localizer.reset_with_seed(None, 0);
+    assert_eq!(three(&mut localizer), from_nowhere);
+}
+
+/// The processor, but an update of its filter fails: the one that begins with so many left.
+#[derive(Clone)]
+struct Failing {
+    left: Arc<AtomicU32>,
+}
+
+impl Failing {
+    fn after(updates: u32) -> Arc<Self> {
+        Arc::new(Self { left: Arc::new(updates.into()) })
+    }
+}
+
+#[derive(Debug, thiserror::Error)]
+#[error("the device is gone")]
+struct Gone(#[source] io::Error);
+
+impl Backend for Failing {
+    fn scorer(
+        &self,
+        camera: &Camera,
+        field: &FieldDimensions,
+        config: ObservationConfig,
+    ) -> Result<Box<dyn Scorer>, BackendError> {
+        CpuBackend.scorer(camera, field, config)
+    }
+
+    fn filter(
+        &self,
+        camera: &Camera,
+        field: &FieldDimensions,
+        observation: ObservationConfig,
+        config: FilterConfig,
+    ) -> Result<Box<dyn Filter>, BackendError> {
+        let filter = CpuBackend.filter(camera, field, observation, config)?;
+        Ok(Box::new(FailingFilter { filter, left: self.left.clone() }))
+    }
+
+    fn warper(&self) -> Result<Arc<dyn Warper>, BackendError> {
+        Ok(Arc::new(CpuWarper))
+    }
+}
+
+struct FailingFilter {
+    filter: Box<dyn Filter>,
+    left: Arc<AtomicU32>,
+}
+
+impl Filter for FailingFilter {
+    fn load(&mut self, picture: &Prepared) -> Result<(), BackendError> {
+        self.filter.load(picture)
+    }
+    fn reset(&mut self, seed: u64) {
+        self.filter.reset(seed);
+    }
+    fn initialize(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) -> Result<(), BackendError> {
+        self.filter.initialize(modes, sigma)
+    }
+    fn predict(&mut self, motion: Option<Motion2>) -> Result<(), BackendError> {
+        self.filter.predict(motion)
+    }
+    fn update(&mut self, mount: MountPose, sigma: PlanarSigma) -> Result<FilterEstimate, BackendError> {
+        let left = self.left.load(Ordering::Relaxed);
+        self.left.store(left.wrapping_sub(1), Ordering::Relaxed);
+        if left == 0 {
+            return Err(BackendError::new(Gone(io::ErrorKind::BrokenPipe.into())));
+        }
+        self.filter.update(mount, sigma)
+    }
+    fn mirror(&mut self) -> Result<(), BackendError> {
+        self.filter.mirror()
+    }
+    fn particles(&self) -> Result<Vec<CameraPose>, BackendError> {
+        self.filter.particles()
+    }
+    fn alternatives(&self) -> &[CameraPose] {
+        self.filter.alternatives()
+    }
+}
+
+#[test]
+fn a_device_that_fails_at_a_picture_is_an_error_of_that_picture_and_a_reset_begins_again() {
+    let (camera, field) = (test_scene::fisheye(), test_scene::field());
+    let observation = observation(picture());
+    let config = LocalizerConfig::default().with_relocalization(false);
+    let start = pose().planar();
+    let builder = Localizer::builder(&camera, &field).config(config).start(start);
+    let mut localizer = builder.backend(Failing::after(3)).build().unwrap();
+    for _ in 0..3 {
+        assert!(localizer.update(&observation).unwrap().settled);
+    }
+    let Err(LocalizationError::Backend(error)) = localizer.update(&observation) else {
+        panic!("the device has failed");
+    };
+    assert!(error.get_ref().is::<Gone>(), "the device's own error is kept");
+
+    localizer.reset(Some(start));
+    assert!(localizer.update(&observation).unwrap().settled);
+}
+
+#[test]
+fn a_recording_ends_with_the_error_of_the_frame_at_which_the_device_fails() {
+    let walk = crate::sequence::Sequence::open(std::path::Path::new("../../assets/walk")).unwrap();
+    let builder = Localizer::builder(&walk.setup.camera, &walk.field).start(walk.start);
+    let mut localizer = builder.backend(Failing::after(2)).build().unwrap();
+    let frames: Vec<_> = localizer.run(&walk).collect();
+    assert_eq!(frames.len(), 3);
+    assert!(frames[..2].iter().all(Result::is_ok));
+    assert!(matches!(frames[2], Err(LocalizationError::Backend(_))));
+}
+
+#[test]
+fn a_recording_that_is_dropped_before_its_end_stops_decoding() {
+    let walk = crate::sequence::Sequence::open(std::path::Path::new("../../assets/walk")).unwrap();
+    let mut localizer =
+        Localizer::builder(&walk.setup.camera, &walk.field).start(walk.start).build().unwrap();
+    let shared = Arc::new(walk);
+    let mut run = Run::new(&mut localizer, shared.clone());
+    assert!(run.next().unwrap().is_ok());
+    assert!(run.observation().is_some());
+    drop(run);
+    assert_eq!(Arc::strong_count(&shared), 1, "the thread that decodes has ended");
+}
