@@ -43,6 +43,7 @@ mod blur;
 mod chain;
 mod colors;
 mod effect;
+mod effect_index;
 mod effects;
 mod encoding;
 mod frame;
@@ -60,6 +61,7 @@ pub use self::{
     chain::Chain,
     colors::SceneColors,
     effect::{About, Covariate, Effect, Growth, Noise, Parameter, Role, Stage, Tone},
+    effect_index::EffectIndex,
     effects::{effect, library},
     frame::Frame,
     model::{Model, ModelError, ModelFault, Used},

@@ -1,10 +1,11 @@
 //! How large an effect that was not found would have to be to be found, and which cannot be seen at all.
 
-use reality_sim_sensor::{Effect, Stage, library};
+use reality_sim_sensor::{Effect, EffectIndex, Stage};
 
 use crate::{
     inference::effect_test::{ALPHA, EffectTests},
     inference::evidence::student_quantile,
+    linear_model::column::ColumnIndex,
     recording::{LEAST_VIEWS, Recording},
 };
 
@@ -38,26 +39,27 @@ pub enum NotFound {
 pub(crate) fn limit(
     recording: &Recording<'_>,
     naming: &EffectTests<'_>,
-    effect: usize,
-    all: &[usize],
+    effect: EffectIndex,
+    all: &[EffectIndex],
 ) -> NotFound {
-    let used = library()[effect];
+    let used = effect.effect();
     if let Some([reason, remedy]) = missing_input(recording, used) {
         return unobservable(reason, remedy, false);
     }
     let columns = naming.columns_of(&[effect]);
-    let sizes: Vec<usize> = columns.into_iter().filter(|&column| naming.columns[column].is_size()).collect();
+    let sizes: Vec<ColumnIndex> =
+        columns.into_iter().filter(|&column| naming.columns[column.0].is_size()).collect();
     // The first that can be seen: parameters are listed by their weight.
     let limit = sizes.iter().find_map(|&column| Some((column, limit_of(naming, column, all)?)));
     let Some((column, value)) = limit else {
         return unobservable(unseen_reason(recording, used), used.recording_that_would_decide(), true);
     };
-    let parameter = naming.columns[column].parameter();
+    let parameter = naming.columns[column.0].parameter();
     NotFound::Limit { value, unit: parameter.unit, parameter: parameter.name }
 }
 
 /// The limit of one column alone beside the effects of the model, in its unit. None where it cannot be seen.
-fn limit_of(naming: &EffectTests<'_>, column: usize, all: &[usize]) -> Option<f64> {
+fn limit_of(naming: &EffectTests<'_>, column: ColumnIndex, all: &[EffectIndex]) -> Option<f64> {
     if naming.evidence.views() < LEAST_VIEWS {
         return None;
     }
@@ -72,8 +74,8 @@ fn limit_of(naming: &EffectTests<'_>, column: usize, all: &[usize]) -> Option<f6
     let degrees = naming.evidence.degrees() as f64;
     let sure = student_quantile(1.0 - ALPHA / (2.0 * tests), degrees);
     let coordinate = (sure + student_quantile(POWER, degrees)) * sigma;
-    let parameter = naming.columns[column].parameter();
-    let value = naming.columns[column].size(coordinate).max(parameter.material);
+    let parameter = naming.columns[column.0].parameter();
+    let value = naming.columns[column.0].size(coordinate).max(parameter.material);
     let reach = (parameter.range[1] - parameter.neutral).max(parameter.neutral - parameter.range[0]);
     (value < reach).then_some(value)
 }
@@ -155,7 +157,7 @@ mod tests {
     }
 
     fn pitch() -> FittedParameter {
-        let effect = library().iter().position(|effect| effect.id() == "mount_pitch").unwrap();
+        let effect = EffectIndex::find("mount_pitch").unwrap();
         FittedParameter { effect, parameter: 0 }
     }
 
@@ -164,8 +166,8 @@ mod tests {
         let system = system(seed, information, size);
         let evidence = Evidence::new(&system, DVector::zeros(1));
         let naming = EffectTests { evidence, columns: &[pitch()] };
-        let fit = naming.evidence.fit(&[0]).unwrap();
-        (limit_of(&naming, 0, &[]), naming.evidence.p_value(&fit, &[0]))
+        let fit = naming.evidence.fit(&[ColumnIndex(0)]).unwrap();
+        (limit_of(&naming, ColumnIndex(0), &[]), naming.evidence.p_value(&fit, &[ColumnIndex(0)]))
     }
 
     #[test]

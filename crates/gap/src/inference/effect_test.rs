@@ -2,10 +2,11 @@
 
 use nalgebra::DVector;
 use rayon::prelude::*;
-use reality_sim_sensor::{Covariate, Stage, library};
+use reality_sim_sensor::{Covariate, EffectIndex, Stage};
 
 use crate::{
     inference::evidence::{Evidence, Gain, HeldOut, two_sided},
+    linear_model::column::ColumnIndex,
     linear_model::parameters::FittedParameter,
     linear_model::reduced_equations::Fit,
     recording::LEAST_VIEWS,
@@ -36,8 +37,7 @@ const MOST_ALTERNATIVES: usize = 3;
 /// What speaks for an effect.
 #[derive(Debug, Clone)]
 pub(crate) struct EffectTest {
-    /// Index in the library.
-    pub(crate) effect: usize,
+    pub(crate) effect: EffectIndex,
     /// Corrected for the number of effects tested.
     pub(crate) p_value: f64,
     /// On unseen frames, over the same model without it.
@@ -62,31 +62,40 @@ pub(crate) struct EffectTests<'a> {
 
 impl EffectTests<'_> {
     /// Columns of some effects.
-    pub(crate) fn columns_of(&self, effects: &[usize]) -> Vec<usize> {
-        (0..self.columns.len()).filter(|&column| effects.contains(&self.columns[column].effect)).collect()
+    pub(crate) fn columns_of(&self, effects: &[EffectIndex]) -> Vec<ColumnIndex> {
+        let all = ColumnIndex::first(self.columns.len());
+        all.filter(|column| effects.contains(&self.columns[column.0].effect)).collect()
     }
 
     /// The effects that have columns.
-    pub(crate) fn effects(&self) -> Vec<usize> {
-        let mut effects: Vec<usize> = self.columns.iter().map(|column| column.effect).collect();
+    pub(crate) fn effects(&self) -> Vec<EffectIndex> {
+        let mut effects: Vec<EffectIndex> = self.columns.iter().map(|column| column.effect).collect();
         effects.dedup();
         effects
     }
 
     /// What speaks for an effect beside others, `tested` effects being tried.
-    pub(crate) fn case(&self, effect: usize, beside: &[usize], tested: usize) -> Option<EffectTest> {
-        let without: Vec<usize> = beside.iter().copied().filter(|other| *other != effect).collect();
-        let with: Vec<usize> = without.iter().copied().chain([effect]).collect();
+    pub(crate) fn case(
+        &self,
+        effect: EffectIndex,
+        beside: &[EffectIndex],
+        tested: usize,
+    ) -> Option<EffectTest> {
+        let without: Vec<EffectIndex> = beside.iter().copied().filter(|other| *other != effect).collect();
+        let with: Vec<EffectIndex> = without.iter().copied().chain([effect]).collect();
         let free = self.columns_of(&with);
         let fit = self.evidence.fit(&free)?;
-        let sizes: Vec<usize> =
-            self.columns_of(&[effect]).into_iter().filter(|&column| self.columns[column].is_size()).collect();
+        let sizes: Vec<ColumnIndex> = self
+            .columns_of(&[effect])
+            .into_iter()
+            .filter(|&column| self.columns[column.0].is_size())
+            .collect();
         let [held_out, others] = self.held_out([&with, &without])?;
         let gain = held_out.over(&others);
         let p_value = if self.is_possible(&fit, &sizes) {
             let together = Some(self.evidence.p_value(&fit, &sizes));
             // Patches of the carpet are where other frames have seen them: they foretell as a place's effect does.
-            let keeps_place = library()[effect].covariates().contains(&Covariate::FieldPosition);
+            let keeps_place = effect.effect().covariates().contains(&Covariate::FieldPosition);
             let foretold = (!keeps_place).then(|| self.foretold(held_out.surely_over(&others)));
             best_of([together, self.alone(&without, &sizes), foretold])
         } else {
@@ -102,13 +111,13 @@ impl EffectTests<'_> {
     }
 
     /// What speaks for each of these effects, all tried beside others.
-    fn cases(&self, effects: &[usize], beside: &[usize]) -> Vec<EffectTest> {
+    fn cases(&self, effects: &[EffectIndex], beside: &[EffectIndex]) -> Vec<EffectTest> {
         effects.par_iter().filter_map(|&effect| self.case(effect, beside, effects.len())).collect()
     }
 
     /// Fits effects, no parameter outside its range: one that would be is held at the range's end, and the others are
     /// fitted with it there.
-    pub(crate) fn fit_in_range(&self, effects: &[usize]) -> Option<Fit> {
+    pub(crate) fn fit_in_range(&self, effects: &[EffectIndex]) -> Option<Fit> {
         let mut free = self.columns_of(effects);
         let mut held = -&self.evidence.base;
         loop {
@@ -116,7 +125,7 @@ impl EffectTests<'_> {
             let farthest = free.iter().copied().map(|column| (column, self.outside(&fit, column)));
             match farthest.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) {
                 Some((column, outside)) if outside != 0.0 => {
-                    held[column] = fit.delta[column] - outside;
+                    held[column.0] = fit.delta[column.0] - outside;
                     free.retain(|&other| other != column);
                 }
                 _ => return Some(fit),
@@ -125,9 +134,9 @@ impl EffectTests<'_> {
     }
 
     /// How far beyond its range a fitted column is.
-    fn outside(&self, fit: &Fit, column: usize) -> f64 {
+    fn outside(&self, fit: &Fit, column: ColumnIndex) -> f64 {
         let coordinate = self.coordinate(fit, column);
-        let inside = self.columns[column].coordinate(self.columns[column].value(coordinate));
+        let inside = self.columns[column.0].coordinate(self.columns[column.0].value(coordinate));
         if (coordinate - inside).abs() > 1e-9 { coordinate - inside } else { 0.0 }
     }
 
@@ -138,11 +147,11 @@ impl EffectTests<'_> {
     }
 
     /// The least p-value of one of an effect's sizes alone, corrected for their number: few of them may be at work.
-    fn alone(&self, beside: &[usize], sizes: &[usize]) -> Option<f64> {
+    fn alone(&self, beside: &[EffectIndex], sizes: &[ColumnIndex]) -> Option<f64> {
         if !(2..=TRIED_ALONE).contains(&sizes.len()) {
             return None;
         }
-        let p_value = |&size: &usize| {
+        let p_value = |&size: &ColumnIndex| {
             let mut free = self.columns_of(beside);
             free.push(size);
             self.evidence.fit(&free).map_or(1.0, |fit| self.evidence.p_value(&fit, &[size]))
@@ -151,34 +160,40 @@ impl EffectTests<'_> {
     }
 
     /// What cannot be below none, as a blur, is no effect where it would have to be.
-    fn is_possible(&self, fit: &Fit, sizes: &[usize]) -> bool {
-        let below = |column: &usize| {
-            let parameter = self.columns[*column].parameter();
+    fn is_possible(&self, fit: &Fit, sizes: &[ColumnIndex]) -> bool {
+        let below = |column: &ColumnIndex| {
+            let parameter = self.columns[column.0].parameter();
             parameter.range[0] >= parameter.neutral && self.coordinate(fit, *column) <= 0.0
         };
         !sizes.iter().all(below)
     }
 
-    pub(crate) fn coordinate(&self, fit: &Fit, column: usize) -> f64 {
-        self.evidence.base[column] + fit.delta[column]
+    pub(crate) fn coordinate(&self, fit: &Fit, column: ColumnIndex) -> f64 {
+        self.evidence.base[column.0] + fit.delta[column.0]
     }
 
-    pub(crate) fn value(&self, fit: &Fit, column: usize) -> f64 {
-        self.columns[column].value(self.coordinate(fit, column))
+    pub(crate) fn value(&self, fit: &Fit, column: ColumnIndex) -> f64 {
+        self.columns[column.0].value(self.coordinate(fit, column))
     }
 
     /// Whether sizes that would matter are surely not chance, together or one alone: of a field's five, one may be sure and
     /// too small, another large and hardly seen; of noise's two, neither can be told from the other.
-    fn is_material(&self, effect: usize, with: &[usize], fit: &Fit, sizes: &[usize]) -> bool {
-        let matters = |fit: &Fit, column: usize| {
-            let parameter = self.columns[column].parameter();
+    fn is_material(
+        &self,
+        effect: EffectIndex,
+        with: &[EffectIndex],
+        fit: &Fit,
+        sizes: &[ColumnIndex],
+    ) -> bool {
+        let matters = |fit: &Fit, column: ColumnIndex| {
+            let parameter = self.columns[column.0].parameter();
             (self.value(fit, column) - parameter.neutral).abs() >= parameter.material
         };
-        let large: Vec<usize> = sizes.iter().copied().filter(|&column| matters(fit, column)).collect();
+        let large: Vec<ColumnIndex> = sizes.iter().copied().filter(|&column| matters(fit, column)).collect();
         if large.is_empty() {
             return false;
         }
-        let alone = |&size: &usize| {
+        let alone = |&size: &ColumnIndex| {
             let others = sizes.iter().filter(|other| **other != size);
             let mut free = self.columns_of(with);
             others.for_each(|other| free.retain(|column| column != other));
@@ -195,11 +210,11 @@ impl EffectTests<'_> {
     /// What to add to what is named: the effect that speaks most for itself, and behind it those that may stand for it, as
     /// the linearised model cannot tell for sure which of them is closest to what is large. Where none does, two that do
     /// together.
-    pub(crate) fn next(&self, named: &[usize]) -> Vec<Vec<usize>> {
+    pub(crate) fn next(&self, named: &[EffectIndex]) -> Vec<Vec<EffectIndex>> {
         if self.evidence.views() < LEAST_VIEWS {
             return Vec::new();
         }
-        let others: Vec<usize> =
+        let others: Vec<EffectIndex> =
             self.effects().into_iter().filter(|effect| !named.contains(effect)).collect();
         let tested = self.cases(&others, named);
         let mut cases: Vec<&EffectTest> = tested.iter().filter(|case| case.holds()).collect();
@@ -217,10 +232,15 @@ impl EffectTests<'_> {
 
     /// Two of the others that speak for themselves beside each other, where none does alone: each hides the other where both
     /// are large. One of them has to be conspicuous alone.
-    fn two(&self, alone: &[EffectTest], others: &[usize], named: &[usize]) -> Option<[usize; 2]> {
+    fn two(
+        &self,
+        alone: &[EffectTest],
+        others: &[EffectIndex],
+        named: &[EffectIndex],
+    ) -> Option<[EffectIndex; 2]> {
         let pairs = others.len() * others.len().saturating_sub(1) / 2;
-        let holds = |effect: usize, beside: usize| {
-            let beside: Vec<usize> = named.iter().copied().chain([beside]).collect();
+        let holds = |effect: EffectIndex, beside: EffectIndex| {
+            let beside: Vec<EffectIndex> = named.iter().copied().chain([beside]).collect();
             self.case(effect, &beside, pairs).is_some_and(|case| case.holds())
         };
         let mut leads: Vec<&EffectTest> = alone.iter().filter(|case| case.p_value < CONSPICUOUS).collect();
@@ -228,11 +248,11 @@ impl EffectTests<'_> {
         let leads = leads.into_iter().take(MOST_LEADS);
         let tries = leads.flat_map(|lead| others.iter().map(move |&other| [lead.effect, other]));
         let found = tries
-            .collect::<Vec<[usize; 2]>>()
+            .collect::<Vec<[EffectIndex; 2]>>()
             .into_par_iter()
             .filter(|[lead, other]| lead != other && holds(*lead, *other) && holds(*other, *lead))
             .filter_map(|two| {
-                let set: Vec<usize> = named.iter().copied().chain(two).collect();
+                let set: Vec<EffectIndex> = named.iter().copied().chain(two).collect();
                 Some((self.gain(&set, named)?.value, two))
             });
         found.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, two)| two)
@@ -240,30 +260,36 @@ impl EffectTests<'_> {
 
     /// Effects not named that explain clearly more than one named does, in its place: the old one, the new one; those that
     /// gain most come first.
-    pub(crate) fn better(&self, all: &[usize], named: &[usize]) -> Vec<(usize, usize)> {
-        let others: Vec<usize> = self.effects().into_iter().filter(|effect| !all.contains(effect)).collect();
+    pub(crate) fn better(
+        &self,
+        all: &[EffectIndex],
+        named: &[EffectIndex],
+    ) -> Vec<(EffectIndex, EffectIndex)> {
+        let others: Vec<EffectIndex> =
+            self.effects().into_iter().filter(|effect| !all.contains(effect)).collect();
         let tries = named.iter().flat_map(|&old| others.iter().map(move |&new| (old, new)));
-        let tries: Vec<(usize, usize)> = tries.collect();
+        let tries: Vec<(EffectIndex, EffectIndex)> = tries.collect();
         let gains = tries.into_par_iter().filter_map(|(old, new)| {
-            let without: Vec<usize> = all.iter().copied().filter(|effect| *effect != old).collect();
+            let without: Vec<EffectIndex> = all.iter().copied().filter(|effect| *effect != old).collect();
             self.case(new, &without, others.len()).filter(EffectTest::holds)?;
-            let set: Vec<usize> = without.iter().copied().chain([new]).collect();
+            let set: Vec<EffectIndex> = without.iter().copied().chain([new]).collect();
             let gain = self.gain(&set, all)?;
             let replaces = gain.score() > TELLS_APART && !self.adds(old, new, &without, others.len());
             replaces.then_some((gain.value, (old, new)))
         });
-        let mut gains: Vec<(f64, (usize, usize))> = gains.collect();
+        let mut gains: Vec<(f64, (EffectIndex, EffectIndex))> = gains.collect();
         gains.sort_by(|a, b| b.0.total_cmp(&a.0));
         gains.into_iter().map(|(_, pair)| pair).collect()
     }
 
     /// Other effects that explain as much as one of those named does, in its place.
-    pub(crate) fn rivals(&self, effect: usize, named: &[usize]) -> Vec<usize> {
-        let without: Vec<usize> = named.iter().copied().filter(|other| *other != effect).collect();
-        let others: Vec<usize> = self.effects().into_iter().filter(|other| !named.contains(other)).collect();
-        let rivals = |other: &usize| {
+    pub(crate) fn rivals(&self, effect: EffectIndex, named: &[EffectIndex]) -> Vec<EffectIndex> {
+        let without: Vec<EffectIndex> = named.iter().copied().filter(|other| *other != effect).collect();
+        let others: Vec<EffectIndex> =
+            self.effects().into_iter().filter(|other| !named.contains(other)).collect();
+        let rivals = |other: &EffectIndex| {
             let holds = self.case(*other, &without, others.len()).is_some_and(|case| case.holds());
-            let set: Vec<usize> = without.iter().copied().chain([*other]).collect();
+            let set: Vec<EffectIndex> = without.iter().copied().chain([*other]).collect();
             holds
                 && self.gain(named, &set).is_some_and(|gain| gain.score() < TELLS_APART)
                 && !self.adds(effect, *other, &without, others.len())
@@ -272,23 +298,24 @@ impl EffectTests<'_> {
     }
 
     /// What one set of effects gains over another, both judged on the same unseen frames.
-    fn gain(&self, set: &[usize], over: &[usize]) -> Option<Gain> {
+    fn gain(&self, set: &[EffectIndex], over: &[EffectIndex]) -> Option<Gain> {
         let [set, over] = self.held_out([set, over])?;
         Some(set.over(&over))
     }
 
     /// What two sets gain on the same unseen frames: short runs of them where one changes over time.
-    fn held_out(&self, sets: [&[usize]; 2]) -> Option<[HeldOut; 2]> {
+    fn held_out(&self, sets: [&[EffectIndex]; 2]) -> Option<[HeldOut; 2]> {
         let over_time = sets.into_iter().any(changes_over_time);
         let [first, second] = sets.map(|effects| self.columns_of(effects));
-        let shared: Vec<usize> = first.iter().copied().filter(|column| second.contains(column)).collect();
-        let held_out = |free: &[usize]| self.evidence.held_out(free, &shared, over_time);
+        let shared: Vec<ColumnIndex> =
+            first.iter().copied().filter(|column| second.contains(column)).collect();
+        let held_out = |free: &[ColumnIndex]| self.evidence.held_out(free, &shared, over_time);
         Some([held_out(&first)?, held_out(&second)?])
     }
 
     /// Whether an effect has something to add to another one: then they are two, not one in two shapes.
-    fn adds(&self, effect: usize, other: usize, without: &[usize], tested: usize) -> bool {
-        let beside: Vec<usize> = without.iter().copied().chain([other]).collect();
+    fn adds(&self, effect: EffectIndex, other: EffectIndex, without: &[EffectIndex], tested: usize) -> bool {
+        let beside: Vec<EffectIndex> = without.iter().copied().chain([other]).collect();
         self.case(effect, &beside, tested).is_some_and(|case| case.holds())
     }
 }
@@ -300,9 +327,9 @@ fn best_of(tests: [Option<f64>; 3]) -> f64 {
 }
 
 /// Whether one of these effects is another thing at another time: a course in pictures, not a rate.
-fn changes_over_time(effects: &[usize]) -> bool {
-    let changes = |effect: usize| {
-        let effect = library()[effect];
+fn changes_over_time(effects: &[EffectIndex]) -> bool {
+    let changes = |effect: EffectIndex| {
+        let effect = effect.effect();
         effect.stage() != Stage::Odometry && effect.covariates().contains(&Covariate::Time)
     };
     effects.iter().any(|&effect| changes(effect))
@@ -326,9 +353,9 @@ mod tests {
 
     #[test]
     fn only_the_exposures_course_is_another_thing_at_another_time() {
-        let changing: Vec<&str> = (0..library().len())
+        let changing: Vec<&str> = EffectIndex::all()
             .filter(|&effect| changes_over_time(&[effect]))
-            .map(|effect| library()[effect].id())
+            .map(|effect| effect.effect().id())
             .collect();
         assert_eq!(changing, ["exposure_drift"]);
     }

@@ -5,6 +5,7 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
 use crate::{
     inference::split::stretch,
+    linear_model::column::ColumnIndex,
     linear_model::normal_equations::NormalEquations,
     linear_model::reduced_equations::{Fit, ReducedEquations, UNSEEN},
     linear_model::system::{LinearSystem, PRIOR},
@@ -131,12 +132,12 @@ impl<'a> Evidence<'a> {
         3 * self.views() / (2 * (LAG + 1))
     }
 
-    pub(crate) fn fit(&self, free: &[usize]) -> Option<Fit> {
+    pub(crate) fn fit(&self, free: &[ColumnIndex]) -> Option<Fit> {
         self.total.fit(free, &self.base)
     }
 
     /// The others changed by what is held.
-    pub(crate) fn fit_beside(&self, free: &[usize], held: &DVector<f64>) -> Option<Fit> {
+    pub(crate) fn fit_beside(&self, free: &[ColumnIndex], held: &DVector<f64>) -> Option<Fit> {
         self.total.fit_beside(free, &self.base, held)
     }
 
@@ -154,11 +155,16 @@ impl<'a> Evidence<'a> {
     /// What a set of free columns gains over the model as it is; in short runs where an effect changes over time. `shared`
     /// columns are free in what this is compared with as well: where the other frames do not tell of them, they stay where
     /// the model is, or a line that is seen in the frames left out alone would drown what the sets differ in.
-    pub(crate) fn held_out(&self, free: &[usize], shared: &[usize], over_time: bool) -> Option<HeldOut> {
+    pub(crate) fn held_out(
+        &self,
+        free: &[ColumnIndex],
+        shared: &[ColumnIndex],
+        over_time: bool,
+    ) -> Option<HeldOut> {
         let mut frames = vec![0.0; self.system.frames.len()];
         let mut drawn_to = self.base.clone();
         for &column in shared {
-            drawn_to[column] = 0.0;
+            drawn_to[column.0] = 0.0;
         }
         for (left_out, others) in if over_time { &self.runs } else { &self.stretches } {
             let delta = others.fit_beside(free, &drawn_to, &-&self.base)?.delta;
@@ -189,9 +195,9 @@ impl<'a> Evidence<'a> {
 
     /// How surely the columns `tested`, a part of the free ones, are not where the effect vanishes: the weaker of both
     /// covariances' evidence (Hotelling's T²).
-    pub(crate) fn p_value(&self, fit: &Fit, tested: &[usize]) -> f64 {
+    pub(crate) fn p_value(&self, fit: &Fit, tested: &[ColumnIndex]) -> f64 {
         // Of what cannot be seen there is no scatter either.
-        let tested: Vec<usize> =
+        let tested: Vec<ColumnIndex> =
             tested.iter().copied().filter(|&column| fit.prior_share(column) < UNSEEN).collect();
         let tested = tested.as_slice();
         if tested.is_empty() {
@@ -199,7 +205,7 @@ impl<'a> Evidence<'a> {
         }
         let counts = [self.degrees() + 1, self.system.cells.len()];
         let covariances = self.covariances(fit);
-        let place = |column: &usize| fit.place(*column);
+        let place = |column: &ColumnIndex| fit.place(*column);
         // What is not seen on the field has no scatter there: the odometry.
         let seen = |covariance: &DMatrix<f64>| {
             let on_field =
@@ -210,14 +216,14 @@ impl<'a> Evidence<'a> {
         with_counts.map(|(covariance, count)| self.p_of(fit, tested, covariance, count)).fold(0.0, f64::max)
     }
 
-    fn p_of(&self, fit: &Fit, tested: &[usize], covariance: &DMatrix<f64>, count: usize) -> f64 {
+    fn p_of(&self, fit: &Fit, tested: &[ColumnIndex], covariance: &DMatrix<f64>, count: usize) -> f64 {
         let places: Vec<usize> = tested.iter().filter_map(|&column| fit.place(column)).collect();
         let number = places.len();
         if number == 0 || count <= number + 1 {
             return 1.0;
         }
         let part = DMatrix::from_fn(number, number, |i, j| covariance[(places[i], places[j])]);
-        let value = DVector::from_fn(number, |i, _| self.base[tested[i]] + fit.delta[tested[i]]);
+        let value = DVector::from_fn(number, |i, _| self.base[tested[i].0] + fit.delta[tested[i].0]);
         let Some(squared) = squared_distance(&part, &value) else { return 1.0 };
         let degrees = (count - number) as f64;
         let statistic = squared * degrees / (number as f64 * (count - 1) as f64);
@@ -229,7 +235,7 @@ impl<'a> Evidence<'a> {
 
     /// Standard deviation of a free column. What is held by its prior alone scatters little from frame to frame, and is as
     /// unknown as before.
-    pub(crate) fn sigma(&self, fit: &Fit, column: usize) -> f64 {
+    pub(crate) fn sigma(&self, fit: &Fit, column: ColumnIndex) -> f64 {
         let Some(place) = fit.place(column) else { return 0.0 };
         let variances = self.covariances(fit).map(|covariance| covariance[(place, place)]);
         let of_prior = PRIOR * fit.inverse.column(place).norm_squared();
@@ -237,7 +243,7 @@ impl<'a> Evidence<'a> {
     }
 
     /// Correlation of the errors of two free columns: of their scatter from frame to frame, and of what is not known of them.
-    pub(crate) fn correlation(&self, fit: &Fit, columns: [usize; 2]) -> f64 {
+    pub(crate) fn correlation(&self, fit: &Fit, columns: [ColumnIndex; 2]) -> f64 {
         let [Some(i), Some(j)] = columns.map(|column| fit.place(column)) else { return 0.0 };
         let [scatter, _] = self.covariances(fit);
         let covariance = scatter + &fit.inverse * &fit.inverse * PRIOR;
@@ -303,6 +309,8 @@ mod tests {
     use super::*;
     use crate::testing::{Noise, system_of};
 
+    const BOTH: [ColumnIndex; 2] = [ColumnIndex(0), ColumnIndex(1)];
+
     type Equations = (DMatrix<f64>, DVector<f64>);
 
     /// Frames with 20 rows each of two columns; all rows of a frame share an error of their own besides.
@@ -332,7 +340,7 @@ mod tests {
             .map(|seed| {
                 let system = system(seed, [0.0, 0.0], 1.0);
                 let evidence = Evidence::new(&system, DVector::zeros(2));
-                evidence.p_value(&evidence.fit(&[0, 1]).unwrap(), &[0])
+                evidence.p_value(&evidence.fit(&BOTH).unwrap(), &BOTH[..1])
             })
             .collect();
         let below = |p: f64| p_values.iter().filter(|value| **value < p).count() as f64 / 400.0;
@@ -372,12 +380,12 @@ mod tests {
         for seed in 0..200 {
             let system = system(seed, [0.6, -0.2], 0.5);
             let evidence = Evidence::new(&system, DVector::zeros(2));
-            let fit = evidence.fit(&[0, 1]).unwrap();
-            assert!(evidence.p_value(&fit, &[0]) < 1e-3);
+            let fit = evidence.fit(&BOTH).unwrap();
+            assert!(evidence.p_value(&fit, &BOTH[..1]) < 1e-3);
             let nothing = evidence.held_out(&[], &[], false).unwrap();
-            let gain = evidence.held_out(&[0, 1], &[], false).unwrap().over(&nothing);
+            let gain = evidence.held_out(&BOTH, &[], false).unwrap().over(&nothing);
             assert!(gain.value > 0.0 && gain.score() > 2.0);
-            let sigma = evidence.sigma(&fit, 0);
+            let sigma = evidence.sigma(&fit, BOTH[0]);
             inside += usize::from((fit.delta[0] - 0.6).abs() < 1.96 * sigma);
         }
         assert!((170..=199).contains(&inside), "{inside} of 200");
@@ -394,8 +402,8 @@ mod tests {
         }
         let system = system_of(frames);
         let evidence = Evidence::new(&system, DVector::zeros(2));
-        let fit = evidence.fit(&[0, 1]).unwrap();
-        assert!(evidence.sigma(&fit, 1) > 0.99 && evidence.sigma(&fit, 0) < 0.1);
+        let fit = evidence.fit(&BOTH).unwrap();
+        assert!(evidence.sigma(&fit, BOTH[1]) > 0.99 && evidence.sigma(&fit, BOTH[0]) < 0.1);
     }
 
     #[test]
@@ -405,9 +413,9 @@ mod tests {
                 let system = system(seed, [0.5, 0.0], 0.5);
                 let evidence = Evidence::new(&system, DVector::zeros(2));
                 evidence
-                    .held_out(&[0, 1], &[], false)
+                    .held_out(&BOTH, &[], false)
                     .unwrap()
-                    .over(&evidence.held_out(&[0], &[], false).unwrap())
+                    .over(&evidence.held_out(&BOTH[..1], &[], false).unwrap())
                     .value
             })
             .collect();
@@ -424,12 +432,12 @@ mod tests {
         }
         let system = system_of(frames);
         let evidence = Evidence::new(&system, base);
-        let kept = evidence.held_out(&[0, 1], &[], false).unwrap();
+        let kept = evidence.held_out(&BOTH, &[], false).unwrap();
         assert!(
-            evidence.held_out(&[1], &[], false).unwrap().over(&kept).value < -50.0,
+            evidence.held_out(&BOTH[1..], &[], false).unwrap().over(&kept).value < -50.0,
             "without it much is lost"
         );
-        let kept = evidence.fit(&[0, 1]).unwrap();
+        let kept = evidence.fit(&BOTH).unwrap();
         assert!(kept.delta[0].abs() < 0.1);
     }
 }

@@ -2,12 +2,13 @@
 
 use std::{cmp::Ordering, collections::BTreeMap};
 
-use reality_sim_sensor::{Model, library};
+use reality_sim_sensor::{EffectIndex, Model};
 
 use crate::{
     inference::effect_test::{EffectTests, TELLS_APART},
     inference::measured::{LinearizedRecording, SEARCH},
     inference::split::HeldOutSplit,
+    linear_model::column::ColumnIndex,
     linear_model::initial_values::starting_values,
     linear_model::linearization::MeasureError,
     linear_model::parameters::FittedParameter,
@@ -44,13 +45,13 @@ pub(crate) struct ModelSearch<'a> {
     pub(crate) columns: &'a [FittedParameter],
     pub(crate) split: &'a HeldOutSplit,
     /// Effects that the model has had from the start.
-    pub(crate) given: &'a [usize],
+    pub(crate) given: &'a [EffectIndex],
     pub(crate) progress: &'a dyn Fn(Progress),
 }
 
 impl ModelSearch<'_> {
     /// The effects of a model in which these are named.
-    fn all(&self, named: &[usize]) -> Vec<usize> {
+    fn all(&self, named: &[EffectIndex]) -> Vec<EffectIndex> {
         self.given.iter().chain(named).copied().collect()
     }
 
@@ -59,14 +60,15 @@ impl ModelSearch<'_> {
     pub(crate) fn dropped(
         &self,
         measured: &LinearizedRecording,
-        named: &[usize],
-    ) -> Result<Option<(Vec<usize>, LinearizedRecording)>, MeasureError> {
+        named: &[EffectIndex],
+    ) -> Result<Option<(Vec<EffectIndex>, LinearizedRecording)>, MeasureError> {
         let naming = measured.naming(self.columns);
         let all = self.all(named);
         let tested = naming.effects().len();
-        let falls = |effect: &&usize| naming.case(**effect, &all, tested).is_none_or(|case| !case.holds());
+        let falls =
+            |effect: &&EffectIndex| naming.case(**effect, &all, tested).is_none_or(|case| !case.holds());
         for fallen in named.iter().filter(falls) {
-            let others: Vec<usize> = named.iter().copied().filter(|effect| effect != fallen).collect();
+            let others: Vec<EffectIndex> = named.iter().copied().filter(|effect| effect != fallen).collect();
             let without = self.all(&others);
             let settled = self.settle(measured.clone(), &without)?;
             let naming = settled.naming(self.columns);
@@ -81,8 +83,8 @@ impl ModelSearch<'_> {
     pub(crate) fn p_value(
         &self,
         measured: &LinearizedRecording,
-        named: &[usize],
-        effect: usize,
+        named: &[EffectIndex],
+        effect: EffectIndex,
     ) -> Option<f64> {
         let naming = measured.naming(self.columns);
         let all = self.all(named);
@@ -94,18 +96,19 @@ impl ModelSearch<'_> {
     pub(crate) fn next_sets(
         &self,
         measured: &LinearizedRecording,
-        named: &[usize],
-        is_new: impl Fn(&[usize]) -> bool,
-    ) -> Vec<Vec<usize>> {
+        named: &[EffectIndex],
+        is_new: impl Fn(&[EffectIndex]) -> bool,
+    ) -> Vec<Vec<EffectIndex>> {
         let naming = measured.naming(self.columns);
         let all = self.all(named);
-        let swapped = |(old, new): (usize, usize)| -> Vec<usize> {
+        let swapped = |(old, new): (EffectIndex, EffectIndex)| -> Vec<EffectIndex> {
             named.iter().map(|&effect| if effect == old { new } else { effect }).collect()
         };
         if let Some(swap) = naming.better(&all, named).into_iter().map(swapped).find(|set| is_new(set)) {
             return vec![swap];
         }
-        let with = |added: &[usize]| -> Vec<usize> { named.iter().chain(added).copied().collect() };
+        let with =
+            |added: &[EffectIndex]| -> Vec<EffectIndex> { named.iter().chain(added).copied().collect() };
         naming.next(&all).iter().map(|added| with(added)).filter(|set| is_new(set)).collect()
     }
 
@@ -114,8 +117,8 @@ impl ModelSearch<'_> {
     pub(crate) fn closest(
         &self,
         measured: &LinearizedRecording,
-        sets: Vec<Vec<usize>>,
-    ) -> Result<Vec<(Vec<usize>, LinearizedRecording)>, MeasureError> {
+        sets: Vec<Vec<EffectIndex>>,
+    ) -> Result<Vec<(Vec<EffectIndex>, LinearizedRecording)>, MeasureError> {
         let only = sets.len() == 1;
         let mut settled = Vec::with_capacity(sets.len());
         for set in sets {
@@ -126,7 +129,7 @@ impl ModelSearch<'_> {
         let least = settled.iter().map(|(left, ..)| *left).fold(f64::INFINITY, f64::min);
         let apart = if only { 0.0 } else { apart(self.left(measured, &measured.system) - least) };
         settled.retain(|(left, ..)| *left <= least + apart);
-        let sizes = |set: &[usize]| {
+        let sizes = |set: &[EffectIndex]| {
             self.columns.iter().filter(|column| column.is_size() && set.contains(&column.effect)).count()
         };
         settled
@@ -139,26 +142,26 @@ impl ModelSearch<'_> {
     pub(crate) fn rivals(
         &self,
         measured: &LinearizedRecording,
-        named: &[usize],
-        ties: &[(usize, usize)],
-    ) -> Result<Vec<(usize, usize)>, MeasureError> {
+        named: &[EffectIndex],
+        ties: &[(EffectIndex, EffectIndex)],
+    ) -> Result<Vec<(EffectIndex, EffectIndex)>, MeasureError> {
         let naming = measured.naming(self.columns);
         let all = self.all(named);
         let left = self.left(measured, &measured.system);
         let mut rivals = Vec::new();
         for &effect in named {
             let tied = ties.iter().filter(|(of, other)| *of == effect && !all.contains(other));
-            let mut others: Vec<usize> = tied.map(|(_, other)| *other).collect();
+            let mut others: Vec<EffectIndex> = tied.map(|(_, other)| *other).collect();
             others.extend(naming.rivals(effect, &all));
             others.sort_unstable();
             others.dedup();
             if others.is_empty() {
                 continue;
             }
-            let without: Vec<usize> = all.iter().copied().filter(|&other| other != effect).collect();
+            let without: Vec<EffectIndex> = all.iter().copied().filter(|&other| other != effect).collect();
             let left_without = self.left(&self.settle(measured.clone(), &without)?, &measured.system);
             for rival in others {
-                let set: Vec<usize> = without.iter().copied().chain([rival]).collect();
+                let set: Vec<EffectIndex> = without.iter().copied().chain([rival]).collect();
                 let settled = self.settle(measured.clone(), &set)?;
                 if self.left(&settled, &measured.system) < left + apart(left_without - left) {
                     rivals.push((effect, rival));
@@ -200,7 +203,7 @@ impl ModelSearch<'_> {
     pub(crate) fn settle(
         &self,
         mut measured: LinearizedRecording,
-        effects: &[usize],
+        effects: &[EffectIndex],
     ) -> Result<LinearizedRecording, MeasureError> {
         for _ in 0..SETTLING {
             (self.progress)(Progress::Fitting);
@@ -218,17 +221,17 @@ impl ModelSearch<'_> {
     }
 
     /// The model with only these effects, at the fitted values.
-    fn moved(&self, model: &Model, naming: &EffectTests<'_>, fit: &Fit, effects: &[usize]) -> Model {
+    fn moved(&self, model: &Model, naming: &EffectTests<'_>, fit: &Fit, effects: &[EffectIndex]) -> Model {
         let mut moved = Model::default();
         for &index in effects {
-            let effect = library()[index];
+            let effect = index.effect();
             let mut values = model
                 .values(effect.id())
                 .map_or_else(|| starting_values(effect, self.recording), <[f64]>::to_vec);
             // What these frames do not tell of a given effect stays as it was given.
-            let stays = |column: &usize| self.given.contains(&index) && fit.tells_nothing(*column);
+            let stays = |column: &ColumnIndex| self.given.contains(&index) && fit.tells_nothing(*column);
             for column in naming.columns_of(&[index]).into_iter().filter(|column| !stays(column)) {
-                values[self.columns[column].parameter] = naming.value(fit, column);
+                values[self.columns[column.0].parameter] = naming.value(fit, column);
             }
             moved = moved.with(effect, values);
         }

@@ -6,6 +6,7 @@ use reality_sim_core::{pose::Motion2, sequence::SequenceError};
 use reality_sim_sensor::{Chain, Model, ModelError, Stage};
 
 use crate::{
+    linear_model::column::ColumnIndex,
     linear_model::initial_values::{starting_values, with_value},
     linear_model::nuisance::Nuisance,
     linear_model::odometry_steps::around,
@@ -128,10 +129,10 @@ impl Linear<'_> {
         };
         let now = expect(&self.chain);
         let residuals = rows.iter().zip(&now).map(|(row, now)| row.measured - now).collect();
-        let mut jacobian: Vec<Vec<(usize, f64)>> = vec![Vec::new(); rows.len()];
+        let mut jacobian: Vec<Vec<(ColumnIndex, f64)>> = vec![Vec::new(); rows.len()];
         let mut put = |column: usize, row: usize, change: f64| {
             if change.is_finite() && change != 0.0 {
-                jacobian[row].push((column, change));
+                jacobian[row].push((ColumnIndex(column), change));
             }
         };
         for (index, (column, shifted)) in self.columns.iter().zip(&self.shifted).enumerate() {

@@ -1,5 +1,6 @@
 //! The residuals of a recording linearised in every parameter, as normal equations with the poses' errors projected out.
 
+pub(crate) mod column;
 pub(crate) mod initial_values;
 pub(crate) mod linearization;
 pub(crate) mod normal_equations;

@@ -3,25 +3,27 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::linear_model::column::ColumnIndex;
+
 /// `A = J̃ᵀ W J` and `g = J̃ᵀ W r` of some rows, see [`crate::linear_model::system`].
 #[derive(Debug, Clone)]
 pub(crate) struct NormalEquations {
     /// Of all columns those that are here, in order.
-    columns: Vec<usize>,
+    columns: Vec<ColumnIndex>,
     a: DMatrix<f64>,
     g: DVector<f64>,
 }
 
 impl NormalEquations {
     /// Of no rows yet. `columns` are in order.
-    pub(crate) fn zero(columns: Vec<usize>) -> Self {
+    pub(crate) fn zero(columns: Vec<ColumnIndex>) -> Self {
         let count = columns.len();
         Self { columns, a: DMatrix::zeros(count, count), g: DVector::zeros(count) }
     }
 
     /// Of several sums together.
     pub(crate) fn together<'a>(sums: impl Iterator<Item = &'a Self> + Clone) -> Self {
-        let mut columns: Vec<usize> = sums.clone().flat_map(|sums| &sums.columns).copied().collect();
+        let mut columns: Vec<ColumnIndex> = sums.clone().flat_map(|sums| &sums.columns).copied().collect();
         columns.sort_unstable();
         columns.dedup();
         let mut all = Self::zero(columns);
@@ -33,7 +35,7 @@ impl NormalEquations {
     }
 
     /// Where a column is in these sums; it has to be among them.
-    pub(crate) fn place(&self, column: usize) -> usize {
+    pub(crate) fn place(&self, column: ColumnIndex) -> usize {
         self.columns.partition_point(|&other| other < column)
     }
 
@@ -58,7 +60,8 @@ impl NormalEquations {
 
     /// Adds these sums to those of all columns.
     pub(crate) fn add_to(&self, a: &mut DMatrix<f64>, g: &mut DVector<f64>) {
-        self.put(&self.columns, a, g);
+        let places: Vec<usize> = self.columns.iter().map(|column| column.0).collect();
+        self.put(&places, a, g);
     }
 
     fn put(&self, places: &[usize], a: &mut DMatrix<f64>, g: &mut DVector<f64>) {
@@ -75,7 +78,7 @@ impl NormalEquations {
         let left = &self.g - &self.a * self.of(delta);
         let mut score = DVector::zeros(delta.len());
         for (&column, value) in self.columns.iter().zip(left.iter()) {
-            score[column] = *value;
+            score[column.0] = *value;
         }
         score
     }
@@ -87,13 +90,13 @@ impl NormalEquations {
     }
 
     fn of(&self, delta: &DVector<f64>) -> DVector<f64> {
-        DVector::from_iterator(self.columns.len(), self.columns.iter().map(|&column| delta[column]))
+        DVector::from_iterator(self.columns.len(), self.columns.iter().map(|column| delta[column.0]))
     }
 
     /// Of all columns there are.
     #[cfg(test)]
     pub(crate) fn whole(a: DMatrix<f64>, g: DVector<f64>) -> Self {
-        Self { columns: (0..g.len()).collect(), a, g }
+        Self { columns: ColumnIndex::first(g.len()).collect(), a, g }
     }
 }
 
@@ -107,7 +110,7 @@ mod tests {
     /// Sums of rows with some of the columns, and the same with all.
     fn pair(seed: u64, columns: &[usize]) -> (NormalEquations, DMatrix<f64>, DVector<f64>) {
         let mut noise = Noise(seed);
-        let mut sums = NormalEquations::zero(columns.to_vec());
+        let mut sums = NormalEquations::zero(columns.iter().copied().map(ColumnIndex).collect());
         let (mut a, mut g) = (DMatrix::zeros(SIZE, SIZE), DVector::zeros(SIZE));
         for _ in 0..5 {
             let values: Vec<f64> = columns.iter().map(|_| noise.next()).collect();
@@ -140,7 +143,7 @@ mod tests {
         let (mut sum, mut right) = (DMatrix::zeros(SIZE, SIZE), DVector::zeros(SIZE));
         let together = NormalEquations::together([&one, &other].into_iter());
         together.add_to(&mut sum, &mut right);
-        assert_eq!(together.columns, [0, 1, 2, 5]);
+        assert_eq!(together.columns, [0, 1, 2, 5].map(ColumnIndex));
         assert!((sum - (a + b)).norm() < 1e-12 && (right - (g + h)).norm() < 1e-12);
     }
 }

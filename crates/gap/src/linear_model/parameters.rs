@@ -1,19 +1,18 @@
 //! The parameters that can be fitted, each a column of the linearised model.
 
-use reality_sim_sensor::{Effect, Growth, Model, Parameter, Role, library};
+use reality_sim_sensor::{Effect, EffectIndex, Growth, Model, Parameter, Role};
 
 /// A parameter of an effect as a fit sees it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FittedParameter {
-    /// Index of the effect in the library.
-    pub(crate) effect: usize,
+    pub(crate) effect: EffectIndex,
     /// Index of the parameter in the effect's.
     pub(crate) parameter: usize,
 }
 
 impl FittedParameter {
     pub(crate) fn effect(&self) -> &'static dyn Effect {
-        library()[self.effect]
+        self.effect.effect()
     }
 
     pub(crate) fn parameter(&self) -> &'static Parameter {
@@ -86,10 +85,10 @@ impl FittedParameter {
 
 /// Every parameter that can be fitted, effect by effect.
 pub(crate) fn columns(excluded: &[String]) -> Vec<FittedParameter> {
-    let all = library().iter().enumerate();
-    all.filter(|(_, effect)| !excluded.iter().any(|id| id == effect.id()))
-        .flat_map(|(effect, used)| {
-            let parameters = used.parameters().iter().enumerate();
+    EffectIndex::all()
+        .filter(|effect| !excluded.iter().any(|id| id == effect.effect().id()))
+        .flat_map(|effect| {
+            let parameters = effect.effect().parameters().iter().enumerate();
             parameters
                 .filter(|(_, parameter)| parameter.role != Role::Fixed)
                 .map(move |(parameter, _)| FittedParameter { effect, parameter })

@@ -6,7 +6,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::{linear_model::normal_equations::NormalEquations, linear_model::system::PRIOR};
+use crate::{
+    linear_model::column::ColumnIndex, linear_model::normal_equations::NormalEquations,
+    linear_model::system::PRIOR,
+};
 
 /// Where a fit leaves more than this part of what was unknown of a column, it cannot be seen.
 pub(crate) const UNSEEN: f64 = 0.1;
@@ -15,7 +18,7 @@ pub(crate) const UNSEEN: f64 = 0.1;
 #[derive(Debug, Clone)]
 pub(crate) struct Fit {
     /// The effects' columns that are free.
-    pub(crate) free: Vec<usize>,
+    pub(crate) free: Vec<ColumnIndex>,
     /// Change of every column from where the model is.
     pub(crate) delta: DVector<f64>,
     /// Inverse of the information on the free columns.
@@ -24,17 +27,17 @@ pub(crate) struct Fit {
 
 impl Fit {
     /// Whether a free column is hardly better known than before.
-    pub(crate) fn tells_nothing(&self, column: usize) -> bool {
+    pub(crate) fn tells_nothing(&self, column: ColumnIndex) -> bool {
         self.place(column).is_some() && self.prior_share(column) > UNSEEN
     }
 
     /// Where a column is among those that are free.
-    pub(crate) fn place(&self, column: usize) -> Option<usize> {
+    pub(crate) fn place(&self, column: ColumnIndex) -> Option<usize> {
         self.free.iter().position(|&free| free == column)
     }
 
     /// What a fit leaves of what was known of a free column before, as a part of its variance: 1 where it tells nothing.
-    pub(crate) fn prior_share(&self, column: usize) -> f64 {
+    pub(crate) fn prior_share(&self, column: ColumnIndex) -> f64 {
         self.place(column).map_or(1.0, |place| self.inverse[(place, place)] * PRIOR)
     }
 }
@@ -80,27 +83,32 @@ impl ReducedEquations {
     }
 
     /// Least squares over the free columns. `base` is where the model is, in the effects' coordinates.
-    pub(crate) fn fit(&self, free: &[usize], base: &DVector<f64>) -> Option<Fit> {
+    pub(crate) fn fit(&self, free: &[ColumnIndex], base: &DVector<f64>) -> Option<Fit> {
         self.fit_beside(free, base, &-base)
     }
 
     /// Least squares over the free columns, the others changed by what is held.
-    pub(crate) fn fit_beside(&self, free: &[usize], base: &DVector<f64>, held: &DVector<f64>) -> Option<Fit> {
+    pub(crate) fn fit_beside(
+        &self,
+        free: &[ColumnIndex],
+        base: &DVector<f64>,
+        held: &DVector<f64>,
+    ) -> Option<Fit> {
         let mut effects = held.clone();
         for &column in free {
-            effects[column] = 0.0;
+            effects[column.0] = 0.0;
         }
         let held = &self.g - &self.a * &effects;
         let count = free.len();
         let information = DMatrix::from_fn(count, count, |i, j| {
-            let both = 0.5 * (self.a[(free[i], free[j])] + self.a[(free[j], free[i])]);
+            let both = 0.5 * (self.a[(free[i].0, free[j].0)] + self.a[(free[j].0, free[i].0)]);
             both + if i == j { PRIOR } else { 0.0 }
         });
-        let right = DVector::from_fn(count, |i, _| held[free[i]] - PRIOR * base[free[i]]);
+        let right = DVector::from_fn(count, |i, _| held[free[i].0] - PRIOR * base[free[i].0]);
         let inverse = information.try_inverse()?;
         let solved = &inverse * right;
         for (i, &column) in free.iter().enumerate() {
-            effects[column] = solved[i];
+            effects[column.0] = solved[i];
         }
         let tolerances = &self.y - &self.x * &effects;
         let delta = DVector::from_iterator(
@@ -117,16 +125,16 @@ impl ReducedEquations {
     }
 
     /// The free effects' part of scores of all columns, the tolerances projected out.
-    pub(crate) fn projected(&self, scores: &DVector<f64>, free: &[usize]) -> DVector<f64> {
+    pub(crate) fn projected(&self, scores: &DVector<f64>, free: &[ColumnIndex]) -> DVector<f64> {
         let parameters = self.g.len();
         let tolerances = scores.rows(parameters, scores.len() - parameters);
-        DVector::from_fn(free.len(), |i, _| scores[free[i]] - self.x.column(free[i]).dot(&tolerances))
+        DVector::from_fn(free.len(), |i, _| scores[free[i].0] - self.x.column(free[i].0).dot(&tolerances))
     }
 
     /// What the tolerances' own prior adds to the scatter of scores: no frame shows it.
-    pub(crate) fn tolerance_scatter(&self, free: &[usize]) -> DMatrix<f64> {
+    pub(crate) fn tolerance_scatter(&self, free: &[ColumnIndex]) -> DMatrix<f64> {
         DMatrix::from_fn(free.len(), free.len(), |i, j| {
-            PRIOR * self.x.column(free[i]).dot(&self.x.column(free[j]))
+            PRIOR * self.x.column(free[i].0).dot(&self.x.column(free[j].0))
         })
     }
 }
@@ -134,6 +142,8 @@ impl ReducedEquations {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const BOTH: [ColumnIndex; 2] = [ColumnIndex(0), ColumnIndex(1)];
 
     /// A well-conditioned system: two effects and two tolerances.
     fn equations() -> (DMatrix<f64>, DVector<f64>) {
@@ -166,16 +176,16 @@ mod tests {
     fn tolerances_solved_for_once_give_the_fit_of_all_at_once() {
         let base = DVector::from_vec(vec![0.3, -0.2]);
         let total = ReducedEquations::of([sums()].iter(), 4, 2);
-        let fit = total.fit(&[0, 1], &base).unwrap();
+        let fit = total.fit(&BOTH, &base).unwrap();
         assert!((fit.delta - at_once(&base)).norm() < 1e-12);
     }
 
     #[test]
     fn an_effect_that_is_not_free_goes_to_where_it_vanishes() {
         let base = DVector::from_vec(vec![0.3, -0.2]);
-        let fit = ReducedEquations::of([sums()].iter(), 4, 2).fit(&[1], &base).unwrap();
+        let fit = ReducedEquations::of([sums()].iter(), 4, 2).fit(&BOTH[1..], &base).unwrap();
         assert_eq!(fit.delta[0], -0.3);
-        assert!(fit.prior_share(1) < 1.0 && fit.prior_share(0) == 1.0);
+        assert!(fit.prior_share(BOTH[1]) < 1.0 && fit.prior_share(BOTH[0]) == 1.0);
     }
 
     #[test]
@@ -183,7 +193,7 @@ mod tests {
         let base = DVector::from_vec(vec![0.3, -0.2]);
         let total = ReducedEquations::of([sums()].iter(), 4, 2);
         let held = DVector::from_vec(vec![0.25, 7.0]);
-        let fit = total.fit_beside(&[1], &base, &held).unwrap();
+        let fit = total.fit_beside(&BOTH[1..], &base, &held).unwrap();
         assert_eq!(fit.delta[0], 0.25);
         let gain = |second: f64| {
             let delta = DVector::from_vec(vec![0.25, second]);
@@ -198,7 +208,7 @@ mod tests {
         let base = DVector::zeros(2);
         let total = ReducedEquations::of([sums()].iter(), 4, 2);
         let gain = |delta: &DVector<f64>| total.gain(delta) - 0.5 * PRIOR * delta.rows(0, 2).norm_squared();
-        let best = total.fit(&[0, 1], &base).unwrap().delta;
+        let best = total.fit(&BOTH, &base).unwrap().delta;
         for step in [[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1], [0.0, -0.1]] {
             let mut other = best.clone();
             (other[0], other[1]) = (other[0] + step[0], other[1] + step[1]);

@@ -11,6 +11,7 @@ use nalgebra::{DMatrix, DVector, Matrix6, Vector6};
 use rayon::prelude::*;
 
 use crate::{
+    linear_model::column::ColumnIndex,
     linear_model::normal_equations::NormalEquations,
     measurement::quantity::{Channel, Quantity},
     measurement::scalar::Measurement,
@@ -41,7 +42,7 @@ pub(crate) struct LinearizedFrame {
     /// Measured minus expected; not a number where there is nothing to compare.
     pub(crate) residuals: Vec<f64>,
     /// Change of what is expected with the columns, row by row: the columns that it changes with.
-    pub(crate) jacobian: Vec<Vec<(usize, f64)>>,
+    pub(crate) jacobian: Vec<Vec<(ColumnIndex, f64)>>,
     /// Change of a line's offset with the pose, see [`crate::linear_model::prediction::pose_gradient`]; zero for other rows.
     pub(crate) pose: Vec<Vector6<f64>>,
 }
@@ -134,8 +135,9 @@ impl FittedResiduals {
         delta: &DVector<f64>,
         pose_sigmas: &[f64; 6],
     ) -> Self {
-        let change =
-            |row: &Vec<(usize, f64)>| row.iter().map(|(column, value)| value * delta[*column]).sum::<f64>();
+        let change = |row: &Vec<(ColumnIndex, f64)>| {
+            row.iter().map(|(column, value)| value * delta[column.0]).sum::<f64>()
+        };
         let mut residuals: Vec<f64> = frame
             .residuals
             .iter()
@@ -228,14 +230,14 @@ fn by_cell(
 /// `(Pᵀ W P + Λ)⁻¹ Pᵀ W J`: the pose's change that imitates each column, for those that move lines.
 struct Projection {
     /// In order.
-    columns: Vec<usize>,
+    columns: Vec<ColumnIndex>,
     changes: Vec<Vector6<f64>>,
 }
 
 impl Projection {
     fn new(frame: &LinearizedFrame, weights: &[f64], pose_sigmas: &[f64; 6]) -> Self {
         let mut normal = prior(pose_sigmas);
-        let mut cross: BTreeMap<usize, Vector6<f64>> = BTreeMap::new();
+        let mut cross: BTreeMap<ColumnIndex, Vector6<f64>> = BTreeMap::new();
         for (row, (pose, &weight)) in frame.pose.iter().zip(weights).enumerate() {
             if weight > 0.0 && frame.measurements[row].quantity == Quantity::LineOffset {
                 normal.ger(weight, pose, pose, 1.0);
@@ -273,7 +275,7 @@ impl Part<'_> {
     }
 
     /// Columns that its rows change with, and those that change with the pose.
-    fn columns(&self) -> BTreeSet<usize> {
+    fn columns(&self) -> BTreeSet<ColumnIndex> {
         let plain = self.counted().flat_map(|row| &self.frame.jacobian[row]).map(|(column, _)| *column);
         let lines = self.counted().any(|row| self.is_line(row));
         let imitated = self.projection.columns.iter().copied().filter(|_| lines);
@@ -283,7 +285,7 @@ impl Part<'_> {
 
 /// `J̃ᵀ W J` and `J̃ᵀ W r` of some rows of some frames.
 fn sums_of(parts: &[Part<'_>]) -> NormalEquations {
-    let columns: BTreeSet<usize> = parts.iter().flat_map(Part::columns).collect();
+    let columns: BTreeSet<ColumnIndex> = parts.iter().flat_map(Part::columns).collect();
     let mut sums = NormalEquations::zero(columns.into_iter().collect());
     for part in parts {
         for row in part.counted() {
@@ -411,7 +413,7 @@ mod tests {
                     let other = noise.next();
                     frame.measurements.push(measurement(Quantity::LineOffset));
                     frame.residuals.push(pose.dot(&wrong) + size * other + 0.3 * noise.next());
-                    frame.jacobian.push(vec![(0, pose[0]), (1, other)]);
+                    frame.jacobian.push(vec![(ColumnIndex(0), pose[0]), (ColumnIndex(1), other)]);
                     frame.pose.push(pose);
                 }
                 frame
@@ -469,7 +471,7 @@ mod tests {
                         measurement(Quantity::OdometryLeft),
                     ],
                     residuals: vec![(1.0 + truth) * 0.05 - ahead_m, -aside_m],
-                    jacobian: vec![vec![(0, ahead_m)], vec![(0, aside_m)]],
+                    jacobian: vec![vec![(ColumnIndex(0), ahead_m)], vec![(ColumnIndex(0), aside_m)]],
                     pose: vec![Vector6::zeros(); 2],
                 }
             })

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DVector;
-use reality_sim_sensor::{Model, library};
+use reality_sim_sensor::{EffectIndex, Model};
 
 use crate::{
     diagnostics::dynamic_objects::moving,
@@ -128,8 +128,8 @@ pub fn gap_of(recording: &Recording<'_>, model: &Model, options: &Options) -> Re
 }
 
 /// A model less one effect.
-fn without(model: &Model, effect: usize) -> Model {
-    let id = library()[effect].id();
+fn without(model: &Model, effect: EffectIndex) -> Model {
+    let id = effect.effect().id();
     let mut model = model.clone();
     model.effects.retain(|used| used.effect.id() != id);
     model
@@ -168,7 +168,7 @@ fn effect_reports(
     recording: &Recording<'_>,
     naming: &EffectTests<'_>,
     found: &SelectedModel,
-    effects: &[usize],
+    effects: &[EffectIndex],
     after: &HeldOutResiduals,
 ) -> Result<Vec<EffectReport>, MeasureError> {
     let all = found.all();
@@ -191,15 +191,15 @@ fn effect_report(
     found: &SelectedModel,
     closes: BTreeMap<String, f64>,
 ) -> EffectReport {
-    let effect = library()[case.effect];
+    let effect = case.effect.effect();
     let estimates: Vec<(&'static str, Estimate)> = naming
         .columns_of(&[case.effect])
         .into_iter()
         .map(|index| {
-            let column: &FittedParameter = &naming.columns[index];
+            let column: &FittedParameter = &naming.columns[index.0];
             let sigma = naming.evidence.sigma(&case.fit, index);
             // As in the model's file: the last fit's step from there is less than matters.
-            let coordinate = naming.evidence.base[index];
+            let coordinate = naming.evidence.base[index.0];
             let (value, sigma) = (column.value(coordinate), column.value_sigma(coordinate, sigma));
             (
                 column.parameter().name,
@@ -212,7 +212,7 @@ fn effect_report(
     let correlation = |one: &str, other: &str| {
         let column = |name: &str| {
             let mut columns = naming.columns_of(&[case.effect]).into_iter();
-            columns.find(|&column| naming.columns[column].parameter().name == name)
+            columns.find(|&column| naming.columns[column.0].parameter().name == name)
         };
         let both = column(one).zip(column(other));
         both.map_or(0.0, |(one, other)| naming.evidence.correlation(&case.fit, [one, other]))
@@ -226,10 +226,10 @@ fn effect_report(
         parameters: estimates.into_iter().map(|(name, estimate)| (name.to_owned(), estimate)).collect(),
         p_value: found.p_value(case),
         held_out_gain: gain(case.gain),
-        confusable_with: rivals.iter().map(|&rival| library()[rival].id().to_owned()).collect(),
+        confusable_with: rivals.iter().map(|&rival| rival.effect().id().to_owned()).collect(),
         recording_that_would_decide: rivals
             .iter()
-            .map(|&rival| library()[rival].recording_that_would_decide().to_owned())
+            .map(|&rival| rival.effect().recording_that_would_decide().to_owned())
             .collect(),
         because: because.to_owned(),
         closes,
@@ -240,12 +240,12 @@ fn effect_report(
 fn others(
     recording: &Recording<'_>,
     naming: &EffectTests<'_>,
-    all: &[usize],
+    all: &[EffectIndex],
 ) -> (Vec<NotFoundReport>, Vec<(bool, Unobservable)>) {
     let (mut not_found, mut unobservable) = (Vec::new(), Vec::new());
     let effects = naming.effects();
     for &index in effects.iter().filter(|effect| !all.contains(effect)) {
-        let effect = library()[index];
+        let effect = index.effect();
         match limit(recording, naming, index, all) {
             NotFound::Limit { value, unit, parameter } => {
                 let case = naming.case(index, all, effects.len());
@@ -295,7 +295,7 @@ fn unexplained(
     recording: &Recording<'_>,
     found: &SelectedModel,
     naming: &EffectTests<'_>,
-    all: &[usize],
+    all: &[EffectIndex],
     explained: &ModelError,
 ) -> Vec<Unexplained> {
     let mut delta = naming.evidence.fit(&naming.columns_of(all)).map_or_else(

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use reality_sim_core::preprocess::{Texture, luma};
-use reality_sim_sensor::{Chain, Model};
+use reality_sim_sensor::{Chain, EffectIndex, Model};
 
 use crate::{
     inference::split::HeldOutSplit,
@@ -109,7 +109,7 @@ impl<'a> Pictures<'a> {
 
     /// The model with other values of one parameter, or of both of an effect that has two.
     fn tries(&self, model: &Model, columns: &[FittedParameter]) -> Vec<Model> {
-        let mut movers: BTreeMap<usize, Vec<&FittedParameter>> = BTreeMap::new();
+        let mut movers: BTreeMap<EffectIndex, Vec<&FittedParameter>> = BTreeMap::new();
         for column in columns.iter().filter(|column| column.is_size()) {
             let [low, high] = column.parameter().range.map(|value| self.moved(model, column, value));
             if self.farthest_px(&low, &high).is_none_or(|pixels| pixels > LEAST_MOVE_PX) {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use reality_sim_sensor::{Model, library};
+use reality_sim_sensor::{EffectIndex, Model};
 
 use crate::{
     inference::effect_test::{EffectTest, EffectTests},
@@ -34,18 +34,18 @@ pub(crate) struct SelectedModel {
     pub(crate) split: HeldOutSplit,
     /// At the final model.
     pub(crate) measured: LinearizedRecording,
-    /// Indices into the library of the effects that the model had, and of those found, in the order of finding.
-    pub(crate) given: Vec<usize>,
-    pub(crate) named: Vec<usize>,
+    /// The effects that the model had, and of those found, in the order of finding.
+    pub(crate) given: Vec<EffectIndex>,
+    pub(crate) named: Vec<EffectIndex>,
     /// How unlikely named effects were chance when they were not yet in the model.
-    p_values: BTreeMap<usize, f64>,
+    p_values: BTreeMap<EffectIndex, f64>,
     /// A named effect, and another that leaves as little in its place.
-    rivals: Vec<(usize, usize)>,
+    rivals: Vec<(EffectIndex, EffectIndex)>,
 }
 
 impl SelectedModel {
     /// All effects of the extended model.
-    pub(crate) fn all(&self) -> Vec<usize> {
+    pub(crate) fn all(&self) -> Vec<EffectIndex> {
         self.given.iter().chain(&self.named).copied().collect()
     }
 
@@ -59,7 +59,7 @@ impl SelectedModel {
     }
 
     /// Effects not in the model that stand for one that is as well.
-    pub(crate) fn rivals(&self, effect: usize) -> Vec<usize> {
+    pub(crate) fn rivals(&self, effect: EffectIndex) -> Vec<EffectIndex> {
         self.rivals.iter().filter(|(of, _)| *of == effect).map(|(_, rival)| *rival).collect()
     }
 }
@@ -74,12 +74,12 @@ pub(crate) fn find(
     check(recording, model)?;
     let columns = columns(&options.without);
     let split = HeldOutSplit::new(recording.frames.len(), options.seed);
-    let index = |id: &str| library().iter().position(|effect| effect.id() == id);
-    let given: Vec<usize> = model.effects.iter().filter_map(|used| index(used.effect.id())).collect();
+    let given: Vec<EffectIndex> =
+        model.effects.iter().filter_map(|used| EffectIndex::find(used.effect.id())).collect();
     let finder = ModelSearch { recording, columns: &columns, split: &split, given: &given, progress };
     progress(Progress::Measuring);
     let mut measured = LinearizedRecording::new(recording, model.clone(), &columns, &split, SEARCH[0])?;
-    let mut named: Vec<usize> = Vec::new();
+    let mut named: Vec<EffectIndex> = Vec::new();
     if !given.is_empty() {
         measured = finder.settle(measured, &given)?;
     }
@@ -89,7 +89,7 @@ pub(crate) fn find(
         measured = LinearizedRecording::new(recording, placed, &columns, &split, SEARCH[0])?;
     }
     // Sets that were tried: swapping must not go round in circles.
-    let mut tried: Vec<Vec<usize>> = vec![Vec::new()];
+    let mut tried: Vec<Vec<EffectIndex>> = vec![Vec::new()];
     let mut ties = Vec::new();
     let mut p_values = BTreeMap::new();
     while named.len() < MOST_EFFECTS {
@@ -98,7 +98,7 @@ pub(crate) fn find(
             (named, measured) = (set, settled);
             continue;
         }
-        let is_new = |set: &[usize]| set.len() <= MOST_EFFECTS && !tried.contains(&sorted(set));
+        let is_new = |set: &[EffectIndex]| set.len() <= MOST_EFFECTS && !tried.contains(&sorted(set));
         let sets = finder.next_sets(&measured, &named, is_new);
         let swaps = sets.iter().any(|set| set.len() == named.len());
         let mut closest = finder.closest(&measured, sets)?.into_iter();
@@ -138,13 +138,13 @@ pub(crate) fn as_given(
 }
 
 /// The one effect of a set that another set has something else for.
-fn differing(set: &[usize], other: &[usize]) -> Option<(usize, usize)> {
+fn differing(set: &[EffectIndex], other: &[EffectIndex]) -> Option<(EffectIndex, EffectIndex)> {
     let of = set.iter().find(|effect| !other.contains(effect))?;
     let instead = other.iter().find(|effect| !set.contains(effect))?;
     Some((*of, *instead))
 }
 
-fn sorted(effects: &[usize]) -> Vec<usize> {
+fn sorted(effects: &[EffectIndex]) -> Vec<EffectIndex> {
     let mut sorted = effects.to_vec();
     sorted.sort_unstable();
     sorted
@@ -156,7 +156,9 @@ mod tests {
 
     #[test]
     fn sets_differ_by_one_effect_in_the_place_of_another() {
-        assert_eq!(differing(&[1, 2], &[1, 3]), Some((2, 3)));
-        assert_eq!(differing(&[1, 2], &[2, 1]), None);
+        let effects: Vec<EffectIndex> = EffectIndex::all().take(3).collect();
+        let [one, two, three] = effects[..] else { panic!() };
+        assert_eq!(differing(&[one, two], &[one, three]), Some((two, three)));
+        assert_eq!(differing(&[one, two], &[two, one]), None);
     }
 }

@@ -61,7 +61,7 @@ fn each_nuisance_changes_what_is_expected_as_its_column_says() {
                 let at = |deviations: f64| predicted(nuisance, measurement, expected, deviations);
                 let difference = (at(STEP) - at(-STEP)) / (2.0 * STEP);
                 let derivative =
-                    derivatives.iter().find(|(of, _)| *of == column).map_or(0.0, |entry| entry.1);
+                    derivatives.iter().find(|(of, _)| of.0 == column).map_or(0.0, |entry| entry.1);
                 let allowed = TOLERANCE * difference.abs() + 1e-9;
                 assert!((derivative - difference).abs() < allowed, "{nuisance:?}: {derivative} {difference}");
                 seen[column] |= derivative != 0.0;
