@@ -6,6 +6,8 @@ use reality_sim::{
     SynthesisError,
     db::{DbError, DbFault, index::NoNeighbours},
 };
+#[cfg(feature = "viewer")]
+use reality_sim_viewer::ViewerError;
 
 /// What to type, in a few words; `None` where the message says all.
 pub fn advice(error: &anyhow::Error) -> Option<&'static str> {
@@ -16,6 +18,10 @@ pub fn advice(error: &anyhow::Error) -> Option<&'static str> {
         #[cfg(feature = "gpu")]
         if let Some(error) = cause.downcast_ref() {
             return of_graphics(error);
+        }
+        #[cfg(feature = "viewer")]
+        if let Some(ViewerError::NoGraphics(_)) = cause.downcast_ref() {
+            return Some("`reality-sim doctor` lists those that are there");
         }
         of_database(cause.downcast_ref()?)
     })

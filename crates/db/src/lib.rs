@@ -1,8 +1,43 @@
 //! Pictures with the poses they were taken at, in one file: what a simulator looks up instead of rendering.
 //!
-//! The file is an SQLite database: [`Database::ingest`] puts recordings with their poses in, the other methods of
-//! [`Database`] read. It holds the pictures' files as they were recorded, and the cameras and fields as the text of
-//! their files. Units and frames are those of [`reality_sim_core::pose`].
+//! | type | what |
+//! |---|---|
+//! | [`Database`] | the file: [`Database::ingest`] puts recordings in, the other methods read |
+//! | [`ImageRecord`] | what is known of an image without its pixels: pose, covariance, time, camera, field |
+//! | [`PoseEstimate`], [`PoseSource`] | a pose on its way in, and where poses come from |
+//! | [`metric::PixelMetric`] | how far apart two poses are: how far the picture moves between them, pixels |
+//! | [`index::PoseIndex`] | images by pose: nearest and natural neighbours |
+//! | [`coverage::Coverage`] | which parts of the field were recorded, in which directions |
+//! | [`DbError`] | which file, what is wrong with it, what helps |
+//!
+//! The file is an SQLite database. It holds the pictures' files as they were recorded, and the cameras and fields as the
+//! text of their files. An ingest that is interrupted goes on where it was. Units and frames are those of
+//! [`reality_sim_core::pose`].
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! use reality_sim_core::sequence::Sequence;
+//! use reality_sim_db::{Database, PoseEstimate, PoseSource, index::PoseIndex, metric::PixelMetric};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # std::env::set_current_dir("../..")?;
+//! # let folder = tempfile::tempdir()?;
+//! # let file = folder.path().join("walk.db");
+//! # let file = file.as_path();
+//! let walk = Sequence::open(Path::new("assets/walk"))?;
+//! let poses: Vec<_> = walk.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
+//! let mut database = Database::create_or_open(file)?;
+//! let report = database.ingest(&walk, &poses, &PoseSource::GroundTruth, |_| ())?;
+//! assert_eq!(report.added, 60);
+//!
+//! let poses: Vec<_> = database.images()?.iter().map(|image| image.pose).collect();
+//! let metric = PixelMetric::new(&walk.setup.camera, poses[0], &walk.field).ok_or("the camera sees the field")?;
+//! let nearest = PoseIndex::new(metric, poses.clone()).nearest(poses[7], 3)?;
+//! assert_eq!((nearest[0].image, nearest[0].distance_px), (7, 0.0));
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod coverage;
 mod database;

@@ -1,6 +1,40 @@
 //! Reality Sim's observation models, particle filter and picture warp on the GPU: the same results as
-//! [`reality_sim_core::backend::CpuBackend`] gives, from compute shaders through wgpu. The shaders lie in the workspace's
-//! `shaders/`, one entry point a file, named as their twins on the CPU.
+//! [`reality_sim_core::backend::CpuBackend`] gives, from compute shaders through wgpu.
+//!
+//! | type | what |
+//! |---|---|
+//! | [`adapters`], [`AdapterSummary`] | the graphics adapters of this machine, and what they can do |
+//! | [`GpuContext`] | an open device |
+//! | [`GpuBackend`] | it, as a [`reality_sim_core::backend::Backend`] for all that computes |
+//! | [`GpuScorer`] | weights of poses, given a picture |
+//! | [`GpuFilter`] | the particle filter, one submission a frame |
+//! | [`GpuWarper`] | a picture drawn from others |
+//! | [`compare_scores`], [`compare_filters`], [`compare_warps`] | whether a device computes what the CPU does |
+//! | [`GpuError`] | what is missing or failed, and what helps |
+//!
+//! The shaders lie in `shaders/`, one entry point a file, named as their twins on the CPU. No window is needed. Units and
+//! frames are those of [`reality_sim_core::pose`].
+//!
+//! ```
+//! use std::sync::Arc;
+//!
+//! use reality_sim_core::backend::{Backend, CpuBackend};
+//! use reality_sim_gpu::{GpuBackend, GpuContext};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // The best adapter there is; without any the CPU does the same.
+//! let backend: Arc<dyn Backend> = match GpuContext::new(None) {
+//!     Ok(context) => Arc::new(GpuBackend::new(Arc::new(context))),
+//!     Err(error) => {
+//!         eprintln!("{error}");
+//!         Arc::new(CpuBackend)
+//!     }
+//! };
+//! let warper = backend.warper()?;
+//! # let _ = warper;
+//! # Ok(())
+//! # }
+//! ```
 
 mod backend;
 mod buffers;

@@ -1,16 +1,30 @@
-//! Recordings in which the camera, the hall or the odometry does something that the files beside the pictures know
-//! nothing of: what a search for missing effects is tested on.
+//! Recordings in which the camera, the hall or the odometry does something that the files beside the pictures know nothing
+//! of: what a search for missing effects is tested on.
 //!
-//! The pictures are made by casting rays, nine or more a pixel, and share no code with the models that are fitted:
-//! lens, rotations, field pattern, blur and noise are written here once more. Of the core only plain numbers and the
-//! writer of sequence folders are used.
+//! | type | what |
+//! |---|---|
+//! | [`Recipe`] | a recording from a seed: frames, size, hidden effects, walk |
+//! | [`Hidden`] | an effect with its size; [`LIBRARY`] and [`FOREIGN`] are the names of all |
+//! | [`Walk`] | what the robot does |
+//! | [`Random`] | numbers by seed |
+//! | [`Error`] | what cannot be recorded |
 //!
-//! ```no_run
+//! The pictures are made by casting rays, nine or more a pixel, and share no code with the models that are fitted: lens,
+//! rotations, field pattern, blur and noise are written here once more. Of the core only plain numbers and the writer of
+//! sequence folders are used. Metres, radians, seconds; the frames are those of the core's poses.
+//!
+//! ```
 //! use reality_sim_hidden::{Hidden, Random, Recipe};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let folder = tempfile::tempdir()?;
+//! # let folder = folder.path();
 //! let effect = Hidden::of("mount_pitch", 3.0, &mut Random::new(7))?;
-//! let recipe = Recipe { effects: vec![effect], ..Recipe::new(7) };
-//! let sequence = recipe.record("some/folder".as_ref())?;
-//! # Ok::<(), reality_sim_hidden::Error>(())
+//! let recipe = Recipe { effects: vec![effect], frames: 2, size: [160, 120], ..Recipe::new(7) };
+//! let sequence = recipe.record(folder)?;
+//! assert_eq!(sequence.frames.len(), 2);
+//! # Ok(())
+//! # }
 //! ```
 
 mod blur;

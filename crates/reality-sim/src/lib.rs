@@ -2,12 +2,26 @@
 //! are tagged with the pose of the camera, to about a centimetre, by a particle filter, and stored by pose; where none was
 //! recorded, one is reconstructed from its neighbours.
 //!
-//! This is the library's face. Camera models, fields, recordings and the filter are those of `reality_sim_core`, under
-//! their own names; [`db`] is the database, [`synthesis`] gives pictures from it, [`sensor`] draws them from the field's
-//! model. [`evaluation`] measures poses against a ground truth, [`probing`] pictures; [`overlay`], [`montage`] and
-//! [`coverage_chart`] draw.
+//! This is the library's face: the types most used under their own names, the rest in modules.
 //!
-//! Metres, radians and seconds everywhere; the unit is part of the name. The frames are those of [`pose`].
+//! | what | where |
+//! |---|---|
+//! | a recording, its camera, its field | [`Sequence`], [`Camera`], [`FieldDimensions`] |
+//! | where a camera is | [`CameraPose`], [`Pose2`] |
+//! | pictures by pose, in one file | [`db::Database`] |
+//! | the picture at a pose, from recorded ones | [`Archive`], [`Synthesizer`], [`synthesis`] |
+//! | the picture at a pose, from the field's model | [`sensor::Renderer`] |
+//! | what a model of the camera misses | [`gap`] |
+//! | poses against a ground truth; pictures against true ones | [`evaluation`]; [`probing`] |
+//! | drawings: poses in a picture, pictures side by side, coverage | [`overlay`], [`montage`], [`coverage_chart`] |
+//! | the parts of localization | [`preprocess`], [`observation`], [`filter`], [`search`], [`refine`] |
+//! | other devices | [`backend`]; with the feature `gpu` the module `gpu` |
+//!
+//! By default neither a window nor a graphics card is pulled in. The crates of public signatures are exported: [`glam`],
+//! [`image`], [`nalgebra`]; poses convert to nalgebra's isometries and back.
+//!
+//! Metres, radians and seconds everywhere; the unit is part of the name. The frames are those of [`pose`]: the world has its
+//! origin at the field's centre, x towards the opponent's goal and z up; a camera's x points right, y down, z into the scene.
 //!
 //! A recording becomes a database, and a simulator asks it for pictures:
 //!

@@ -1,42 +1,45 @@
-//! The simulated picture to compare real ones with: the field, its lines and goals in a plain hall, seen through the
-//! true lens from a camera's pose.
+//! The simulated picture to compare real ones with: the field, its lines and goals in a plain hall, seen through the true
+//! lens from a camera's pose.
 //!
-//! Light runs one way: world → motion → mount → lens → exposure → sensor → encoding; the odometry is beside it. Up to
-//! the encoding, light is linear RGB with 1 as full scale. Metres, radians and the frames of
+//! | type | what |
+//! |---|---|
+//! | [`Renderer`] | whole pictures, at a pose or while the camera moves |
+//! | [`Effect`], [`library()`] | a way in which a real camera differs from what is written down of it; all that are known |
+//! | [`Model`] | which effects there are and how large, as in `model.toml` |
+//! | [`Chain`] | a camera with its model, for points, light and motions one by one |
+//! | [`Trajectory`] | where the camera is at any time, between stamped poses |
+//! | [`Frame`] | one picture's points, row by row |
+//! | [`SceneColors`] | the colours of carpet, lines, goals and hall |
+//! | [`ModelError`], [`RenderError`], [`TrajectoryError`] | what cannot be read or drawn, and why |
+//!
+//! Light runs one way: world → motion → mount → lens → exposure → sensor → encoding, one [`Stage`] each; the odometry is
+//! beside it. Up to the encoding, light is linear RGB with 1 as full scale. Metres, radians, seconds and the frames of
 //! [`reality_sim_core::pose`] everywhere.
 //!
-//! Real cameras differ from what is written down of them. Each way in which they do is an [`Effect`] of one stage, a file
-//! in `effects/`; a [`Model`] (`model.toml`) says which of them are there and how large they are, and a [`Chain`] applies
-//! them: to points, to light and to motions one by one, and through a [`Renderer`] to whole pictures.
-//!
-//! ```no_run
-//! use reality_sim_core::sequence::Sequence;
-//! use reality_sim_sensor::{Renderer, SceneColors};
-//!
-//! let sequence = Sequence::open("assets/walk".as_ref())?;
-//! let colors = SceneColors::new(&sequence.setup, &sequence.field);
-//! let renderer = Renderer::new(&sequence.setup, &sequence.field, colors);
-//! let picture = renderer.draw(sequence.frames[0].reference_pose.expect("the walk has ground truth"))?;
-//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//! use reality_sim_core::sequence::Sequence;
+//! use reality_sim_sensor::{Model, Renderer, SceneColors, Trajectory, effect};
 //!
-//! With effects, while the camera moves:
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # std::env::set_current_dir("../..")?;
+//! let walk = Sequence::open("assets/walk".as_ref())?;
+//! let colors = SceneColors::new(&walk.setup, &walk.field);
+//! let nominal = Renderer::new(&walk.setup, &walk.field, colors);
+//! let pose = walk.frames[7].reference_pose.ok_or("the walk has reference poses")?;
+//! let picture = nominal.draw(pose)?;
+//! assert_eq!(picture.dimensions(), (640, 480));
 //!
-//! ```no_run
-//! # use reality_sim_core::sequence::Sequence;
-//! # let sequence = Sequence::open("assets/walk".as_ref())?;
-//! use reality_sim_sensor::{Model, Renderer, SceneColors, Trajectory};
-//!
-//! let poses: Vec<_> = sequence
-//!     .frames
-//!     .iter()
-//!     .filter_map(|frame| Some((frame.timestamp_s, frame.reference_pose?)))
-//!     .collect();
-//! let colors = SceneColors::new(&sequence.setup, &sequence.field);
-//! let model = Model::read("model.toml".as_ref())?;
-//! let renderer = Renderer::with_model(&sequence.setup, &sequence.field, colors, &model)?;
-//! let picture = renderer.draw_at(&Trajectory::new(&poses)?, poses[7].0, Some(1))?;
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! // The same while the camera moves, through a lens that darkens towards the corners.
+//! let vignetting = effect("vignetting").ok_or("the library has it")?;
+//! let model = Model::default().with(vignetting, [0.5]);
+//! let renderer = Renderer::with_model(&walk.setup, &walk.field, colors, &model)?;
+//! let poses: Vec<_> =
+//!     walk.frames.iter().filter_map(|frame| Some((frame.timestamp_s, frame.reference_pose?))).collect();
+//! let darker = renderer.draw_at(&Trajectory::new(&poses)?, poses[7].0, None)?;
+//! let green = |picture: &image::RgbImage| u32::from(picture.get_pixel(639, 479)[1]);
+//! assert!(green(&darker) < green(&picture));
+//! # Ok(())
+//! # }
 //! ```
 
 mod blur;

@@ -1,14 +1,58 @@
 //! A picture at a pose at which none was recorded, from those recorded around it.
 //!
-//! [`Archive`] opens a database, [`Synthesizer`] gives the picture at a pose by one of the methods:
+//! | type | what |
+//! |---|---|
+//! | [`Archive`] | a database opened for pictures: poses by nearness, pictures decoded last |
+//! | [`Synthesizer`] | the picture at a pose, for threads that share one |
+//! | [`SynthesisConfig`] | how many neighbours, how weighed, and when a picture is refused |
+//! | [`Reconstruction`] | a picture, the images it was made from, and how far each pixel can be trusted |
+//! | [`SynthesisError`] | why there is none |
+//! | [`measure_hall`] | where the walls around the field are |
 //!
-//! | method | what |
+//! A picture is made by one of these methods:
+//!
+//! | [`Method`] | what |
 //! |---|---|
 //! | [`Nearest`] | the nearest picture as it is |
 //! | [`Quadratic`] | the paper's Eq. 4: a polynomial of second order from the nearest picture's pixels to the target's |
-//! | [`Plane`] | one picture, exactly, through the ground plane and both lenses; goals and hall as in [`reality_sim_core::warp::Hull`] |
+//! | [`Plane`] | one picture, exactly, through the ground plane and both lenses; goals and hall as in [`reality_sim_core::warp`] |
 //! | [`Blend`] | several, each as by `Plane`, weighed pixel by pixel |
 //! | [`Auto`] | the recorded picture where there is one at the pose, else `Blend` |
+//!
+//! Pictures are RGB, 8 bits each, as a camera records them; units and frames are those of [`reality_sim_core::pose`].
+//!
+//! ```
+//! # use std::path::Path;
+//! use std::sync::Arc;
+//!
+//! use reality_sim_core::pose::Pose2;
+//! use reality_sim_synthesis::{Archive, Auto, Synthesizer};
+//! # use reality_sim_core::sequence::Sequence;
+//! # use reality_sim_db::{Database, PoseEstimate, PoseSource};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # std::env::set_current_dir("../..")?;
+//! # let folder = tempfile::tempdir()?;
+//! # let file = folder.path().join("walk.db");
+//! # let file = file.as_path();
+//! # let walk = Sequence::open(Path::new("assets/walk"))?;
+//! # let poses: Vec<_> = walk.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
+//! # Database::create_or_open(file)?.ingest(&walk, &poses, &PoseSource::GroundTruth, |_| ())?;
+//! // At most 256 MiB for decoded pictures.
+//! let archive = Arc::new(Archive::open(file, 256 << 20)?);
+//! let usual = archive.usual_pose();
+//! let simulator = Synthesizer::new(archive);
+//! let pose = usual.with_planar(Pose2::new(-2.3, 0.2, 1.6));
+//! let seen = simulator.image_at(pose, &Auto)?;
+//! assert!(seen.covered() > 0.9);
+//!
+//! // The same into a buffer of one's own.
+//! let mut pixels = vec![0; 3 * 640 * 480];
+//! simulator.image_into(pose, &Auto, &mut pixels)?;
+//! assert_eq!(pixels, seen.picture.as_raw().as_slice());
+//! # Ok(())
+//! # }
+//! ```
 
 mod archive;
 mod auto;

@@ -24,7 +24,7 @@ pub enum ViewerError {
     NoDisplay,
     /// Nothing that draws.
     #[error(
-        "viewer: no graphics driver can draw the window ({0}): install a Vulkan driver (on Debian and Ubuntu: apt-get install mesa-vulkan-drivers); `reality-sim doctor` lists those that are there"
+        "viewer: no graphics driver can draw the window ({0}): install a Vulkan driver (on Debian and Ubuntu: apt-get install mesa-vulkan-drivers)"
     )]
     NoGraphics(String),
     /// The display, or what is between it and us.

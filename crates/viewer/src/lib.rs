@@ -1,9 +1,28 @@
 //! Reality Sim in a window: the particle filter at work on a recording, a robot driven through recorded pictures, and where a
 //! camera's simulation and its pictures disagree.
 //!
-//! [`run`] opens the window; [`ViewerApp`] is what is in it, for tests and pictures without one. Nothing that takes longer than a
-//! frame runs in the window's thread: recordings are opened, poses found and pictures drawn by threads of their own, which send
-//! messages and ask for a repaint. While nothing happens nothing is drawn.
+//! | type | what |
+//! |---|---|
+//! | [`run`] | opens the window, and returns when it is closed |
+//! | [`ViewerOptions`] | what it shows first: a recording, a database, or a report of the gap |
+//! | [`Device`] | where filter and pictures can be computed, opened when it is chosen |
+//! | [`ViewerApp`] | what is in the window, for tests and pictures without one |
+//! | [`ViewerError`] | why there is no window |
+//!
+//! Nothing that takes longer than a frame runs in the window's thread: recordings are opened, poses found and pictures drawn
+//! by threads of their own, which send messages and ask for a repaint. While nothing happens nothing is drawn. Units and
+//! frames are those of [`reality_sim_core::pose`].
+//!
+//! ```no_run
+//! use std::sync::Arc;
+//!
+//! use reality_sim_core::backend::CpuBackend;
+//! use reality_sim_viewer::{Device, ViewerOptions, run};
+//!
+//! let processor = Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) };
+//! run(ViewerOptions { open: "assets/walk".into(), demonstration: None, devices: vec![processor] })?;
+//! # Ok::<(), reality_sim_viewer::ViewerError>(())
+//! ```
 
 mod app;
 mod background;
