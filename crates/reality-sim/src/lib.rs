@@ -100,3 +100,8 @@ pub use reality_sim_gap as gap;
 pub use reality_sim_sensor as sensor;
 pub use reality_sim_synthesis as synthesis;
 pub use reality_sim_synthesis::{Archive, Reconstruction, SynthesisError, Synthesizer};
+
+/// Compiles the examples of README.md.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct ReadmeExamples;
