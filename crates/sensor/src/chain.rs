@@ -9,9 +9,11 @@ use reality_sim_core::{
 };
 
 use crate::{
-    effect::{Noise, Stage, Tone},
+    effect::Stage,
     effects::{BLACK_LEVEL, library},
     model::{Model, ModelError, ModelFault, Used},
+    noise::Noise,
+    tone::Tone,
     trajectory::Trajectory,
 };
 

@@ -1,7 +1,11 @@
-//! What an effect is: something that real cameras and robots do and the nominal model leaves out.
+//! Effects: what real cameras and robots do and the nominal model leaves out.
 //!
 //! The simulated camera is a chain of stages. An effect changes one of them, by the hooks of that stage; its parameters
 //! say how much. At the neutral values every hook is the identity.
+
+mod about;
+mod estimates;
+mod parameter;
 
 use std::fmt::Debug;
 
@@ -12,233 +16,24 @@ use reality_sim_core::{
     pose::{CameraPose, Motion2},
 };
 
-/// The stages of the simulated camera, in the order in which light passes them; the odometry is beside them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Stage {
-    /// The field and the light on it.
-    World,
-    /// Where the camera is while each row is exposed.
-    Motion,
-    /// How the camera sits on the robot.
-    Mount,
-    /// Which ray reaches which pixel, how much of it and how sharp.
-    Lens,
-    /// How much light is collected.
-    Exposure,
-    /// Light to the sensor's linear output.
-    Sensor,
-    /// Linear output to pixel values.
-    Encoding,
-    /// The motion that the robot believes it made.
-    Odometry,
-}
+pub use self::{
+    about::{About, Changes, Covariate, Need, Opposite, Stage},
+    estimates::Estimates,
+    parameter::{Growth, Parameter, Role},
+};
+use crate::{noise::Noise, tone::Tone};
 
-impl Stage {
-    /// All, in their order.
-    pub const ALL: [Self; 8] = [
-        Self::World,
-        Self::Motion,
-        Self::Mount,
-        Self::Lens,
-        Self::Exposure,
-        Self::Sensor,
-        Self::Encoding,
-        Self::Odometry,
-    ];
-}
-
-/// What a parameter is for when it is fitted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Role {
-    /// The size of the effect: decides whether it is there.
-    Size,
-    /// Changes the effect's form, and alone decides nothing.
-    Shape,
-    /// Given by the recording, never fitted.
-    Fixed,
-}
-
-/// How the effect grows with the parameter near its neutral value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Growth {
-    /// In proportion.
-    Linear,
-    /// With the square, as a blur does: fitted as its square, never negative.
-    Square,
-}
-
-/// What an effect shows itself against: where in the picture, where on the field, when, in which motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Covariate {
-    /// Distance from the principal point.
-    Radius,
-    /// Row of the picture.
-    Row,
-    /// Place in the picture.
-    Pixel,
-    /// Direction from the camera.
-    Bearing,
-    /// Distance from the camera.
-    Range,
-    /// Place on the field.
-    FieldPosition,
-    /// How fast the camera turns.
-    AngularRate,
-    /// How fast the camera moves.
-    Speed,
-    /// How bright a place is.
-    Intensity,
-    /// Time since the recording's start.
-    Time,
-    /// Red, green or blue.
-    Color,
-    /// The frame as a whole.
-    Frame,
-}
-
-/// One number of an effect.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Parameter {
-    /// With its unit as suffix, where it has one: `pitch_rad`. The key in `model.toml`.
-    pub name: &'static str,
-    /// `rad`, `m`, `s`, `px`, `EV`; `1` for a plain number.
-    pub unit: &'static str,
-    /// Where the effect vanishes.
-    pub neutral: f64,
-    /// What is plausible, ends included.
-    pub range: [f64; 2],
-    /// A small change, for derivatives.
-    pub step: f64,
-    /// The least size worth caring about; 0 where it is no size.
-    pub material: f64,
-    /// What it is for when it is fitted.
-    pub role: Role,
-    /// How the effect grows with it.
-    pub growth: Growth,
-}
-
-impl Parameter {
-    /// The size of an effect that grows in proportion and vanishes at 0.
-    pub const fn size(name: &'static str, unit: &'static str, range: [f64; 2], material: f64) -> Self {
-        let (neutral, step) = (0.0, 0.5 * material);
-        Self { name, unit, neutral, range, step, material, role: Role::Size, growth: Growth::Linear }
-    }
-
-    /// The size of an effect that grows with the square from 0.
-    pub const fn square(name: &'static str, unit: &'static str, largest: f64, material: f64) -> Self {
-        let size = Self::size(name, unit, [0.0, largest], material);
-        Self { step: material, growth: Growth::Square, ..size }
-    }
-
-    /// What changes an effect's form, 0 for the plain one.
-    pub const fn shape(name: &'static str, unit: &'static str, range: [f64; 2], step: f64) -> Self {
-        let size = Self::size(name, unit, range, 0.0);
-        Self { step, role: Role::Shape, ..size }
-    }
-
-    /// What the recording gives.
-    pub const fn fixed(name: &'static str, unit: &'static str) -> Self {
-        let range = [f64::NEG_INFINITY, f64::INFINITY];
-        Self { role: Role::Fixed, ..Self::shape(name, unit, range, 1e-3) }
-    }
-}
-
-/// Noise of a linear value `v` that the sensor puts out: its variance is `shot · v + read_variance`.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Noise {
-    /// Variance for each unit of the linear value.
-    pub shot: f64,
-    /// Variance without light.
-    pub read_variance: f64,
-}
-
-impl Noise {
-    /// Variance of a linear value's noise; none below 0.
-    pub fn variance(self, linear: f64) -> f64 {
-        self.shot * linear.max(0.0) + self.read_variance
-    }
-}
-
-/// From a linear value `v` to the encoded `e`, both 0 to 1: `e = v^(1/gamma)`, then
-/// `e + contrast · e (1 − e) (2e − 1)`, cut off at 0 and 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tone {
-    /// Above 0.
-    pub gamma: f64,
-    /// 0 for a plain power; above it the curve is steeper in the middle.
-    pub contrast: f64,
-}
-
-impl Tone {
-    /// The encoded value, 0 to 1; linear values outside 0 to 1 are cut off.
-    pub fn encode(self, linear: f64) -> f64 {
-        let encoded = linear.clamp(0.0, 1.0).powf(1.0 / self.gamma);
-        let bend = self.contrast * encoded * (1.0 - encoded) * (2.0 * encoded - 1.0);
-        (encoded + bend).clamp(0.0, 1.0)
-    }
-}
-
-/// What is known of an effect before any data.
-#[derive(Debug, Clone, Copy)]
-pub struct About {
-    /// See [`Effect::id`].
-    pub id: &'static str,
-    /// See [`Effect::name`].
-    pub name: &'static str,
-    /// See [`Effect::stage`].
-    pub stage: Stage,
-    /// See [`Effect::parameters`].
-    pub parameters: &'static [Parameter],
-    /// See [`Effect::covariates`].
-    pub covariates: &'static [Covariate],
-    /// See [`Effect::because`].
-    pub because: &'static str,
-    /// See [`Effect::recording_that_would_decide`].
-    pub recording_that_would_decide: &'static str,
-}
-
-/// One effect: what it is called, what it can be, and its forward model.
+/// One effect: what is known of it, its words, and its forward model.
 ///
-/// The hooks take the values `p` in the order of [`Effect::parameters`]; values missing at the end are 0. Each hook is
+/// The hooks take the values `p` in the order of [`About::parameters`]; values missing at the end are 0. Each hook is
 /// the identity unless the effect has its own. A [`Chain`](crate::Chain) calls the hooks of the effect's stage only.
 pub trait Effect: Sync + Debug {
     /// What is known of it.
     fn about(&self) -> &'static About;
 
-    /// Name in files: `vignetting`.
-    fn id(&self) -> &'static str {
-        self.about().id
-    }
-
-    /// What happens, in plain words: "the lens darkens towards the corners".
-    fn name(&self) -> &'static str {
-        self.about().name
-    }
-
-    /// The stage that it changes.
-    fn stage(&self) -> Stage {
-        self.about().stage
-    }
-
-    /// Its numbers.
-    fn parameters(&self) -> &'static [Parameter] {
-        self.about().parameters
-    }
-
-    /// In what its signature shows.
-    fn covariates(&self) -> &'static [Covariate] {
-        self.about().covariates
-    }
-
-    /// Its signature, as one clause: "lines and carpet darken towards the corners, with the distance from …".
-    fn because(&self) -> &'static str {
-        self.about().because
-    }
-
-    /// What to record so that it can be seen: "walk with quick turns of the head".
-    fn recording_that_would_decide(&self) -> &'static str {
-        self.about().recording_that_would_decide
-    }
+    /// Its size in words, with 95 % intervals: "at the corner 42 % of the light is lost (± 1 %)". `None` where one of its
+    /// numbers is missing.
+    fn size(&self, estimates: &Estimates<'_>) -> Option<String>;
 
     /// World: the field as it is, from what is written down of it.
     fn field(&self, _p: &[f64], field: FieldDimensions) -> FieldDimensions {
@@ -315,6 +110,61 @@ pub trait Effect: Sync + Debug {
     /// Odometry: the motion that the odometry reports for a true one that took this long.
     fn odometry(&self, _p: &[f64], motion: Motion2, _duration_s: f64) -> Motion2 {
         motion
+    }
+}
+
+impl dyn Effect + '_ {
+    /// See [`About::id`].
+    pub fn id(&self) -> &'static str {
+        self.about().id
+    }
+
+    /// See [`About::name`].
+    pub fn name(&self) -> &'static str {
+        self.about().name
+    }
+
+    /// See [`About::because`].
+    pub fn because(&self) -> &'static str {
+        self.about().because
+    }
+
+    /// See [`About::stage`].
+    pub fn stage(&self) -> Stage {
+        self.about().stage
+    }
+
+    /// See [`About::parameters`].
+    pub fn parameters(&self) -> &'static [Parameter] {
+        self.about().parameters
+    }
+
+    /// See [`About::covariates`].
+    pub fn covariates(&self) -> &'static [Covariate] {
+        self.about().covariates
+    }
+
+    /// See [`About::recording_that_would_decide`].
+    pub fn recording_that_would_decide(&self) -> &'static str {
+        self.about().recording_that_would_decide
+    }
+
+    /// Its size in words; where one of its numbers is missing, "name = value ± sigma" of each that there is.
+    pub fn size_in_words(&self, estimates: &Estimates<'_>) -> String {
+        self.size(estimates).unwrap_or_else(|| estimates.listed())
+    }
+
+    /// Its name and signature in the direction of these estimates: those of [`About::opposite`] where they are negative.
+    pub fn name_and_signature(&self, estimates: &Estimates<'_>) -> (&'static str, &'static str) {
+        match self.about().opposite {
+            Some(opposite) if estimates.is_negative() => (opposite.name, opposite.because),
+            _ => (self.name(), self.because()),
+        }
+    }
+
+    /// A size of a parameter of it: "0.080°", "3.1 %", "k1 = 0.0031".
+    pub fn limit_in_words(&self, parameter: &str, value: f64) -> String {
+        self.about().unit.limit_in_words(parameter, value)
     }
 }
 

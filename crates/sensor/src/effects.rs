@@ -1,4 +1,5 @@
-//! The library of effects, one file each.
+//! The library of effects, one file each: its forward model, what it needs and changes, and its words. Nothing else knows it
+//! but its place here.
 
 mod adjustments;
 mod black_level;
@@ -14,6 +15,7 @@ mod mount_roll;
 mod odometry_lateral_slip;
 mod odometry_scale;
 mod odometry_yaw_drift;
+mod phrases;
 mod principal_point;
 mod radial_distortion;
 mod rolling_shutter;
@@ -27,7 +29,7 @@ mod white_balance;
 use crate::effect::Effect;
 
 /// In the order in which a chain applies those of one stage.
-const LIBRARY: [&dyn Effect; 22] = [
+const LIBRARY: &[&dyn Effect] = &[
     &field_dimensions::FieldSize,
     &uneven_illumination::UnevenIllumination,
     &time_offset::TimeOffset,
@@ -57,7 +59,7 @@ pub(crate) const BLACK_LEVEL: &dyn Effect = &black_level::BlackLevel;
 
 /// Every effect that is known, in the order of the stages.
 pub fn library() -> &'static [&'static dyn Effect] {
-    &LIBRARY
+    LIBRARY
 }
 
 /// The effect with this id; `None` for one that is not known.

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::effect::Tone;
+use crate::tone::Tone;
 
 /// A pixel value is full scale times what the tone curve makes of the linear value, rounded.
 #[derive(Debug, Clone, Copy)]

@@ -54,8 +54,11 @@ mod lens;
 mod light;
 mod model;
 mod motion;
+mod noise;
 mod renderer;
 mod sensor;
+pub mod text;
+mod tone;
 mod trajectory;
 mod view;
 mod world;
@@ -63,11 +66,13 @@ mod world;
 pub use self::{
     chain::Chain,
     colors::SceneColors,
-    effect::{About, Covariate, Effect, Growth, Noise, Parameter, Role, Stage, Tone},
+    effect::{About, Changes, Covariate, Effect, Estimates, Growth, Need, Opposite, Parameter, Role, Stage},
     effect_index::EffectIndex,
     effects::{effect, library},
     frame::Frame,
     model::{Model, ModelError, ModelFault, Used},
+    noise::Noise,
     renderer::{RenderError, Renderer},
+    tone::Tone,
     trajectory::{Trajectory, TrajectoryError, Twist},
 };

@@ -1,6 +1,6 @@
 //! How large an effect that was not found would have to be to be found, and which cannot be seen at all.
 
-use reality_sim_sensor::{Effect, EffectIndex, Stage};
+use reality_sim_sensor::{Effect, EffectIndex, Need, Stage};
 
 use crate::{
     inference::effect_test::{ALPHA, EffectTests},
@@ -86,34 +86,34 @@ fn unobservable(reason: &str, remedy: &str, by_recording: bool) -> NotFound {
 
 /// What an effect needs and the recording's files do not have, and how to add it.
 fn missing_input(recording: &Recording<'_>, effect: &dyn Effect) -> Option<[&'static str; 2]> {
-    let sequence = recording.sequence;
-    let photometric = matches!(effect.stage(), Stage::Exposure | Stage::Sensor | Stage::Encoding)
-        || ["vignetting", "uneven_illumination"].contains(&effect.id());
-    let photometry = sequence.setup.photometry;
-    let noise = photometry.is_some_and(|p| p.noise_shot.is_some() || p.noise_read.is_some());
-    let sharpness = photometry.is_some_and(|p| p.psf_sigma_px.is_some());
-    if effect.stage() == Stage::Odometry && sequence.frames.iter().all(|frame| frame.odometry.is_none()) {
-        Some([
+    let missing = effect.about().needs.iter().find(|need| !provides(recording, **need))?;
+    Some(match missing {
+        Need::Odometry => [
             "there is no odometry in frames.csv",
             "write odometry_x_m, odometry_y_m and odometry_yaw_rad into frames.csv",
-        ])
-    } else if photometric && recording.scene.is_none() {
-        Some([
+        ],
+        Need::NominalReflectance => [
             "nothing in camera.toml says how bright lines and carpet are",
             "write line_linear_rgb and carpet_linear_rgb into [photometry] of camera.toml",
-        ])
-    } else if effect.id() == "sensor_noise" && !noise {
-        Some([
+        ],
+        Need::NominalNoise => [
             "nothing in camera.toml says how much noise to expect",
             "write noise_shot and noise_read into [photometry] of camera.toml",
-        ])
-    } else if ["defocus", "motion_blur"].contains(&effect.id()) && !sharpness {
-        Some([
+        ],
+        Need::NominalSharpness => [
             "nothing in camera.toml says how sharp the picture should be",
             "write psf_sigma_px into [photometry] of camera.toml",
-        ])
-    } else {
-        None
+        ],
+    })
+}
+
+fn provides(recording: &Recording<'_>, need: Need) -> bool {
+    let photometry = recording.sequence.setup.photometry;
+    match need {
+        Need::Odometry => recording.sequence.frames.iter().any(|frame| frame.odometry.is_some()),
+        Need::NominalReflectance => recording.scene.is_some(),
+        Need::NominalNoise => photometry.is_some_and(|p| p.noise_shot.is_some() || p.noise_read.is_some()),
+        Need::NominalSharpness => photometry.is_some_and(|p| p.psf_sigma_px.is_some()),
     }
 }
 

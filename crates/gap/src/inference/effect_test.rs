@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 use rayon::prelude::*;
-use reality_sim_sensor::{Covariate, EffectIndex, Stage};
+use reality_sim_sensor::{Covariate, EffectIndex};
 
 use crate::{
     inference::evidence::{Evidence, Gain, HeldOut, two_sided},
@@ -326,13 +326,9 @@ fn best_of(tests: [Option<f64>; 3]) -> f64 {
     made.clone().count() as f64 * made.fold(1.0, |least: f64, p_value| least.min(*p_value))
 }
 
-/// Whether one of these effects is another thing at another time: a course in pictures, not a rate.
+/// Whether one of these effects varies over time.
 fn changes_over_time(effects: &[EffectIndex]) -> bool {
-    let changes = |effect: EffectIndex| {
-        let effect = effect.effect();
-        effect.stage() != Stage::Odometry && effect.covariates().contains(&Covariate::Time)
-    };
-    effects.iter().any(|&effect| changes(effect))
+    effects.iter().any(|effect| effect.effect().about().varies_over_time)
 }
 
 /// Where a model is, in the columns' coordinates.
@@ -349,14 +345,5 @@ mod tests {
         assert_eq!(best_of([Some(0.25), None, None]), 0.25);
         assert_eq!(best_of([Some(0.25), Some(0.125), None]), 0.25);
         assert_eq!(best_of([Some(0.25), Some(0.125), Some(0.5)]), 0.375);
-    }
-
-    #[test]
-    fn only_the_exposures_course_is_another_thing_at_another_time() {
-        let changing: Vec<&str> = EffectIndex::all()
-            .filter(|&effect| changes_over_time(&[effect]))
-            .map(|effect| effect.effect().id())
-            .collect();
-        assert_eq!(changing, ["exposure_drift"]);
     }
 }

@@ -3,7 +3,7 @@
 use nalgebra::Vector6;
 use rayon::prelude::*;
 use reality_sim_core::{pose::Motion2, sequence::SequenceError};
-use reality_sim_sensor::{Chain, Model, ModelError, Stage};
+use reality_sim_sensor::{Chain, Changes, Model, ModelError};
 
 use crate::{
     linear_model::column::ColumnIndex,
@@ -136,18 +136,17 @@ impl Linear<'_> {
             }
         };
         for (index, (column, shifted)) in self.columns.iter().zip(&self.shifted).enumerate() {
-            if column.effect().stage() == Stage::Odometry {
-                let changes = about.and_then(|about| self.odometry_change(shifted, frame, about));
+            let changes = column.effect().about().changes;
+            if changes == Changes::Odometry {
+                let step = about.and_then(|about| self.odometry_change(shifted, frame, about));
                 // Behind all that was seen in the picture.
-                for (part, change) in changes.into_iter().flatten().enumerate() {
+                for (part, change) in step.into_iter().flatten().enumerate() {
                     put(index, rows.len() - STEP + part, change);
                 }
                 continue;
             }
-            // Noise moves the mean of dark places a little: too little to be told from anything else.
-            let noise_only = column.effect().id() == "sensor_noise";
             for (row, (then, now)) in expect(&shifted.chain).iter().zip(&now).enumerate() {
-                if !noise_only || rows[row].quantity == Quantity::NoiseVariance {
+                if changes != Changes::Noise || rows[row].quantity == Quantity::NoiseVariance {
                     put(index, row, (then - now) / shifted.step);
                 }
             }

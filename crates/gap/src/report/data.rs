@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use reality_sim_core::field::FieldDimensions;
+use reality_sim_sensor::effect;
 use serde::{Deserialize, Serialize};
 
 use crate::{inference::held_out::ChannelGap, report::text};
@@ -111,12 +112,11 @@ pub struct NotFoundReport {
 impl NotFoundReport {
     /// The limit as a person says it: "0.08°", "4.0 ms".
     pub fn limit_in_words(&self) -> String {
-        text::limit_in_words(
-            &self.id,
-            &self.parameter,
-            self.detection_limit.value,
-            &self.detection_limit.unit,
-        )
+        let Limit { value, unit } = &self.detection_limit;
+        match effect(&self.id) {
+            Some(effect) => effect.limit_in_words(&self.parameter, *value),
+            None => format!("{} = {} {unit}", self.parameter, text::digits(*value, 2)),
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DVector;
-use reality_sim_sensor::{EffectIndex, Model};
+use reality_sim_sensor::{EffectIndex, Estimates, Model, text::Uncertain};
 
 use crate::{
     diagnostics::dynamic_objects::moving,
@@ -207,8 +207,10 @@ fn effect_report(
             )
         })
         .collect();
-    let plain: Vec<(&'static str, f64, f64)> =
-        estimates.iter().map(|(name, estimate)| (*name, estimate.value, estimate.sigma)).collect();
+    let uncertain: Vec<(&'static str, Uncertain)> = estimates
+        .iter()
+        .map(|(name, Estimate { value, sigma, .. })| (*name, Uncertain { value: *value, sigma: *sigma }))
+        .collect();
     let correlation = |one: &str, other: &str| {
         let column = |name: &str| {
             let mut columns = naming.columns_of(&[case.effect]).into_iter();
@@ -218,11 +220,12 @@ fn effect_report(
         both.map_or(0.0, |(one, other)| naming.evidence.correlation(&case.fit, [one, other]))
     };
     let rivals = found.rivals(case.effect);
-    let (name, because) = text::directed(effect, &plain);
+    let in_words = Estimates::new(&uncertain, &correlation);
+    let (name, because) = effect.name_and_signature(&in_words);
     EffectReport {
         id: effect.id().to_owned(),
         name: name.to_owned(),
-        size: text::size_in_words(effect.id(), &plain, &correlation),
+        size: effect.size_in_words(&in_words),
         parameters: estimates.into_iter().map(|(name, estimate)| (name.to_owned(), estimate)).collect(),
         p_value: found.p_value(case),
         held_out_gain: gain(case.gain),

@@ -3,7 +3,10 @@
 //! The gain is 2 to the power of `ev`, which runs in straight lines between twelve knots, spread evenly from the
 //! recording's start to its end; before and after, it stays as it is there.
 
-use crate::effect::{About, Covariate, Effect, Parameter, Stage, values};
+use crate::{
+    effect::{About, Changes, Covariate, Effect, Estimates, Need, Parameter, Stage, values},
+    text::{Uncertain, Unit, percent},
+};
 
 /// Spread evenly over the recording.
 const KNOTS: usize = 12;
@@ -22,6 +25,11 @@ pub(super) struct ExposureDrift;
 const ABOUT: About = About {
     id: "exposure_drift",
     name: "the exposure changes during the recording",
+    because: "whole frames are brighter or darker than others, everywhere in the picture and in all colours alike",
+    opposite: None,
+    noun: "a change of the exposure",
+    rank: 60,
+    unit: Unit::ExposureValues,
     stage: Stage::Exposure,
     parameters: &[
         Parameter::fixed("from_s", "s"),
@@ -40,13 +48,33 @@ const ABOUT: About = About {
         knot("ev_12"),
     ],
     covariates: &[Covariate::Time, Covariate::Frame, Covariate::Intensity],
-    because: "whole frames are brighter or darker than others, everywhere in the picture and in all colours alike",
+    needs: &[Need::NominalReflectance],
+    changes: Changes::Pictures,
+    varies_over_time: true,
     recording_that_would_decide: "look at the same places of the field again and again over the whole recording",
 };
 
 impl Effect for ExposureDrift {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn size(&self, estimates: &Estimates<'_>) -> Option<String> {
+        let knots: Vec<Uncertain> = estimates
+            .finite()
+            .filter(|(name, _)| name.starts_with("ev_"))
+            .map(|(_, estimate)| estimate)
+            .collect();
+        let by_value = |a: &&Uncertain, b: &&Uncertain| a.value.total_cmp(&b.value);
+        let (darkest, brightest) = (knots.iter().min_by(by_value)?, knots.iter().max_by(by_value)?);
+        let (value, sigma) = (brightest.value - darkest.value, brightest.sigma.hypot(darkest.sigma));
+        let range = Uncertain { value, sigma }.in_unit(Unit::ExposureValues);
+        Some(format!(
+            "the brightest moment has {} more light than the darkest, {}{}",
+            percent(value.exp2() - 1.0),
+            range.signed(),
+            range.interval()
+        ))
     }
 
     fn gain(&self, p: &[f64], time_s: f64) -> [f64; 3] {

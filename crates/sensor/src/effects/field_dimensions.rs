@@ -4,7 +4,11 @@
 
 use reality_sim_core::field::FieldDimensions;
 
-use crate::effect::{About, Covariate, Effect, Parameter, Stage, values};
+use super::phrases::outstanding;
+use crate::{
+    effect::{About, Changes, Covariate, Effect, Estimates, Parameter, Stage, values},
+    text::{Uncertain, Unit},
+};
 
 /// Longer fields are a mistake, metres.
 const LARGEST_M: f64 = 200.0;
@@ -17,6 +21,11 @@ pub(super) struct FieldSize;
 const ABOUT: About = About {
     id: "field_dimensions",
     name: "the field is not as large as written down",
+    because: "some lines lie beside where they should be, by the same distance on the ground from wherever they are seen",
+    opposite: None,
+    noun: "a field of another size",
+    rank: 90,
+    unit: Unit::Centimeters,
     stage: Stage::World,
     parameters: &[
         Parameter::size("length_m", "m", [-1.0, 1.0], 0.005),
@@ -26,13 +35,34 @@ const ABOUT: About = About {
         Parameter::size("center_circle_diameter_m", "m", [-1.0, 1.0], 0.005),
     ],
     covariates: &[Covariate::FieldPosition],
-    because: "some lines lie beside where they should be, by the same distance on the ground from wherever they are seen",
+    needs: &[],
+    changes: Changes::Pictures,
+    varies_over_time: false,
     recording_that_would_decide: "look at every line of the field, near ones above all, from several sides",
 };
 
 impl Effect for FieldSize {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn size(&self, estimates: &Estimates<'_>) -> Option<String> {
+        let parts = [
+            ("length_m", "the field is", ["longer", "shorter"]),
+            ("width_m", "the field is", ["wider", "narrower"]),
+            ("goal_area_length_m", "the goal areas are", ["deeper", "less deep"]),
+            ("goal_area_width_m", "the goal areas are", ["wider", "narrower"]),
+            ("center_circle_diameter_m", "the centre circle is", ["wider", "narrower"]),
+        ];
+        let known: Vec<_> = parts
+            .into_iter()
+            .filter_map(|(name, subject, words)| Some(((subject, words), estimates.get(name)?)))
+            .collect();
+        let text = |((subject, words), change): ((&str, [&str; 2]), Uncertain)| {
+            format!("{subject} {}", change.in_unit(Unit::Centimeters).with_direction(words))
+        };
+        let texts: Vec<String> = outstanding(&known).into_iter().map(text).collect();
+        (!texts.is_empty()).then(|| texts.join(", "))
     }
 
     fn field(&self, p: &[f64], field: FieldDimensions) -> FieldDimensions {

@@ -3,7 +3,10 @@
 //! `delay = readout · (row − ½) + reference`, with the row from 0, the top one, to 1. The reference says which row the
 //! time stamp belongs to: 0 is the middle one, half the readout the first.
 
-use crate::effect::{About, Covariate, Effect, Parameter, Stage, values};
+use crate::{
+    effect::{About, Changes, Covariate, Effect, Estimates, Parameter, Stage, values},
+    text::Unit,
+};
 
 #[derive(Debug)]
 pub(super) struct RollingShutter;
@@ -11,13 +14,20 @@ pub(super) struct RollingShutter;
 const ABOUT: About = About {
     id: "rolling_shutter",
     name: "the rows of a picture are exposed one after the other",
+    because: "lines are shifted in proportion to their row and to how fast the camera turns",
+    opposite: None,
+    noun: "a rolling shutter",
+    rank: 30,
+    unit: Unit::Milliseconds,
     stage: Stage::Motion,
     parameters: &[
         Parameter::size("readout_s", "s", [-0.1, 0.1], 0.003),
         Parameter::shape("reference_s", "s", [-0.1, 0.1], 0.001),
     ],
     covariates: &[Covariate::Row, Covariate::AngularRate, Covariate::Speed],
-    because: "lines are shifted in proportion to their row and to how fast the camera turns",
+    needs: &[],
+    changes: Changes::Pictures,
+    varies_over_time: false,
     recording_that_would_decide: "walk with quick turns of the head, with lines in the upper and lower part of the picture",
 };
 
@@ -26,8 +36,29 @@ impl Effect for RollingShutter {
         &ABOUT
     }
 
+    fn size(&self, estimates: &Estimates<'_>) -> Option<String> {
+        let readout = estimates.get("readout_s")?.in_unit(Unit::Milliseconds);
+        let way = if readout.number.value < 0.0 {
+            "from the bottom to the top"
+        } else {
+            "from the top to the bottom"
+        };
+        let stamp = row_of_time_stamp(estimates, readout.number.value)
+            .map_or_else(String::new, |row| format!("; the time stamp is that of {row} row"));
+        Some(format!("{way} within {}{}{stamp}", readout.size(), readout.interval()))
+    }
+
     fn delay_s(&self, p: &[f64], row: f64) -> f64 {
         let [readout_s, reference_s] = values(p);
         readout_s * (row - 0.5) + reference_s
     }
+}
+
+/// Where the row without delay is, if that is known.
+fn row_of_time_stamp(estimates: &Estimates<'_>, readout_ms: f64) -> Option<&'static str> {
+    let reference = estimates.get("reference_s").filter(|reference| reference.stands_out())?;
+    let row = 0.5 - 1e3 * reference.value / readout_ms;
+    let fifth = (5.0 * row).clamp(0.0, 4.0) as usize;
+    let is_near = readout_ms != 0.0 && (-0.1..=1.1).contains(&row);
+    is_near.then(|| ["the top", "an upper", "the middle", "a lower", "the bottom"][fifth])
 }

@@ -3,7 +3,10 @@
 //! `falloff = 1 − strength ρ² − shape ρ² (ρ² − 1) − bend ρ² (ρ² − 1) (2 ρ² − 1)`: an even polynomial of the sixth degree, as
 //! Goldman and Chen (2005) fit falloffs, in a basis in which shape and bend leave the corner and the middle as they are.
 
-use crate::effect::{About, Covariate, Effect, Parameter, Stage, values};
+use crate::{
+    effect::{About, Changes, Covariate, Effect, Estimates, Need, Parameter, Stage, values},
+    text::Unit,
+};
 
 /// Some light reaches every pixel.
 const DARKEST: f64 = 0.02;
@@ -14,6 +17,11 @@ pub(super) struct Vignetting;
 const ABOUT: About = About {
     id: "vignetting",
     name: "the lens darkens towards the corners",
+    because: "lines and carpet darken towards the corners, with the distance from the image centre, in every frame",
+    opposite: None,
+    noun: "a loss of light at the corners",
+    rank: 10,
+    unit: Unit::Percent,
     stage: Stage::Lens,
     parameters: &[
         Parameter::size("strength", "1", [0.0, 0.95], 0.03),
@@ -21,13 +29,20 @@ const ABOUT: About = About {
         Parameter::shape("bend", "1", [-0.4, 0.4], 0.01),
     ],
     covariates: &[Covariate::Radius, Covariate::Intensity],
-    because: "lines and carpet darken towards the corners, with the distance from the image centre, in every frame",
+    needs: &[Need::NominalReflectance],
+    changes: Changes::Pictures,
+    varies_over_time: false,
     recording_that_would_decide: "bring the same places of the field into the middle of the picture and into its corners",
 };
 
 impl Effect for Vignetting {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn size(&self, estimates: &Estimates<'_>) -> Option<String> {
+        let lost = estimates.get("strength")?.in_unit(Unit::Percent);
+        Some(format!("at the corner {} of the light is lost{}", lost.signed(), lost.interval()))
     }
 
     fn falloff(&self, p: &[f64], radius: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! Places in the picture and on the field.
 
-use super::number::rounded;
+use reality_sim_sensor::text::rounded;
 
 /// Where a cell of the picture's grid lies, cells counted from the upper left: "left of the middle, in the lower part".
 pub(crate) fn picture_place(cell: (i32, i32), grid: [usize; 2]) -> String {

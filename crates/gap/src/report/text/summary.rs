@@ -1,12 +1,9 @@
 //! The verdict in a sentence.
 
-use reality_sim_sensor::{Model, Role, effect};
+use reality_sim_sensor::{Model, Role, effect, text::percent};
 
-use super::{
-    names::{limit_in_words, noun},
-    number::{amount, closed, percent},
-};
-use crate::report::data::{EffectReport, Gap, Limit, NotFoundReport, Unexplained, Unobservable, Verdict};
+use super::number::{amount, closed};
+use crate::report::data::{EffectReport, Gap, NotFoundReport, Unexplained, Unobservable, Verdict};
 
 /// As many limits are named where nothing was found.
 const LIMITS: usize = 3;
@@ -181,14 +178,12 @@ fn not_judged(findings: Findings<'_>) -> Option<String> {
 
 /// "a loss of light at the corners from 3.0 % on and …".
 fn shown_from(not_found: &[NotFoundReport]) -> Option<String> {
-    let mut limits: Vec<(usize, String)> = not_found
+    let mut limits: Vec<(u32, String)> = not_found
         .iter()
-        .filter(|effect| effect.detection_limit.value.is_finite())
-        .filter_map(|effect| {
-            let (rank, noun) = noun(&effect.id)?;
-            let Limit { value, unit } = &effect.detection_limit;
-            let limit = limit_in_words(&effect.id, &effect.parameter, *value, unit);
-            Some((rank, format!("{noun} from {limit} on")))
+        .filter(|report| report.detection_limit.value.is_finite())
+        .filter_map(|report| {
+            let about = effect(&report.id)?.about();
+            Some((about.rank, format!("{} from {} on", about.noun, report.limit_in_words())))
         })
         .collect();
     limits.sort();
