@@ -1,6 +1,6 @@
-//! The sensor puts out a value without light.
+//! Black level: the sensor puts out a value without light.
 //!
-//! `offset + (1 − offset) · v`: full scale stays full scale.
+//! The output for a linear value `v` is `offset + (1 − offset) · v`: full scale stays full scale.
 
 use crate::{
     effect::{About, Changes, Covariate, Effect, Estimates, Need, Opposite, Parameter, Stage, values},

@@ -1,4 +1,4 @@
-//! The camera is higher or lower than its mount says.
+//! Camera height: the camera is higher or lower above the ground than its mount says.
 
 use reality_sim_core::pose::CameraPose;
 

@@ -1,6 +1,6 @@
-//! The lens magnifies red and blue other than green.
+//! Lateral chromatic aberration: the lens magnifies red and blue differently from green.
 //!
-//! Red and blue are magnified about the principal point by 1 + scale.
+//! Red and blue are magnified about the principal point by `1 + scale`.
 
 use super::phrases::against_green;
 use crate::{

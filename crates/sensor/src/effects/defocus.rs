@@ -1,6 +1,6 @@
-//! The lens is not in focus.
+//! Defocus: the lens is out of focus.
 //!
-//! The blur is Gaussian; its variance adds to that of the nominal point spread function.
+//! The blur is a Gaussian of standard deviation `sigma_px`; its variance adds to that of the nominal point spread function.
 
 use super::phrases::plain;
 use crate::{

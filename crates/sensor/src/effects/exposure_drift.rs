@@ -1,4 +1,4 @@
-//! The camera's exposure changes during the recording.
+//! Exposure drift: the camera's exposure changes during the recording.
 //!
 //! The gain is 2 to the power of `ev`, which runs in straight lines between twelve knots, spread evenly from the
 //! recording's start to its end; before and after, it stays as it is there.

@@ -1,6 +1,6 @@
-//! The field is not as large as its rule book says.
+//! Field dimensions: the field is not as large as its rule book says.
 //!
-//! What is added to each dimension. Values that would leave no valid field are cut off.
+//! The values are added to the dimensions, and clamped where they would leave no valid field.
 
 use reality_sim_core::field::FieldDimensions;
 

@@ -1,4 +1,4 @@
-//! The lens magnifies more or less than its calibration says.
+//! Focal length: the lens magnifies more or less than its calibration says.
 
 use reality_sim_core::camera::{Camera, InvalidCamera};
 

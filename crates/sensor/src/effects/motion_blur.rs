@@ -1,4 +1,4 @@
-//! The camera moves while a row is exposed.
+//! Motion blur: the camera moves while a row is exposed.
 //!
 //! A pixel's value is the mean of the light over the exposure, whose middle is the row's time.
 

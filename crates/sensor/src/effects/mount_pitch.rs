@@ -1,4 +1,4 @@
-//! The camera looks lower or higher than its mount says.
+//! Mount pitch: the camera looks lower or higher than its mount says.
 //!
 //! The camera is turned about its own x axis after the nominal orientation: the optical axis turns down.
 

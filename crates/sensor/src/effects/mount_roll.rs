@@ -1,4 +1,4 @@
-//! The camera is turned about its optical axis.
+//! Mount roll: the camera is turned about its optical axis.
 //!
 //! The camera is turned about its own z axis after the nominal orientation: x turns towards y.
 

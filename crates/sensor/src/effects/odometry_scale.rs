@@ -1,4 +1,6 @@
-//! The robot walks farther than its odometry says.
+//! Odometry scale: the odometry reports longer or shorter steps than the robot's.
+//!
+//! `forward` and `left` are reported times `1 + scale`.
 
 use reality_sim_core::pose::Motion2;
 

@@ -1,4 +1,6 @@
-//! The odometry turns while the robot does not.
+//! Yaw drift: the odometry turns while the robot does not.
+//!
+//! `turn += rate · duration`.
 
 use reality_sim_core::pose::Motion2;
 

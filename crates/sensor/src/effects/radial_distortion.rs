@@ -1,7 +1,8 @@
-//! The lens bends straight lines more or less than its calibration says.
+//! Radial distortion: the lens bends straight lines more or less than its calibration says.
 //!
-//! The numbers are added to those of the lens model: k₁ … k₄ of `OPENCV_FISHEYE`, k₁ … k₃ of `OPENCV`. A pinhole becomes
-//! an `OPENCV` camera.
+//! The coefficients are added to those of the lens model: k₁ … k₄ of `OPENCV_FISHEYE` (Kannala and Brandt, "A generic
+//! camera model", PAMI 2006), k₁ … k₃ of `OPENCV` (Brown and Conrady: Brown, "Close-range camera calibration", 1971). A
+//! pinhole becomes an `OPENCV` camera.
 
 use reality_sim_core::camera::{Camera, Distortion, InvalidCamera, Opencv, OpencvFisheye};
 

@@ -1,4 +1,4 @@
-//! The sensor's rows are read one after the other.
+//! Rolling shutter: the sensor's rows are exposed one after the other.
 //!
 //! `delay = readout · (row − ½) + reference`, with the row from 0, the top one, to 1. The reference says which row the
 //! time stamp belongs to: 0 is the middle one, half the readout the first.

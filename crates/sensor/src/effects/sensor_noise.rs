@@ -1,6 +1,7 @@
-//! The sensor is noisier or quieter than its data sheet says.
+//! Sensor noise: the sensor is noisier or quieter than its data sheet says.
 //!
-//! What is added to `noise_shot` and to the square of `noise_read`; what falls below 0 is 0.
+//! The values are added to `noise_shot` and to the square of `noise_read`, the two terms of Poisson–Gaussian noise
+//! ([`Noise`]); sums below 0 are taken as 0.
 
 use crate::{
     effect::{About, Changes, Covariate, Effect, Estimates, Need, Opposite, Parameter, Stage, values},

@@ -1,4 +1,4 @@
-//! The robot's clock is not the clock of the reference poses.
+//! Time offset: the robot's clock is not the clock of the reference poses.
 //!
 //! Images and odometry are taken this much after the time of the reference pose with the same time stamp.
 

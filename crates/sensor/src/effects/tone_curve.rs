@@ -1,6 +1,6 @@
-//! The camera turns light into pixel values by another curve.
+//! Tone curve: the camera turns light into pixel values by another curve.
 //!
-//! What is added to the gamma, and an S-shaped bend of the curve; see [`Tone`].
+//! `gamma_change` is added to the gamma, `contrast` to the S-shaped bend of the curve ([`Tone`]).
 
 use super::phrases::outstanding;
 use crate::{

@@ -1,4 +1,4 @@
-//! Lamps light some parts of the field more than others.
+//! Uneven illumination: lamps light some parts of the field more than others.
 //!
 //! The light's logarithm is a polynomial of the third degree of the place on the field, in units of half the field's
 //! length and width, without a constant: that would be the exposure.

@@ -1,4 +1,4 @@
-//! Red and blue are amplified other than green.
+//! White balance: red and blue are amplified differently from green, by `1 + gain`.
 
 use super::phrases::against_green;
 use crate::{
