@@ -1,9 +1,9 @@
 //! Which package may use which: the library must stay usable without a GPU, without a window and without what only a
-//! program needs.
+//! program needs. And what its packages hold.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
-use std::{collections::BTreeMap, process::Command};
+use std::{collections::BTreeMap, path::Path, process::Command};
 
 use serde_json::Value;
 
@@ -124,4 +124,19 @@ fn the_graphics_card_comes_under_the_library_with_its_feature_but_no_window_does
     for forbidden in ["winit", "egui"].iter().chain(&PROGRAM) {
         assert!(!names.iter().any(|name| name == forbidden), "{forbidden} is under {LIBRARY}");
     }
+}
+
+/// Shaders lie outside of the package that is built from them, which reaches them through a link.
+#[test]
+fn every_shader_is_in_the_package_that_is_built_from_it() {
+    let list = cargo(&["package", "--list", "--allow-dirty", "--package", "reality-sim-gpu"]);
+    let packed = |name: &str| list.lines().any(|line| Path::new(line) == Path::new("shaders").join(name));
+    let shaders = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders")).unwrap();
+    let mut count = 0;
+    for entry in shaders.map(Result::unwrap).filter(|entry| entry.file_type().unwrap().is_file()) {
+        let name = entry.file_name().into_string().unwrap();
+        assert!(packed(&name), "{name} is not in the package");
+        count += 1;
+    }
+    assert!(count > 10 && packed("shared/camera.wgsl"), "{list}");
 }

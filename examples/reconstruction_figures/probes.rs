@@ -9,7 +9,7 @@ use reality_sim::{
     db::coverage::Coverage,
     evaluation::percentile,
     montage::grid,
-    probing::{Judged, MethodReport, judge, names},
+    probing::{MethodReport, ProbeResult, compare_methods, names},
     sensor::{Renderer, SceneColors},
     sequence::{save_image, write_atomically},
     synthesis::Blend,
@@ -26,22 +26,22 @@ pub fn write(walk: &Sequence, probes: &Sequence, text: &mut String) -> anyhow::R
     let (_folder, synthesizer) = synthesizer(walk)?;
     let renderer = Renderer::new(&probes.setup, &walk.field, SceneColors::new(&probes.setup, &walk.field));
     let camera = &probes.setup.camera;
-    let mut judged: Vec<Judged> = Vec::new();
+    let mut results: Vec<ProbeResult> = Vec::new();
     let mut lines: BTreeMap<&str, Lines> = BTreeMap::new();
     for (frame, pose) in probes.reference_poses().enumerate() {
         let Some(pose) = pose else { continue };
-        let probe = judge(&synthesizer, &renderer, frame, pose, probes.load_image(frame)?)?;
+        let probe = compare_methods(&synthesizer, &renderer, frame, pose, probes.load_image(frame)?)?;
         lines.entry("true picture").or_default().add(&probe.truth, camera, &walk.field, pose);
         for (name, outcome) in &probe.outcomes {
             lines.entry(name).or_default().add(&outcome.picture, camera, &walk.field, pose);
         }
-        judged.push(probe);
+        results.push(probe);
     }
     coverage(walk, &synthesizer)?;
-    table(&judged, lines, text)?;
-    judged.sort_by(|a, b| a.distance_px.partial_cmp(&b.distance_px).unwrap_or(std::cmp::Ordering::Equal));
-    pictures(&judged, text)?;
-    provenance(&synthesizer, probes, &judged, text)
+    table(&results, lines, text)?;
+    results.sort_by(|a, b| a.distance_px.partial_cmp(&b.distance_px).unwrap_or(std::cmp::Ordering::Equal));
+    pictures(&results, text)?;
+    provenance(&synthesizer, probes, &results, text)
 }
 
 /// Where the walk was recorded, and how far the next picture is.
@@ -53,7 +53,7 @@ fn coverage(walk: &Sequence, synthesizer: &Synthesizer) -> anyhow::Result<()> {
     Ok(write_atomically(&Path::new(IMAGES).join("coverage.svg"), svg.as_bytes())?)
 }
 
-fn table(judged: &[Judged], mut lines: BTreeMap<&str, Lines>, text: &mut String) -> anyhow::Result<()> {
+fn table(results: &[ProbeResult], mut lines: BTreeMap<&str, Lines>, text: &mut String) -> anyhow::Result<()> {
     text.push_str(
         "\nMeans over all probes; lines: median of how far a line lies from where the true pose puts it, and the 95th \
          percentile, of lines found within 8 px, and the share found; time: median of one picture with decoded neighbours.\n\n\
@@ -70,7 +70,7 @@ fn table(judged: &[Judged], mut lines: BTreeMap<&str, Lines>, text: &mut String)
     };
     writeln!(text, "| true picture | | | | {} | | |", lines("true picture"))?;
     for name in names() {
-        let report = MethodReport::new(name, judged);
+        let report = MethodReport::new(name, results);
         let shown = |value: Option<f64>, digits: usize| {
             value.map_or("–".to_owned(), |value| format!("{value:.digits$}"))
         };
@@ -89,8 +89,9 @@ fn table(judged: &[Judged], mut lines: BTreeMap<&str, Lines>, text: &mut String)
 }
 
 /// True picture and those of all methods, for probes spread evenly from the one with the nearest neighbour on.
-fn pictures(judged: &[Judged], text: &mut String) -> anyhow::Result<()> {
-    let chosen: Vec<&Judged> = (0..SHOWN).map(|i| &judged[i * (judged.len() - 1) / (SHOWN - 1)]).collect();
+fn pictures(results: &[ProbeResult], text: &mut String) -> anyhow::Result<()> {
+    let chosen: Vec<&ProbeResult> =
+        (0..SHOWN).map(|i| &results[i * (results.len() - 1) / (SHOWN - 1)]).collect();
     let missing = RgbImage::from_pixel(4, 3, image::Rgb([128; 3]));
     let rows: Vec<Vec<RgbImage>> = chosen
         .iter()
@@ -117,10 +118,10 @@ fn pictures(judged: &[Judged], text: &mut String) -> anyhow::Result<()> {
 fn provenance(
     synthesizer: &Synthesizer,
     probes: &Sequence,
-    judged: &[Judged],
+    results: &[ProbeResult],
     text: &mut String,
 ) -> anyhow::Result<()> {
-    let probe = &judged[judged.len() / 2];
+    let probe = &results[results.len() / 2];
     let Some(pose) = probes.frames[probe.frame].reference_pose else { return Ok(()) };
     let made = synthesizer.image_at(pose, &Blend)?;
     let trust = image::DynamicImage::from(made.trust_picture()).into_rgb8();

@@ -10,7 +10,7 @@ use serde::Serialize;
 use reality_sim::{
     Archive, CameraPose, Sequence,
     montage::grid,
-    probing::{Judged, MethodReport, Outcome, judge, names},
+    probing::{MethodReport, Outcome, ProbeResult, compare_methods, names},
     sensor::{Renderer, SceneColors},
     sequence::{save_image, write_atomically},
 };
@@ -74,22 +74,22 @@ pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
     let with_truth = probes.reference_poses().enumerate().filter_map(|(frame, pose)| Some((frame, pose?)));
     let with_truth: Vec<(usize, CameraPose)> = with_truth.collect();
     let progress = frame_progress(with_truth.len())?;
-    let mut judged = Vec::new();
+    let mut results = Vec::new();
     for (frame, pose) in with_truth {
         let truth = probes.load_image(frame)?;
-        let probe = judge(&synthesizer, &renderer, frame, pose, truth)
+        let probe = compare_methods(&synthesizer, &renderer, frame, pose, truth)
             .inspect_err(|_| progress.finish_and_clear())?;
         if let Some(folder) = &args.pictures {
             save_image(&folder.join(format!("{frame:06}.png")), &side_by_side(&probe))?;
         }
-        judged.push(Judged { truth: RgbImage::default(), ..without_pictures(probe) });
+        results.push(ProbeResult { truth: RgbImage::default(), ..without_pictures(probe) });
         progress.inc(1);
     }
     progress.finish_and_clear();
     if let Some(file) = &args.details {
-        write_atomically(file, details_csv(&judged).as_bytes())?;
+        write_atomically(file, details_csv(&results).as_bytes())?;
     }
-    let report = Report::new(args, &archive, &judged);
+    let report = Report::new(args, &archive, &results);
     if args.json { print_json(&report) } else { print(&report.text()) }
 }
 
@@ -115,7 +115,7 @@ fn check_outputs(args: &EvaluateArgs, probes: &Sequence) -> anyhow::Result<()> {
 }
 
 /// True picture first; grey where a method has no answer.
-fn side_by_side(probe: &Judged) -> RgbImage {
+fn side_by_side(probe: &ProbeResult) -> RgbImage {
     let missing = RgbImage::from_pixel(probe.truth.width(), probe.truth.height(), image::Rgb([128; 3]));
     let of = |name| probe.outcomes.get(name).map_or(&missing, |outcome| &outcome.picture).clone();
     let pictures: Vec<RgbImage> = std::iter::once(probe.truth.clone()).chain(names().map(of)).collect();
@@ -124,15 +124,15 @@ fn side_by_side(probe: &Judged) -> RgbImage {
 }
 
 /// Pictures of all probes would fill the memory.
-fn without_pictures(mut probe: Judged) -> Judged {
+fn without_pictures(mut probe: ProbeResult) -> ProbeResult {
     probe.outcomes.values_mut().for_each(|outcome| outcome.picture = RgbImage::default());
     probe
 }
 
-fn details_csv(judged: &[Judged]) -> String {
+fn details_csv(results: &[ProbeResult]) -> String {
     let mut csv = String::from("frame,distance_px,method,psnr_db,psnr_field_db,ssim,milliseconds,covered\n");
     let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-    for Judged { frame, distance_px, outcomes, .. } in judged {
+    for ProbeResult { frame, distance_px, outcomes, .. } in results {
         for name in names() {
             let Some(outcome) = outcomes.get(name) else { continue };
             let Outcome { psnr_db, psnr_field_db, ssim, milliseconds, covered, .. } = outcome;
@@ -150,16 +150,16 @@ fn details_csv(judged: &[Judged]) -> String {
 }
 
 impl Report {
-    fn new(args: &EvaluateArgs, archive: &Archive, judged: &[Judged]) -> Self {
+    fn new(args: &EvaluateArgs, archive: &Archive, results: &[ProbeResult]) -> Self {
         Self {
             database: args.database.display().to_string(),
-            probes: judged.len(),
-            probes_in_database: judged
+            probes: results.len(),
+            probes_in_database: results
                 .iter()
                 .filter(|probe| probe.distance_px.is_some_and(|px| px < 1e-3))
                 .count(),
             images: archive.images().len(),
-            methods: names().map(|name| (name, MethodReport::new(name, judged))).collect(),
+            methods: names().map(|name| (name, MethodReport::new(name, results))).collect(),
         }
     }
 

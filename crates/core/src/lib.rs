@@ -12,7 +12,7 @@
 //! | particles: motion, weights, resampling, estimate | [`filter::ParticleFilter`], [`filter::FilterConfig`] |
 //! | an exhaustive search of the field | [`search::GlobalSearch`] |
 //! | sub-pixel fits with covariance, whole trajectories | [`refine::Refiner`], [`refine::smooth_trajectory`] |
-//! | all of it together, picture by picture | [`localization`] |
+//! | all of it together, picture by picture | [`localization::Localizer`], [`localization::Observation`] |
 //! | a picture drawn from others | [`warp::Warper`], [`warp::blend`] |
 //! | the devices that compute | [`backend::Backend`], [`backend::CpuBackend`] |
 //!

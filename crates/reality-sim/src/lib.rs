@@ -8,6 +8,7 @@
 //! |---|---|
 //! | a recording, its camera, its field | [`Sequence`], [`Camera`], [`FieldDimensions`] |
 //! | where a camera is | [`CameraPose`], [`Pose2`] |
+//! | where a camera was, picture by picture, live or from a recording | [`Localizer`], [`Observation`], [`LocalizedFrame`] |
 //! | pictures by pose, in one file | [`db::Database`] |
 //! | the picture at a pose, from recorded ones | [`Archive`], [`Synthesizer`], [`synthesis`] |
 //! | the picture at a pose, from the field's model | [`sensor::Renderer`] |

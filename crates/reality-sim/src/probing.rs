@@ -38,7 +38,7 @@ pub struct Outcome {
 
 /// A probe, and the outcome of each method that answered.
 #[derive(Debug, Clone)]
-pub struct Judged {
+pub struct ProbeResult {
     /// Number of the probe.
     pub frame: usize,
     /// From the nearest recorded picture, root mean square pixels.
@@ -68,13 +68,13 @@ pub struct MethodReport {
 
 /// Makes the picture at a pose by every method and compares it with the one really taken there, which is in the size of the
 /// synthesizer's camera. Methods that refuse have no outcome.
-pub fn judge(
+pub fn compare_methods(
     synthesizer: &Synthesizer,
     renderer: &Renderer,
     frame: usize,
     pose: CameraPose,
     truth: RgbImage,
-) -> Result<Judged, ProbingError> {
+) -> Result<ProbeResult, ProbingError> {
     let mask = Mask::carpet(synthesizer.camera(), pose, synthesizer.archive().field());
     let grey = luma(&truth);
     let compare = |picture: RgbImage, milliseconds: f64, covered: Option<f64>| {
@@ -100,10 +100,10 @@ pub fn judge(
     let (drawn, milliseconds) = timed(|| renderer.draw(pose))?;
     outcomes.extend(compare(drawn, milliseconds, None).map(|outcome| (SIMULATED, outcome)));
     let distance_px = synthesizer.nearest(pose, 1).ok().map(|nearest| nearest[0].distance_px);
-    Ok(Judged { frame, distance_px, truth, outcomes })
+    Ok(ProbeResult { frame, distance_px, truth, outcomes })
 }
 
-/// A probe that cannot be judged.
+/// Why a probe has no result.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProbingError {
@@ -128,8 +128,8 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 
 impl MethodReport {
     /// For the method of this name.
-    pub fn new(name: &str, judged: &[Judged]) -> Self {
-        let outcomes: Vec<&Outcome> = judged.iter().filter_map(|probe| probe.outcomes.get(name)).collect();
+    pub fn new(name: &str, results: &[ProbeResult]) -> Self {
+        let outcomes: Vec<&Outcome> = results.iter().filter_map(|probe| probe.outcomes.get(name)).collect();
         let values =
             |of: fn(&Outcome) -> Option<f64>| outcomes.iter().filter_map(|outcome| of(outcome)).collect();
         let mean =
@@ -142,7 +142,7 @@ impl MethodReport {
             ssim: mean(values(|outcome| outcome.ssim)),
             milliseconds: percentile(&times, 0.5),
             covered: mean(values(|outcome| outcome.covered)),
-            answered: outcomes.len() as f64 / judged.len().max(1) as f64,
+            answered: outcomes.len() as f64 / results.len().max(1) as f64,
         }
     }
 }

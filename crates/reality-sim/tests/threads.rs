@@ -1,8 +1,8 @@
 //! What may go from thread to thread, and what threads share, checked when this is compiled.
 
 use reality_sim::{
-    Archive, Camera, CameraPose, FieldDimensions, Pose2, Reconstruction, Sequence, SequenceError,
-    SynthesisError, Synthesizer,
+    Archive, Camera, CameraPose, FieldDimensions, LocalizationError, LocalizedFrame, Localizer,
+    LocalizerConfig, Pose2, Reconstruction, Sequence, SequenceError, SynthesisError, Synthesizer,
     db::{Database, DbError, ImageRecord, PoseEstimate, PoseSource, index::PoseIndex},
     sensor::{Chain, Model, ModelError, Renderer, Trajectory},
     synthesis::SynthesisConfig,
@@ -17,6 +17,10 @@ const _: () = {
     shared::<FieldDimensions>();
     shared::<Sequence>();
     shared::<SequenceError>();
+    shared::<Localizer>();
+    shared::<LocalizerConfig>();
+    shared::<LocalizedFrame>();
+    shared::<LocalizationError>();
     shared::<Database>();
     shared::<DbError>();
     shared::<ImageRecord>();

@@ -80,7 +80,7 @@ pub use self::{
     nearest::Nearest,
     plane::{Blend, Plane},
     quadratic::Quadratic,
-    reconstruction::{ORIGIN_HUES, Reconstruction, Used},
+    reconstruction::{ORIGIN_HUES, Reconstruction, UsedImage},
     synthesizer::{SynthesisConfig, Synthesizer},
 };
 

@@ -19,7 +19,7 @@ pub const ORIGIN_HUES: [[u8; 3]; MAX_SOURCES] = [
 
 /// A recorded image that a reconstruction was made from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Used {
+pub struct UsedImage {
     /// Which, of [`crate::Archive::images`].
     pub image: ImageIndex,
     /// How far the picture moves from it to the pose asked for, root mean square pixels.
@@ -36,7 +36,7 @@ pub struct Reconstruction {
     /// The method's name.
     pub method: &'static str,
     /// The images it was made from.
-    pub used: Vec<Used>,
+    pub used: Vec<UsedImage>,
     /// For every pixel, row by row, which of `used` it came from, and how far it can be trusted.
     pub origins: Vec<Origin>,
 }
@@ -54,7 +54,7 @@ impl Reconstruction {
         origins.iter().for_each(|origin| counts[usize::from(origin.source)] += 1);
         let seen = origins.len() - counts[usize::from(Origin::OUTSIDE)];
         let share = |source: usize| counts[source] as f64 / seen.max(1) as f64;
-        let used = images.enumerate().map(|(source, (image, distance_px))| Used {
+        let used = images.enumerate().map(|(source, (image, distance_px))| UsedImage {
             image,
             distance_px,
             share: share(source),

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use reality_sim::{Archive, Reconstruction, synthesis::Used};
+use reality_sim::{Archive, Reconstruction, synthesis::UsedImage};
 
 use crate::commands::output::aligned;
 
@@ -34,7 +34,7 @@ pub struct UsedReport {
 /// Which pictures one was made from.
 pub fn used(archive: &Archive, reconstruction: &Reconstruction) -> anyhow::Result<Vec<UsedReport>> {
     let names = archive.database().sequences()?;
-    let report = |used: &Used| {
+    let report = |used: &UsedImage| {
         let record = &archive.images()[used.image as usize];
         UsedReport {
             sequence: names.get(&record.sequence_id).cloned().unwrap_or_default(),

@@ -8,7 +8,7 @@ use eframe::egui::{
 use glam::DVec2;
 use reality_sim_core::pose::{CameraPose, Pose2};
 use reality_sim_db::coverage::{Coverage, CoverageCell, FAR_PX, shade_srgb};
-use reality_sim_synthesis::{ORIGIN_HUES, Used};
+use reality_sim_synthesis::{ORIGIN_HUES, UsedImage};
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -139,7 +139,7 @@ pub struct Scene<'a> {
     pub layers: Layers,
     pub around: Option<&'a Around>,
     /// The images that a picture is made of.
-    pub used: &'a [Used],
+    pub used: &'a [UsedImage],
     /// Which picture.
     pub used_by: &'static str,
     pub probes: Option<&'a Probes>,

@@ -17,7 +17,7 @@ use reality_sim_core::{
 use reality_sim_db::index::Neighbour;
 use reality_sim_sensor::{Renderer, SceneColors};
 use reality_sim_synthesis::{
-    Archive, Reconstruction, SynthesisConfig, Synthesizer, Used,
+    Archive, Reconstruction, SynthesisConfig, Synthesizer, UsedImage,
     quality::{Mask, psnr_db},
 };
 
@@ -92,7 +92,7 @@ pub struct Facts {
     /// The share of the pixels that some recorded image shows; `None` where it is not made of such.
     pub covered: Option<f64>,
     /// The images that it was made of.
-    pub used: Vec<Used>,
+    pub used: Vec<UsedImage>,
     /// How like the true picture it is over the carpet, PSNR, dB, where there is one at the pose.
     pub likeness_db: Option<f64>,
     /// The frame that it is, where it is a true one.
