@@ -11,6 +11,7 @@ mod recording;
 pub mod report;
 #[cfg(test)]
 mod testing;
+mod thresholds;
 mod workflow;
 
 pub use self::{

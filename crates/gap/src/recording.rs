@@ -11,22 +11,18 @@ use reality_sim_core::{
 use reality_sim_sensor::{Trajectory, TrajectoryError};
 
 use crate::{
-    linear_model::prediction::NominalReflectance, linear_model::residual::Step,
+    linear_model::prediction::NominalReflectance,
+    linear_model::residual::Step,
     linear_model::system::ReferenceKind,
+    thresholds::{RecordingThresholds, Thresholds},
 };
 
+const THRESHOLDS: RecordingThresholds = Thresholds::DEFAULT.recording;
+
 /// Fewer frames than this tell nothing: a quarter of them is kept for judging.
-pub const LEAST_FRAMES: usize = 12;
-/// More frames than this are not looked at, but every so many are taken.
-const MOST_FRAMES: usize = 240;
-/// Poses nearer than this show one view.
-const SAME_VIEW_M: f64 = 0.025;
-/// And turned by less than this.
-const SAME_VIEW_RAD: f64 = 0.02;
+pub const LEAST_FRAMES: usize = THRESHOLDS.least_frames;
 /// With fewer views than this nothing can be told.
-pub(crate) const LEAST_VIEWS: usize = 8;
-/// Odometry between frames farther apart than this is not compared, seconds.
-const LONGEST_STEP_S: f64 = 0.6;
+pub(crate) const LEAST_VIEWS: usize = THRESHOLDS.least_views;
 
 /// Why a recording cannot be compared with a model.
 #[derive(Debug, thiserror::Error)]
@@ -127,7 +123,7 @@ impl<'a> Recording<'a> {
         let way: Vec<(f64, CameraPose)> = posed.iter().map(|&(_, time_s, pose)| (time_s, pose)).collect();
         let trajectory =
             Trajectory::new(&way).map_err(|source| RecordingError::Trajectory { name: name(), source })?;
-        let every = posed.len().div_ceil(MOST_FRAMES);
+        let every = posed.len().div_ceil(THRESHOLDS.most_frames);
         let frame = |&(index, time_s, _): &(usize, f64, CameraPose)| Frame {
             index,
             time_s,
@@ -165,7 +161,7 @@ impl<'a> Recording<'a> {
             .sum::<f64>();
         let turned =
             poses.iter().map(|pose| first.planar().motion_to(pose.planar()).turn_rad.abs()).sum::<f64>();
-        far / count > 0.05 || turned / count > 0.05
+        far / count > THRESHOLDS.moves_m || turned / count > THRESHOLDS.moves_rad
     }
 
     pub(crate) fn gamma(&self) -> f64 {
@@ -210,7 +206,7 @@ fn is_same_view(a: &CameraPose, b: CameraPose) -> bool {
     let turned = a.rotation_world_from_camera().transpose() * b.rotation_world_from_camera();
     let turned_rad =
         (0.5 * (turned.x_axis.x + turned.y_axis.y + turned.z_axis.z - 1.0)).clamp(-1.0, 1.0).acos();
-    moved_m < SAME_VIEW_M && turned_rad < SAME_VIEW_RAD
+    moved_m < THRESHOLDS.same_view_m && turned_rad < THRESHOLDS.same_view_rad
 }
 
 /// What the camera's file tells of lines and carpet.
@@ -226,6 +222,6 @@ fn scene(sequence: &Sequence) -> Option<NominalReflectance> {
 fn step(sequence: &Sequence, index: usize) -> Option<Step> {
     let (from, to) = (&sequence.frames[index], sequence.frames.get(index + 1)?);
     let (before, after): (Pose2, Pose2) = (from.odometry?, to.odometry?);
-    (to.timestamp_s - from.timestamp_s <= LONGEST_STEP_S)
+    (to.timestamp_s - from.timestamp_s <= THRESHOLDS.longest_step_s)
         .then_some(Step { until_s: to.timestamp_s, odometry: before.motion_to(after) })
 }

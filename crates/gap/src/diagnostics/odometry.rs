@@ -8,7 +8,7 @@ use reality_sim_core::pose::Motion2;
 
 use crate::{
     diagnostics::residual_patterns::Residuals,
-    inference::evidence::sum_of,
+    inference::gain::sum_of,
     inference::model_error::ModelError,
     inference::split::stretch,
     linear_model::odometry_steps::around,

@@ -2,11 +2,12 @@
 
 use crate::{
     diagnostics::residual_patterns::Residuals,
-    inference::effect_test::ALPHA,
-    inference::evidence::{sum_of, two_sided},
+    inference::gain::sum_of,
+    inference::hypothesis_test::two_sided,
     measurement::quantity::{Channel, ColorChannel, Quantity},
     measurement::scalar::Measurement,
     report::data::Unexplained,
+    thresholds::Thresholds,
 };
 
 /// Bands into which a picture is cut, along its rows and along its columns.
@@ -41,7 +42,7 @@ pub(crate) fn bands(frames: &[Residuals<'_>]) -> Option<Unexplained> {
     let count = frames.len() as f64;
     let size = (sum.value.max(0.0) / count).sqrt();
     let p_value = two_sided(sum.value / sum.sigma.max(1e-12), count - 1.0);
-    (size > MATERIAL && p_value < ALPHA).then(|| Unexplained {
+    (size > MATERIAL && p_value < Thresholds::DEFAULT.inference.significance).then(|| Unexplained {
         channel: Channel::Photometry.name().to_owned(),
         r#where: "bands along the rows that differ from picture to picture, as of lamps that flicker"
             .to_owned(),
@@ -157,7 +158,7 @@ mod tests {
         let found = with_pictures(|frame, place| rolling(frame, place.y), bands).unwrap();
         // A sine's root mean square.
         assert!((found.size - 0.07).abs() < 0.015, "{}", found.size);
-        assert!(found.p_value.unwrap() < ALPHA);
+        assert!(found.p_value.unwrap() < Thresholds::DEFAULT.inference.significance);
     }
 
     #[test]

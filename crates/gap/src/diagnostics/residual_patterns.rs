@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 use glam::{DMat2, DVec2};
 
 use crate::{
-    inference::evidence::{Gain, sum_of, two_sided},
+    inference::gain::{Gain, sum_of},
+    inference::hypothesis_test::two_sided,
     inference::model_error::ModelError,
     inference::split::stretch,
     linear_model::system::median,

@@ -3,14 +3,14 @@
 use reality_sim_sensor::{Effect, EffectIndex, Need, Stage};
 
 use crate::{
-    inference::effect_test::{ALPHA, EffectTests},
-    inference::evidence::student_quantile,
+    inference::effect_test::EffectTests,
+    inference::hypothesis_test::student_quantile,
     linear_model::column::ColumnIndex,
     recording::{LEAST_VIEWS, Recording},
+    thresholds::{InferenceThresholds, Thresholds},
 };
 
-/// The limit is where an effect is found in nine recordings of ten.
-const POWER: f64 = 0.9;
+const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
 
 /// An effect that was not found.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,8 +72,8 @@ fn limit_of(naming: &EffectTests<'_>, column: ColumnIndex, all: &[EffectIndex]) 
     }
     let tests = naming.effects().len() as f64;
     let degrees = naming.evidence.degrees() as f64;
-    let sure = student_quantile(1.0 - ALPHA / (2.0 * tests), degrees);
-    let coordinate = (sure + student_quantile(POWER, degrees)) * sigma;
+    let sure = student_quantile(1.0 - THRESHOLDS.significance / (2.0 * tests), degrees);
+    let coordinate = (sure + student_quantile(THRESHOLDS.power, degrees)) * sigma;
     let parameter = naming.columns[column.0].parameter();
     let value = naming.columns[column.0].size(coordinate).max(parameter.material);
     let reach = (parameter.range[1] - parameter.neutral).max(parameter.neutral - parameter.range[0]);
@@ -176,9 +176,12 @@ mod tests {
         assert_eq!(limits.len(), 200);
         let limit = limits.iter().sum::<f64>() / 200.0;
         let size = pitch().coordinate(limit);
-        let found = (0..400).filter(|&seed| limit_and_p(1000 + seed, 2.0, size).1 < ALPHA).count();
+        let found =
+            (0..400).filter(|&seed| limit_and_p(1000 + seed, 2.0, size).1 < THRESHOLDS.significance).count();
         assert!((320..=396).contains(&found), "{found} of 400 at {limit}");
-        let half = (0..400).filter(|&seed| limit_and_p(1000 + seed, 2.0, 0.4 * size).1 < ALPHA).count();
+        let half = (0..400)
+            .filter(|&seed| limit_and_p(1000 + seed, 2.0, 0.4 * size).1 < THRESHOLDS.significance)
+            .count();
         assert!(half < 160, "{half} of 400 well below it");
     }
 

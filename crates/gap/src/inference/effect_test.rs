@@ -1,46 +1,29 @@
-//! Which effects are missing: one after the other is added while the frames that a fit has not seen get more likely.
+//! Tests of single effects: whether one is supported by the frames that are fitted, beside others.
 
 use nalgebra::DVector;
 use rayon::prelude::*;
 use reality_sim_sensor::{Covariate, EffectIndex};
 
 use crate::{
-    inference::evidence::{Evidence, Gain, HeldOut, two_sided},
+    inference::cross_validation::FoldKind,
+    inference::evidence::Evidence,
+    inference::gain::{Gain, HeldOutGains},
+    inference::hypothesis_test::two_sided,
     linear_model::column::ColumnIndex,
     linear_model::parameters::FittedParameter,
     linear_model::reduced_equations::Fit,
-    recording::LEAST_VIEWS,
+    thresholds::{InferenceThresholds, Thresholds},
 };
 
-/// Sizes that matter are no chance below this.
-const LARGE_BY_CHANCE: f64 = 0.05;
-/// An effect is named where it is this unlikely to be chance, corrected for all effects tested.
-pub(crate) const ALPHA: f64 = 0.005;
-/// And where its gain on unseen frames is this many standard deviations above zero.
-pub(crate) const LEAST_SCORE: f64 = 2.5;
-/// And is at least this large: a factor of fifty in likelihood.
-const LEAST_GAIN: f64 = 4.0;
-/// An effect this unlikely to be chance is looked at beside others.
-const CONSPICUOUS: f64 = 0.05;
-/// No more of them are.
-const MOST_LEADS: usize = 3;
-/// Parameters of an effect with no more sizes than this are tried one by one, too.
-const TRIED_ALONE: usize = 12;
-/// Effects whose gains are this many standard deviations of their difference apart can be told apart.
-pub(crate) const TELLS_APART: f64 = 2.5;
+const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
 
-/// An effect that gains this part of what the best one does, and leaves nothing for it to add, may be the right one.
-const STANDS_FOR: f64 = 0.4;
-/// No more than this many are tried in full.
-const MOST_ALTERNATIVES: usize = 3;
-
-/// What speaks for an effect.
+/// Test of one effect beside others.
 #[derive(Debug, Clone)]
 pub(crate) struct EffectTest {
     pub(crate) effect: EffectIndex,
-    /// Corrected for the number of effects tested.
+    /// Corrected for the number of effects tested (Bonferroni).
     pub(crate) p_value: f64,
-    /// On unseen frames, over the same model without it.
+    /// On held-out frames, over the same model without it.
     pub(crate) gain: Gain,
     /// Whether it is large enough to matter.
     pub(crate) material: bool,
@@ -48,13 +31,16 @@ pub(crate) struct EffectTest {
 }
 
 impl EffectTest {
-    pub(crate) fn holds(&self) -> bool {
-        let gains = self.gain.value > LEAST_GAIN && self.gain.score() > LEAST_SCORE;
-        self.material && self.p_value < ALPHA && gains
+    /// Whether the effect is supported: large enough to matter, no chance, and with a sure gain on held-out frames.
+    pub(crate) fn is_supported(&self) -> bool {
+        let gains =
+            self.gain.value > THRESHOLDS.least_gain && self.gain.score() > THRESHOLDS.least_gain_score;
+        self.material && self.p_value < THRESHOLDS.significance && gains
     }
 }
 
-/// The evidence with names.
+/// Tests of effects, seen from where a model is.
+#[derive(Debug)]
 pub(crate) struct EffectTests<'a> {
     pub(crate) evidence: Evidence<'a>,
     pub(crate) columns: &'a [FittedParameter],
@@ -74,8 +60,8 @@ impl EffectTests<'_> {
         effects
     }
 
-    /// What speaks for an effect beside others, `tested` effects being tried.
-    pub(crate) fn case(
+    /// Tests an effect beside others; `tested` effects are tested at the same time. None where the fit is singular.
+    pub(crate) fn test(
         &self,
         effect: EffectIndex,
         beside: &[EffectIndex],
@@ -94,10 +80,10 @@ impl EffectTests<'_> {
         let gain = held_out.over(&others);
         let p_value = if self.is_possible(&fit, &sizes) {
             let together = Some(self.evidence.p_value(&fit, &sizes));
-            // Patches of the carpet are where other frames have seen them: they foretell as a place's effect does.
+            // What keeps its place on the field is predicted as well by the carpet's patches, which stay where they are.
             let keeps_place = effect.effect().covariates().contains(&Covariate::FieldPosition);
-            let foretold = (!keeps_place).then(|| self.foretold(held_out.surely_over(&others)));
-            best_of([together, self.alone(&without, &sizes), foretold])
+            let predicted = (!keeps_place).then(|| self.predicted_p_value(held_out.surely_over(&others)));
+            best_of([together, self.alone(&without, &sizes), predicted])
         } else {
             1.0
         };
@@ -105,18 +91,18 @@ impl EffectTests<'_> {
             effect,
             p_value: (p_value * tested as f64).min(1.0),
             gain,
-            material: p_value < ALPHA && self.is_material(effect, &with, &fit, &sizes),
+            material: p_value < THRESHOLDS.significance && self.is_material(effect, &with, &fit, &sizes),
             fit,
         })
     }
 
-    /// What speaks for each of these effects, all tried beside others.
-    fn cases(&self, effects: &[EffectIndex], beside: &[EffectIndex]) -> Vec<EffectTest> {
-        effects.par_iter().filter_map(|&effect| self.case(effect, beside, effects.len())).collect()
+    /// Tests each of these effects beside others.
+    pub(crate) fn tests_of(&self, effects: &[EffectIndex], beside: &[EffectIndex]) -> Vec<EffectTest> {
+        effects.par_iter().filter_map(|&effect| self.test(effect, beside, effects.len())).collect()
     }
 
-    /// Fits effects, no parameter outside its range: one that would be is held at the range's end, and the others are
-    /// fitted with it there.
+    /// Fits effects with no parameter outside its range: one that would be is held at the end of its range, and the others
+    /// are fitted with it there.
     pub(crate) fn fit_in_range(&self, effects: &[EffectIndex]) -> Option<Fit> {
         let mut free = self.columns_of(effects);
         let mut held = -&self.evidence.base;
@@ -140,15 +126,15 @@ impl EffectTests<'_> {
         if (coordinate - inside).abs() > 1e-9 { coordinate - inside } else { 0.0 }
     }
 
-    /// How unlikely what an effect gains on unseen frames, so many standard deviations, is chance. Of many numbers from few
-    /// frames, or where another effect is missing, a fit's scatter tells little; what it foretells does.
-    fn foretold(&self, score: f64) -> f64 {
+    /// P-value of a gain on held-out frames that is this many standard deviations above zero. Where an effect has more numbers
+    /// than so few frames can test, or another effect is missing, the scatter of a fit tells little; its predictions do.
+    fn predicted_p_value(&self, score: f64) -> f64 {
         if score > 0.0 { two_sided(score, self.evidence.degrees() as f64) } else { 1.0 }
     }
 
-    /// The least p-value of one of an effect's sizes alone, corrected for their number: few of them may be at work.
+    /// Smallest p-value of one of an effect's sizes alone, corrected for their number: only few of them may be at work.
     fn alone(&self, beside: &[EffectIndex], sizes: &[ColumnIndex]) -> Option<f64> {
-        if !(2..=TRIED_ALONE).contains(&sizes.len()) {
+        if !(2..=THRESHOLDS.most_sizes_tested_alone).contains(&sizes.len()) {
             return None;
         }
         let p_value = |&size: &ColumnIndex| {
@@ -159,7 +145,7 @@ impl EffectTests<'_> {
         Some(sizes.len() as f64 * sizes.iter().map(p_value).fold(1.0, f64::min))
     }
 
-    /// What cannot be below none, as a blur, is no effect where it would have to be.
+    /// Whether the fitted sizes are possible: a blur cannot be less than none.
     fn is_possible(&self, fit: &Fit, sizes: &[ColumnIndex]) -> bool {
         let below = |column: &ColumnIndex| {
             let parameter = self.columns[column.0].parameter();
@@ -168,7 +154,7 @@ impl EffectTests<'_> {
         !sizes.iter().all(below)
     }
 
-    pub(crate) fn coordinate(&self, fit: &Fit, column: ColumnIndex) -> f64 {
+    fn coordinate(&self, fit: &Fit, column: ColumnIndex) -> f64 {
         self.evidence.base[column.0] + fit.delta[column.0]
     }
 
@@ -176,8 +162,8 @@ impl EffectTests<'_> {
         self.columns[column.0].value(self.coordinate(fit, column))
     }
 
-    /// Whether sizes that would matter are surely not chance, together or one alone: of a field's five, one may be sure and
-    /// too small, another large and hardly seen; of noise's two, neither can be told from the other.
+    /// Whether sizes that would matter are surely no chance, together or one alone: of the five dimensions of a field one may
+    /// be sure and too small, another large and hardly seen; of the two numbers of noise neither can be told from the other.
     fn is_material(
         &self,
         effect: EffectIndex,
@@ -199,128 +185,33 @@ impl EffectTests<'_> {
             others.for_each(|other| free.retain(|column| column != other));
             self.evidence.fit(&free).is_some_and(|fit| {
                 let p_value = sizes.len() as f64 * self.evidence.p_value(&fit, &[size]);
-                matters(&fit, size) && p_value < LARGE_BY_CHANCE
+                matters(&fit, size) && p_value < THRESHOLDS.material_significance
             })
         };
         changes_over_time(&[effect])
-            || self.evidence.p_value(fit, &large) < LARGE_BY_CHANCE
-            || (sizes.len() <= TRIED_ALONE && sizes.iter().any(alone))
+            || self.evidence.p_value(fit, &large) < THRESHOLDS.material_significance
+            || (sizes.len() <= THRESHOLDS.most_sizes_tested_alone && sizes.iter().any(alone))
     }
 
-    /// What to add to what is named: the effect that speaks most for itself, and behind it those that may stand for it, as
-    /// the linearised model cannot tell for sure which of them is closest to what is large. Where none does, two that do
-    /// together.
-    pub(crate) fn next(&self, named: &[EffectIndex]) -> Vec<Vec<EffectIndex>> {
-        if self.evidence.views() < LEAST_VIEWS {
-            return Vec::new();
-        }
-        let others: Vec<EffectIndex> =
-            self.effects().into_iter().filter(|effect| !named.contains(effect)).collect();
-        let tested = self.cases(&others, named);
-        let mut cases: Vec<&EffectTest> = tested.iter().filter(|case| case.holds()).collect();
-        cases.sort_by(|a, b| b.gain.value.total_cmp(&a.gain.value));
-        let Some(best) = cases.first() else {
-            return Vec::from_iter(self.two(&tested, &others, named).map(Vec::from));
-        };
-        let stands_for = |case: &&&EffectTest| {
-            case.gain.value > STANDS_FOR * best.gain.value
-                && !self.adds(best.effect, case.effect, named, others.len())
-        };
-        let alternatives = cases[1..].iter().filter(stands_for).take(MOST_ALTERNATIVES);
-        std::iter::once(best).chain(alternatives).map(|case| vec![case.effect]).collect()
-    }
-
-    /// Two of the others that speak for themselves beside each other, where none does alone: each hides the other where both
-    /// are large. One of them has to be conspicuous alone.
-    fn two(
-        &self,
-        alone: &[EffectTest],
-        others: &[EffectIndex],
-        named: &[EffectIndex],
-    ) -> Option<[EffectIndex; 2]> {
-        let pairs = others.len() * others.len().saturating_sub(1) / 2;
-        let holds = |effect: EffectIndex, beside: EffectIndex| {
-            let beside: Vec<EffectIndex> = named.iter().copied().chain([beside]).collect();
-            self.case(effect, &beside, pairs).is_some_and(|case| case.holds())
-        };
-        let mut leads: Vec<&EffectTest> = alone.iter().filter(|case| case.p_value < CONSPICUOUS).collect();
-        leads.sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
-        let leads = leads.into_iter().take(MOST_LEADS);
-        let tries = leads.flat_map(|lead| others.iter().map(move |&other| [lead.effect, other]));
-        let found = tries
-            .collect::<Vec<[EffectIndex; 2]>>()
-            .into_par_iter()
-            .filter(|[lead, other]| lead != other && holds(*lead, *other) && holds(*other, *lead))
-            .filter_map(|two| {
-                let set: Vec<EffectIndex> = named.iter().copied().chain(two).collect();
-                Some((self.gain(&set, named)?.value, two))
-            });
-        found.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, two)| two)
-    }
-
-    /// Effects not named that explain clearly more than one named does, in its place: the old one, the new one; those that
-    /// gain most come first.
-    pub(crate) fn better(
-        &self,
-        all: &[EffectIndex],
-        named: &[EffectIndex],
-    ) -> Vec<(EffectIndex, EffectIndex)> {
-        let others: Vec<EffectIndex> =
-            self.effects().into_iter().filter(|effect| !all.contains(effect)).collect();
-        let tries = named.iter().flat_map(|&old| others.iter().map(move |&new| (old, new)));
-        let tries: Vec<(EffectIndex, EffectIndex)> = tries.collect();
-        let gains = tries.into_par_iter().filter_map(|(old, new)| {
-            let without: Vec<EffectIndex> = all.iter().copied().filter(|effect| *effect != old).collect();
-            self.case(new, &without, others.len()).filter(EffectTest::holds)?;
-            let set: Vec<EffectIndex> = without.iter().copied().chain([new]).collect();
-            let gain = self.gain(&set, all)?;
-            let replaces = gain.score() > TELLS_APART && !self.adds(old, new, &without, others.len());
-            replaces.then_some((gain.value, (old, new)))
-        });
-        let mut gains: Vec<(f64, (EffectIndex, EffectIndex))> = gains.collect();
-        gains.sort_by(|a, b| b.0.total_cmp(&a.0));
-        gains.into_iter().map(|(_, pair)| pair).collect()
-    }
-
-    /// Other effects that explain as much as one of those named does, in its place.
-    pub(crate) fn rivals(&self, effect: EffectIndex, named: &[EffectIndex]) -> Vec<EffectIndex> {
-        let without: Vec<EffectIndex> = named.iter().copied().filter(|other| *other != effect).collect();
-        let others: Vec<EffectIndex> =
-            self.effects().into_iter().filter(|other| !named.contains(other)).collect();
-        let rivals = |other: &EffectIndex| {
-            let holds = self.case(*other, &without, others.len()).is_some_and(|case| case.holds());
-            let set: Vec<EffectIndex> = without.iter().copied().chain([*other]).collect();
-            holds
-                && self.gain(named, &set).is_some_and(|gain| gain.score() < TELLS_APART)
-                && !self.adds(effect, *other, &without, others.len())
-        };
-        others.par_iter().copied().filter(rivals).collect()
-    }
-
-    /// What one set of effects gains over another, both judged on the same unseen frames.
-    fn gain(&self, set: &[EffectIndex], over: &[EffectIndex]) -> Option<Gain> {
+    /// Gain of one set of effects over another on the same held-out frames.
+    pub(crate) fn gain(&self, set: &[EffectIndex], over: &[EffectIndex]) -> Option<Gain> {
         let [set, over] = self.held_out([set, over])?;
         Some(set.over(&over))
     }
 
-    /// What two sets gain on the same unseen frames: short runs of them where one changes over time.
-    fn held_out(&self, sets: [&[EffectIndex]; 2]) -> Option<[HeldOut; 2]> {
+    /// Gains of two sets on the same held-out frames: short runs of them where an effect changes over time.
+    fn held_out(&self, sets: [&[EffectIndex]; 2]) -> Option<[HeldOutGains; 2]> {
         let over_time = sets.into_iter().any(changes_over_time);
+        let kind = if over_time { FoldKind::ShortRuns } else { FoldKind::Stretches };
         let [first, second] = sets.map(|effects| self.columns_of(effects));
         let shared: Vec<ColumnIndex> =
             first.iter().copied().filter(|column| second.contains(column)).collect();
-        let held_out = |free: &[ColumnIndex]| self.evidence.held_out(free, &shared, over_time);
+        let held_out = |free: &[ColumnIndex]| self.evidence.held_out(free, &shared, kind);
         Some([held_out(&first)?, held_out(&second)?])
-    }
-
-    /// Whether an effect has something to add to another one: then they are two, not one in two shapes.
-    fn adds(&self, effect: EffectIndex, other: EffectIndex, without: &[EffectIndex], tested: usize) -> bool {
-        let beside: Vec<EffectIndex> = without.iter().copied().chain([other]).collect();
-        self.case(effect, &beside, tested).is_some_and(|case| case.holds())
     }
 }
 
-/// The least p-value of several tests, corrected for their number.
+/// Smallest p-value of several tests, corrected for their number (Bonferroni).
 fn best_of(tests: [Option<f64>; 3]) -> f64 {
     let made = tests.iter().flatten();
     made.clone().count() as f64 * made.fold(1.0, |least: f64, p_value| least.min(*p_value))
@@ -331,7 +222,7 @@ fn changes_over_time(effects: &[EffectIndex]) -> bool {
     effects.iter().any(|effect| effect.effect().about().varies_over_time)
 }
 
-/// Where a model is, in the columns' coordinates.
+/// Where a model is, in the coordinates of the columns.
 pub(crate) fn base(columns: &[FittedParameter], model: &reality_sim_sensor::Model) -> DVector<f64> {
     DVector::from_iterator(columns.len(), columns.iter().map(|column| column.coordinate_in(model)))
 }

@@ -13,6 +13,7 @@ use crate::{
     recording::Recording,
     report::data::Unexplained,
     report::text::has_moved,
+    thresholds::Thresholds,
     workflow::selection::SelectedModel,
 };
 
@@ -86,7 +87,10 @@ pub(crate) fn gaps(
             let refitted = after.refitted[frame][index];
             let sigma = found.measured.system.sigmas.get(&row.quantity).copied().unwrap_or(0.0);
             // What is no measurement of a line or of carpet stays out.
-            if !(b.is_finite() && a.is_finite() && refitted.abs() < OUTLYING * sigma) {
+            if !(b.is_finite()
+                && a.is_finite()
+                && refitted.abs() < Thresholds::DEFAULT.inference.outlying_sigmas * sigma)
+            {
                 continue;
             }
             let sums = sums.entry(row.quantity.channel()).or_default();
@@ -105,8 +109,6 @@ pub(crate) fn gaps(
 
 /// What is left is this many times as large as its floor where something is at work in it.
 const RESTLESS: f64 = 1.8;
-/// A row this many standard deviations off is something else.
-const OUTLYING: f64 = 5.0;
 
 /// Sums of squares of a channel.
 #[derive(Debug, Clone, Copy, Default)]

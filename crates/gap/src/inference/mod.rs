@@ -1,10 +1,25 @@
-//! Which effects the normal equations speak for, and from which size on each would be found.
+//! Which effects a recording supports: tests of effects, the search for a set of them, detection limits, and the gap on
+//! held-out frames.
+//!
+//! ```text
+//! split ─ cross_validation ─┐
+//! cluster_covariance ─ gain ┼─ evidence ─ effect_test ─ effect_selection ─ model_search
+//! hypothesis_test ──────────┘                  └─ detection_limit
+//! ```
 
+pub(crate) mod cluster_covariance;
+pub(crate) mod cross_validation;
 pub(crate) mod detection_limit;
+pub(crate) mod effect_selection;
 pub(crate) mod effect_test;
 pub(crate) mod evidence;
+pub(crate) mod gain;
 pub(crate) mod held_out;
-pub(crate) mod measured;
+pub(crate) mod hypothesis_test;
+pub(crate) mod linearized_recording;
+pub(crate) mod model_comparison;
 pub(crate) mod model_error;
 pub(crate) mod model_search;
 pub(crate) mod split;
+#[cfg(test)]
+mod tests;

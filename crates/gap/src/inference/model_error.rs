@@ -5,11 +5,9 @@ use std::collections::BTreeMap;
 use crate::{
     inference::held_out::HeldOutResiduals,
     measurement::quantity::{Channel, Quantity},
+    thresholds::Thresholds,
     workflow::selection::SelectedModel,
 };
-
-/// Part of what is explained that a model may be off by: discs are no Gaussians, clipped colours no gains.
-const INEXACT: f64 = 0.04;
 
 /// Root mean squares of what changed from the model as given to the extended one, by quantity.
 #[derive(Debug, Clone, Default)]
@@ -33,7 +31,7 @@ impl ModelError {
 
     /// What a quantity may be off by, in its unit.
     pub(crate) fn off(&self, quantity: Quantity) -> f64 {
-        INEXACT * self.0.get(&quantity).copied().unwrap_or(0.0)
+        Thresholds::DEFAULT.inference.model_error * self.0.get(&quantity).copied().unwrap_or(0.0)
     }
 
     /// What a channel may be off by: the most of its quantities.
@@ -56,9 +54,12 @@ mod tests {
     #[test]
     fn a_model_may_be_off_by_a_part_of_what_it_explains_and_by_nothing_where_it_explains_nothing() {
         let explained = ModelError::by(Quantity::LineLevel(ColorChannel::Blue), 0.5);
-        assert_eq!(explained.off(Quantity::LineLevel(ColorChannel::Blue)), INEXACT * 0.5);
+        assert_eq!(
+            explained.off(Quantity::LineLevel(ColorChannel::Blue)),
+            Thresholds::DEFAULT.inference.model_error * 0.5
+        );
         assert_eq!(explained.off(Quantity::LineLevel(ColorChannel::Green)), 0.0);
-        assert_eq!(explained.most_off(Channel::Photometry), INEXACT * 0.5);
+        assert_eq!(explained.most_off(Channel::Photometry), Thresholds::DEFAULT.inference.model_error * 0.5);
         assert_eq!(explained.most_off(Channel::Geometry), 0.0);
     }
 }

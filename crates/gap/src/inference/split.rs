@@ -1,24 +1,23 @@
-//! Which frames are fitted to and which are kept for judging.
+//! Which frames are fitted and which are held out.
 
-/// Frames in a row stay together: they see the same things.
-const RUN: usize = 5;
-/// One run of so many is kept for judging.
-const EVERY: usize = 4;
+use crate::thresholds::Thresholds;
 
-/// Which of so many stretches of a recording, in a row and as long as each other, a frame is in. Frames that are judged by
-/// the others are taken by stretches: those next to each other see the same things, and would tell of each other.
+const RUN: usize = Thresholds::DEFAULT.inference.held_out_run_frames;
+const EVERY: usize = Thresholds::DEFAULT.inference.held_out_every;
+
+/// Which of so many stretches of a recording, one after the other and equally long, a frame is in.
 pub(crate) fn stretch(frame: usize, count: usize, stretches: usize) -> usize {
     frame * stretches / count
 }
 
-/// Frames by what they are for.
+/// Frames that are fitted and frames that are held out: no fit sees those.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct HeldOutSplit {
     judged: Vec<bool>,
 }
 
 impl HeldOutSplit {
-    /// Every fourth run of frames is kept; the seed says with which the count begins.
+    /// Every fourth run of frames is held out; the seed says with which the count begins.
     pub(crate) fn new(frames: usize, seed: u64) -> Self {
         // Short recordings have shorter runs, so that both kinds are spread over all of them.
         let run = RUN.min(frames / (2 * EVERY)).max(1);
@@ -30,7 +29,7 @@ impl HeldOutSplit {
         self.judged.iter().enumerate().filter(|(_, judged)| !**judged).map(|(frame, _)| frame)
     }
 
-    /// Not where there is no such frame.
+    /// Whether a frame is held out; false where there is no such frame.
     pub(crate) fn is_judged(&self, frame: usize) -> bool {
         self.judged.get(frame).copied().unwrap_or(false)
     }

@@ -13,7 +13,7 @@ use crate::{
     diagnostics::residual_patterns::{Pattern, Residuals, patterns},
     inference::detection_limit::{NotFound, limit},
     inference::effect_test::{EffectTest, EffectTests},
-    inference::evidence::Gain,
+    inference::gain::Gain,
     inference::held_out::{ChannelGap, HeldOutResiduals, gaps, restless},
     inference::model_error::ModelError,
     linear_model::linearization::MeasureError,
@@ -54,27 +54,27 @@ pub fn analyse(
 ) -> Result<Analysis, MeasureError> {
     let found = find(recording, model, options, progress)?;
     progress(Progress::Judging);
-    let naming = found.naming();
+    let tests = found.effect_tests();
     let all = found.all();
     let before = HeldOutResiduals::new(recording, &found, model)?;
     let after = HeldOutResiduals::new(recording, &found, &found.measured.model)?;
     let channels = gaps(&found, &before, &after);
     let gap = whole_gap(&channels);
-    let mut effects = effect_reports(recording, &naming, &found, &found.named, &after)?;
+    let mut effects = effect_reports(recording, &tests, &found, &found.named, &after)?;
     effects.sort_by(|a, b| b.held_out_gain.value.total_cmp(&a.held_out_gain.value));
-    let in_model = effect_reports(recording, &naming, &found, &found.given, &after)?;
+    let in_model = effect_reports(recording, &tests, &found, &found.given, &after)?;
     // What is odd in one view may be the place's.
-    let unexplained = if naming.evidence.views() < LEAST_VIEWS {
+    let unexplained = if tests.evidence.views() < LEAST_VIEWS {
         Vec::new()
     } else {
         let explained = ModelError::new(&found, &before, &after);
-        let mut unexplained = unexplained(recording, &found, &naming, &all, &explained);
+        let mut unexplained = unexplained(recording, &found, &tests, &all, &explained);
         if recording.source == ReferenceSource::Measured {
             unexplained.extend(restless(&channels, &explained));
         }
         unexplained
     };
-    let (not_found, unobservable) = others(recording, &naming, &all);
+    let (not_found, unobservable) = others(recording, &tests, &all);
     let verdict = verdict(&effects, &unexplained, &unobservable);
     let system = &found.measured.system;
     let [a, b, c, d, e, f] = system.pose_sigmas;
@@ -166,17 +166,17 @@ fn whole_gap(gaps: &BTreeMap<Channel, ChannelGap>) -> Gap {
 /// Effects of the model, each with what would be closed less without it.
 fn effect_reports(
     recording: &Recording<'_>,
-    naming: &EffectTests<'_>,
+    tests: &EffectTests<'_>,
     found: &SelectedModel,
     effects: &[EffectIndex],
     after: &HeldOutResiduals,
 ) -> Result<Vec<EffectReport>, MeasureError> {
     let all = found.all();
-    let cases = effects.iter().filter_map(|&effect| naming.case(effect, &all, naming.effects().len()));
+    let cases = effects.iter().filter_map(|&effect| tests.test(effect, &all, tests.effects().len()));
     let report = |case: EffectTest| {
         let alone = without(&found.measured.model, case.effect);
         let closes = closed(&gaps(found, &HeldOutResiduals::new(recording, found, &alone)?, after));
-        Ok(effect_report(naming, &case, found, closes))
+        Ok(effect_report(tests, &case, found, closes))
     };
     cases.map(report).collect()
 }
@@ -186,20 +186,20 @@ fn gain(gain: Gain) -> Estimate {
 }
 
 fn effect_report(
-    naming: &EffectTests<'_>,
+    tests: &EffectTests<'_>,
     case: &EffectTest,
     found: &SelectedModel,
     closes: BTreeMap<String, f64>,
 ) -> EffectReport {
     let effect = case.effect.effect();
-    let estimates: Vec<(&'static str, Estimate)> = naming
+    let estimates: Vec<(&'static str, Estimate)> = tests
         .columns_of(&[case.effect])
         .into_iter()
         .map(|index| {
-            let column: &FittedParameter = &naming.columns[index.0];
-            let sigma = naming.evidence.sigma(&case.fit, index);
+            let column: &FittedParameter = &tests.columns[index.0];
+            let sigma = tests.evidence.sigma(&case.fit, index);
             // As in the model's file: the last fit's step from there is less than matters.
-            let coordinate = naming.evidence.base[index.0];
+            let coordinate = tests.evidence.base[index.0];
             let (value, sigma) = (column.value(coordinate), column.value_sigma(coordinate, sigma));
             (
                 column.parameter().name,
@@ -213,13 +213,13 @@ fn effect_report(
         .collect();
     let correlation = |one: &str, other: &str| {
         let column = |name: &str| {
-            let mut columns = naming.columns_of(&[case.effect]).into_iter();
-            columns.find(|&column| naming.columns[column.0].parameter().name == name)
+            let mut columns = tests.columns_of(&[case.effect]).into_iter();
+            columns.find(|&column| tests.columns[column.0].parameter().name == name)
         };
         let both = column(one).zip(column(other));
-        both.map_or(0.0, |(one, other)| naming.evidence.correlation(&case.fit, [one, other]))
+        both.map_or(0.0, |(one, other)| tests.evidence.correlation(&case.fit, [one, other]))
     };
-    let rivals = found.rivals(case.effect);
+    let rivals = found.confusable_with(case.effect);
     let in_words = Estimates::new(&uncertain, &correlation);
     let (name, because) = effect.name_and_signature(&in_words);
     EffectReport {
@@ -242,16 +242,16 @@ fn effect_report(
 /// Effects that are not in the model: with their limits, or unseen with whether another recording would do.
 fn others(
     recording: &Recording<'_>,
-    naming: &EffectTests<'_>,
+    tests: &EffectTests<'_>,
     all: &[EffectIndex],
 ) -> (Vec<NotFoundReport>, Vec<(bool, Unobservable)>) {
     let (mut not_found, mut unobservable) = (Vec::new(), Vec::new());
-    let effects = naming.effects();
+    let effects = tests.effects();
     for &index in effects.iter().filter(|effect| !all.contains(effect)) {
         let effect = index.effect();
-        match limit(recording, naming, index, all) {
+        match limit(recording, tests, index, all) {
             NotFound::Limit { value, unit, parameter } => {
-                let case = naming.case(index, all, effects.len());
+                let case = tests.test(index, all, effects.len());
                 not_found.push(NotFoundReport {
                     id: effect.id().to_owned(),
                     name: effect.name().to_owned(),
@@ -297,11 +297,11 @@ fn verdict(
 fn unexplained(
     recording: &Recording<'_>,
     found: &SelectedModel,
-    naming: &EffectTests<'_>,
+    tests: &EffectTests<'_>,
     all: &[EffectIndex],
     explained: &ModelError,
 ) -> Vec<Unexplained> {
-    let mut delta = naming.evidence.fit(&naming.columns_of(all)).map_or_else(
+    let mut delta = tests.evidence.fit(&tests.columns_of(all)).map_or_else(
         || DVector::zeros(found.columns.len() + found.measured.tolerances.len()),
         |fit| fit.delta,
     );

@@ -15,24 +15,10 @@ use crate::{
     measurement::frame::{FrameCamera, expected_lines},
     measurement::line_search::search,
     recording::Recording,
+    thresholds::{Thresholds, WorkflowThresholds},
 };
 
-/// Pictures that are looked at.
-const PICTURES: usize = 10;
-/// Lines are where they are expected within this part of the picture's width.
-const NEAR: f64 = 0.012;
-/// The model's places do where this part of the lines is found there,
-const ENOUGH: f64 = 0.6;
-/// and no line of which so many pieces are expected is found in less than this part of them.
-const LOST: (f64, f64) = (4.0, 0.2);
-/// Other places are better where they have this part of what is wanting.
-const BETTER: f64 = 0.4;
-/// A parameter puts lines elsewhere where one of them moves by this much over its range, pixels.
-const LEAST_MOVE_PX: f64 = 2.0;
-/// Values of a parameter that are tried, over its range.
-const VALUES: usize = 16;
-/// Parameters that are moved, one after the other.
-const ROUNDS: usize = 3;
+const THRESHOLDS: WorkflowThresholds = Thresholds::DEFAULT.workflow;
 
 /// The model that has lines where they are; none where the one that is given has.
 pub(crate) fn placing(
@@ -44,7 +30,7 @@ pub(crate) fn placing(
     let pictures = Pictures::of(recording, split)?;
     let Some(mut best) = pictures.placed(model) else { return Ok(None) };
     let mut better: Option<Model> = None;
-    for _ in 0..ROUNDS {
+    for _ in 0..THRESHOLDS.alignment_rounds {
         let wanting = best.wanting();
         if wanting == 0.0 {
             break;
@@ -53,7 +39,7 @@ pub(crate) fn placing(
         let placed: Vec<(Placed, Model)> =
             tries.into_par_iter().filter_map(|model| Some((pictures.placed(&model)?, model))).collect();
         // A piece that is found where it was missed counts twice.
-        let least = best.score() + 2.0 * BETTER * wanting;
+        let least = best.score() + 2.0 * THRESHOLDS.alignment_gain * wanting;
         let found = placed.into_iter().max_by(|a, b| a.0.score().total_cmp(&b.0.score()));
         let Some((found, model)) = found.filter(|(found, _)| found.score() >= least) else { break };
         (best, better) = (found, Some(model));
@@ -79,11 +65,12 @@ impl Placed {
     /// Pieces that should be found and are not: of all lines where too few are found, else of those that are lost.
     fn wanting(&self) -> f64 {
         let [found, expected] = self.sums();
-        if found < ENOUGH * expected {
+        if found < THRESHOLDS.alignment_found * expected {
             return expected - found;
         }
-        let lost =
-            self.0.values().filter(|[found, expected]| *expected >= LOST.0 && *found < LOST.1 * expected);
+        let lost = self.0.values().filter(|[found, expected]| {
+            *expected >= THRESHOLDS.lost_pieces && *found < THRESHOLDS.lost_found * expected
+        });
         lost.map(|[found, expected]| expected - found).sum()
     }
 }
@@ -98,7 +85,7 @@ struct Pictures<'a> {
 impl<'a> Pictures<'a> {
     /// Of those that are fitted: no others are looked at before the end.
     fn of(recording: &'a Recording<'a>, split: &HeldOutSplit) -> Result<Self, MeasureError> {
-        let every = split.fitted().count().div_ceil(PICTURES).max(1);
+        let every = split.fitted().count().div_ceil(THRESHOLDS.alignment_pictures).max(1);
         let picture = |index: usize| {
             let frame = &recording.frames[index];
             Ok((frame.time_s, Texture::pack(&luma(&recording.picture(frame)?.0))))
@@ -112,7 +99,8 @@ impl<'a> Pictures<'a> {
         let mut movers: BTreeMap<EffectIndex, Vec<&FittedParameter>> = BTreeMap::new();
         for column in columns.iter().filter(|column| column.is_size()) {
             let [low, high] = column.parameter().range.map(|value| self.moved(model, column, value));
-            if self.farthest_px(&low, &high).is_none_or(|pixels| pixels > LEAST_MOVE_PX) {
+            if self.farthest_px(&low, &high).is_none_or(|pixels| pixels > THRESHOLDS.alignment_least_move_px)
+            {
                 movers.entry(column.effect).or_default().push(column);
             }
         }
@@ -151,7 +139,7 @@ impl<'a> Pictures<'a> {
     fn placed(&self, model: &Model) -> Option<Placed> {
         let Recording { sequence, trajectory, .. } = self.recording;
         let chain = self.chain(model)?;
-        let near_px = NEAR * f64::from(sequence.setup.camera.width);
+        let near_px = THRESHOLDS.alignment_near * f64::from(sequence.setup.camera.width);
         let mut placed = Placed::default();
         for (time_s, texture) in &self.pictures {
             let expected = expected_lines(&FrameCamera::new(&chain, trajectory, *time_s));
@@ -188,7 +176,8 @@ impl<'a> Pictures<'a> {
 
 fn values(column: &FittedParameter) -> impl Iterator<Item = f64> {
     let [low, high] = column.parameter().range;
-    (0..=VALUES).map(move |step| low + (high - low) * step as f64 / VALUES as f64)
+    (0..=THRESHOLDS.alignment_values)
+        .map(move |step| low + (high - low) * step as f64 / THRESHOLDS.alignment_values as f64)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Detect, name, add, until nothing more is found.
+//! The selection of effects: one after the other is added to the model, until no more is supported.
 
 use std::collections::BTreeMap;
 
@@ -6,41 +6,43 @@ use reality_sim_sensor::{EffectIndex, Model};
 
 use crate::{
     inference::effect_test::{EffectTest, EffectTests},
-    inference::measured::{LinearizedRecording, SEARCH},
+    inference::linearized_recording::{FittedRecording, LinearizedRecording},
     inference::model_search::ModelSearch,
     inference::split::HeldOutSplit,
     linear_model::linearization::{MeasureError, check},
     linear_model::parameters::{FittedParameter, columns},
     recording::Recording,
+    thresholds::Thresholds,
     workflow::coarse_alignment::placing,
     workflow::progress::Progress,
 };
 
-/// No more effects than this are added in one go.
-const MOST_EFFECTS: usize = 6;
+const SEARCH_FIRST: f64 = Thresholds::DEFAULT.inference.search_first;
+const SEARCH_AGAIN: f64 = Thresholds::DEFAULT.inference.search_again;
 
-/// How to work.
+/// How a recording is analysed.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
-    /// Chooses the frames that are kept for judging.
+    /// Seed that chooses the frames that are held out.
     pub seed: u64,
-    /// Effects that are not in the library this time.
+    /// Ids of effects that are left out of the library.
     pub without: Vec<String>,
 }
 
-/// A model with the effects that were found.
+/// Outcome of the selection: a model with the effects that are supported.
 pub(crate) struct SelectedModel {
     pub(crate) columns: Vec<FittedParameter>,
     pub(crate) split: HeldOutSplit,
-    /// At the final model.
+    /// The recording at the final model.
     pub(crate) measured: LinearizedRecording,
-    /// The effects that the model had, and of those found, in the order of finding.
+    /// Effects that the model had from the start.
     pub(crate) given: Vec<EffectIndex>,
+    /// Effects that were added, in the order of adding.
     pub(crate) named: Vec<EffectIndex>,
-    /// How unlikely named effects were chance when they were not yet in the model.
+    /// P-values of named effects when they were not yet in the model.
     p_values: BTreeMap<EffectIndex, f64>,
-    /// A named effect, and another that leaves as little in its place.
-    rivals: Vec<(EffectIndex, EffectIndex)>,
+    /// Pairs of a named effect and another that leaves as little in its place.
+    confusable: Vec<(EffectIndex, EffectIndex)>,
 }
 
 impl SelectedModel {
@@ -49,22 +51,23 @@ impl SelectedModel {
         self.given.iter().chain(&self.named).copied().collect()
     }
 
-    pub(crate) fn naming(&self) -> EffectTests<'_> {
-        self.measured.naming(&self.columns)
+    /// Tests of effects at the final model.
+    pub(crate) fn effect_tests(&self) -> EffectTests<'_> {
+        self.measured.effect_tests(&self.columns)
     }
 
-    /// How unlikely an effect is chance: by the model without it, or by that with it.
-    pub(crate) fn p_value(&self, case: &EffectTest) -> f64 {
-        self.p_values.get(&case.effect).copied().unwrap_or(1.0).min(case.p_value)
+    /// P-value of a named effect: the smaller of those before and after it was added.
+    pub(crate) fn p_value(&self, test: &EffectTest) -> f64 {
+        self.p_values.get(&test.effect).copied().unwrap_or(1.0).min(test.p_value)
     }
 
-    /// Effects not in the model that stand for one that is as well.
-    pub(crate) fn rivals(&self, effect: EffectIndex) -> Vec<EffectIndex> {
-        self.rivals.iter().filter(|(of, _)| *of == effect).map(|(_, rival)| *rival).collect()
+    /// Effects not in the model that a named one is confusable with.
+    pub(crate) fn confusable_with(&self, effect: EffectIndex) -> Vec<EffectIndex> {
+        self.confusable.iter().filter(|(of, _)| *of == effect).map(|(_, other)| *other).collect()
     }
 }
 
-/// Runs the loop. `progress` hears of every stage.
+/// Selects the effects that a recording supports beside those of a model. `progress` is told of every stage.
 pub(crate) fn find(
     recording: &Recording<'_>,
     model: &Model,
@@ -76,36 +79,40 @@ pub(crate) fn find(
     let split = HeldOutSplit::new(recording.frames.len(), options.seed);
     let given: Vec<EffectIndex> =
         model.effects.iter().filter_map(|used| EffectIndex::find(used.effect.id())).collect();
-    let finder = ModelSearch { recording, columns: &columns, split: &split, given: &given, progress };
+    let source = FittedRecording { recording, columns: &columns, split: &split };
+    let search = ModelSearch { source: &source, columns: &columns, split: &split, given: &given, progress };
     progress(Progress::Measuring);
-    let mut measured = LinearizedRecording::new(recording, model.clone(), &columns, &split, SEARCH[0])?;
+    let mut measured = LinearizedRecording::new(recording, model.clone(), &columns, &split, SEARCH_FIRST)?;
     let mut named: Vec<EffectIndex> = Vec::new();
     if !given.is_empty() {
-        measured = finder.settle(measured, &given)?;
+        measured = search.settle(measured, &given)?;
     }
     // Lines that are not where the model has them are looked for elsewhere; all is compared from there.
     let as_given = measured.model.clone();
     if let Some(placed) = placing(recording, &as_given, &columns, &split)? {
-        measured = LinearizedRecording::new(recording, placed, &columns, &split, SEARCH[0])?;
+        measured = LinearizedRecording::new(recording, placed, &columns, &split, SEARCH_FIRST)?;
     }
     // Sets that were tried: swapping must not go round in circles.
     let mut tried: Vec<Vec<EffectIndex>> = vec![Vec::new()];
     let mut ties = Vec::new();
     let mut p_values = BTreeMap::new();
-    while named.len() < MOST_EFFECTS {
+    while named.len() < Thresholds::DEFAULT.workflow.most_effects {
         progress(Progress::Testing);
-        if let Some((set, settled)) = finder.dropped(&measured, &named)? {
+        let tests = measured.effect_tests(&columns);
+        if let Some((set, settled)) = search.dropped(&measured, &tests, &named)? {
             (named, measured) = (set, settled);
             continue;
         }
-        let is_new = |set: &[EffectIndex]| set.len() <= MOST_EFFECTS && !tried.contains(&sorted(set));
-        let sets = finder.next_sets(&measured, &named, is_new);
+        let is_new = |set: &[EffectIndex]| {
+            set.len() <= Thresholds::DEFAULT.workflow.most_effects && !tried.contains(&sorted(set))
+        };
+        let sets = search.next_sets(&tests, &named, is_new);
         let swaps = sets.iter().any(|set| set.len() == named.len());
-        let mut closest = finder.closest(&measured, sets)?.into_iter();
+        let mut closest = search.closest(&measured, sets)?.into_iter();
         let Some((set, settled)) = closest.next() else { break };
         tried.push(sorted(&set));
         // What looked better may not be, now that it has settled.
-        if swaps && finder.left(&settled, &measured.system) > finder.left(&measured, &measured.system) {
+        if swaps && search.left(&settled, &measured.system) > search.left(&measured, &measured.system) {
             continue;
         }
         for (other, _) in closest {
@@ -113,14 +120,14 @@ pub(crate) fn find(
             ties.extend(differing(&set, &other));
         }
         let new = set.iter().copied().filter(|effect| !named.contains(effect));
-        p_values.extend(new.filter_map(|effect| Some((effect, finder.p_value(&measured, &named, effect)?))));
+        p_values.extend(new.filter_map(|effect| Some((effect, search.p_value(&tests, &named, effect)?))));
         (named, measured) = (set, settled);
     }
     if named.is_empty() && measured.model != as_given {
-        measured = LinearizedRecording::new(recording, as_given, &columns, &split, SEARCH[1])?;
+        measured = LinearizedRecording::new(recording, as_given, &columns, &split, SEARCH_AGAIN)?;
     }
-    let rivals = finder.rivals(&measured, &named, &ties)?;
-    Ok(SelectedModel { columns, split, measured, given, named, p_values, rivals })
+    let confusable = search.confusable(&measured, &named, &ties)?;
+    Ok(SelectedModel { columns, split, measured, given, named, p_values, confusable })
 }
 
 /// A recording measured with a model as it is.
@@ -132,9 +139,9 @@ pub(crate) fn as_given(
     check(recording, model)?;
     let columns = columns(&options.without);
     let split = HeldOutSplit::new(recording.frames.len(), options.seed);
-    let measured = LinearizedRecording::new(recording, model.clone(), &columns, &split, SEARCH[1])?;
-    let (given, named, p_values, rivals) = Default::default();
-    Ok(SelectedModel { columns, split, measured, given, named, p_values, rivals })
+    let measured = LinearizedRecording::new(recording, model.clone(), &columns, &split, SEARCH_AGAIN)?;
+    let (given, named, p_values, confusable) = Default::default();
+    Ok(SelectedModel { columns, split, measured, given, named, p_values, confusable })
 }
 
 /// The one effect of a set that another set has something else for.

@@ -1,11 +1,12 @@
-//! A recording measured where a model expects things, with the normal equations of the frames that are fitted.
+//! A recording measured and linearised at a model, with the normal equations of the frames that are fitted.
 
-use reality_sim_sensor::Model;
+use reality_sim_sensor::{Effect, Model};
 
 use crate::{
     inference::effect_test::{EffectTests, base},
     inference::evidence::Evidence,
     inference::split::HeldOutSplit,
+    linear_model::initial_values::starting_values,
     linear_model::linearization::{MeasureError, linearise, measure_frames},
     linear_model::nuisance::{Nuisance, tolerances},
     linear_model::parameters::FittedParameter,
@@ -13,23 +14,22 @@ use crate::{
     measurement::frame::FrameMeasurements,
     measurement::quantity::Channel,
     recording::Recording,
+    thresholds::Thresholds,
 };
 
-/// How far from where they are expected lines are looked for at first and once a model has been moved, as a part of
-/// the picture's width.
-pub(crate) const SEARCH: [f64; 2] = [0.028, 0.014];
-
-/// A recording measured where a model expects things.
+/// A recording measured where a model expects things, and the model linearised there.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearizedRecording {
     pub(crate) model: Model,
     pub(crate) looks: Vec<FrameMeasurements>,
     pub(crate) tolerances: Vec<Nuisance>,
     pub(crate) frames: Vec<LinearizedFrame>,
+    /// Equations of the frames that are fitted.
     pub(crate) system: LinearSystem,
 }
 
 impl LinearizedRecording {
+    /// Looks for lines as far from where they are expected as `search`, a part of the picture's width.
     pub(crate) fn new(
         recording: &Recording<'_>,
         model: Model,
@@ -41,7 +41,7 @@ impl LinearizedRecording {
         let looks = measure_frames(recording, &model, search_px)?;
         let tolerances = tolerances(&looks);
         let mut frames = linearise(recording, &looks, &model, columns, &tolerances)?;
-        // A step of the odometry to a frame that is kept for judging is not fitted.
+        // A step of the odometry to a held-out frame is not fitted.
         for frame in split.fitted().filter(|frame| split.is_judged(frame + 1)) {
             frames[frame].leave_out(Channel::Motion);
         }
@@ -53,8 +53,34 @@ impl LinearizedRecording {
         Ok(Self { model, looks, tolerances, frames, system })
     }
 
-    /// What speaks for each effect, seen from where the model is.
-    pub(crate) fn naming<'a>(&'a self, columns: &'a [FittedParameter]) -> EffectTests<'a> {
+    /// Tests of effects, seen from where the model is.
+    pub(crate) fn effect_tests<'a>(&'a self, columns: &'a [FittedParameter]) -> EffectTests<'a> {
         EffectTests { evidence: Evidence::new(&self.system, base(columns, &self.model)), columns }
+    }
+}
+
+/// Source of linearised recordings: measures everything anew where a model expects it.
+pub(crate) trait Linearize {
+    fn linearize(&self, model: Model) -> Result<LinearizedRecording, MeasureError>;
+
+    /// Values at which an effect starts that is not in the model yet.
+    fn starting_values(&self, effect: &'static dyn Effect) -> Vec<f64>;
+}
+
+/// A recording with what is fitted to it: lines are looked for near where a model has them.
+pub(crate) struct FittedRecording<'a> {
+    pub(crate) recording: &'a Recording<'a>,
+    pub(crate) columns: &'a [FittedParameter],
+    pub(crate) split: &'a HeldOutSplit,
+}
+
+impl Linearize for FittedRecording<'_> {
+    fn linearize(&self, model: Model) -> Result<LinearizedRecording, MeasureError> {
+        let search = Thresholds::DEFAULT.inference.search_again;
+        LinearizedRecording::new(self.recording, model, self.columns, self.split, search)
+    }
+
+    fn starting_values(&self, effect: &'static dyn Effect) -> Vec<f64> {
+        starting_values(effect, self.recording)
     }
 }

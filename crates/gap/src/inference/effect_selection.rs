@@ -1,0 +1,115 @@
+//! Which effects to add to a model, to replace in it, or to name beside those in it, by tests of the linearised model.
+
+use rayon::prelude::*;
+use reality_sim_sensor::EffectIndex;
+
+use crate::{
+    inference::effect_test::{EffectTest, EffectTests},
+    recording::LEAST_VIEWS,
+    thresholds::{InferenceThresholds, Thresholds},
+};
+
+const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
+
+impl EffectTests<'_> {
+    /// Sets of effects to try adding: first the supported effect with the largest gain, behind it those that may stand for it,
+    /// as a linearised model cannot tell for sure which of them comes closest where they are large. Where none is supported
+    /// alone, a pair that is.
+    pub(crate) fn next_additions(&self, named: &[EffectIndex]) -> Vec<Vec<EffectIndex>> {
+        if self.evidence.views() < LEAST_VIEWS {
+            return Vec::new();
+        }
+        let others: Vec<EffectIndex> =
+            self.effects().into_iter().filter(|effect| !named.contains(effect)).collect();
+        let tested = self.tests_of(&others, named);
+        let mut supported: Vec<&EffectTest> = tested.iter().filter(|test| test.is_supported()).collect();
+        supported.sort_by(|a, b| b.gain.value.total_cmp(&a.gain.value));
+        let Some(best) = supported.first() else {
+            return Vec::from_iter(self.pair_of(&tested, &others, named).map(Vec::from));
+        };
+        let stands_for = |test: &&&EffectTest| {
+            test.gain.value > THRESHOLDS.least_gain_ratio * best.gain.value
+                && !self.adds(best.effect, test.effect, named, others.len())
+        };
+        let alternatives = supported[1..].iter().filter(stands_for).take(THRESHOLDS.most_alternatives);
+        std::iter::once(best).chain(alternatives).map(|test| vec![test.effect]).collect()
+    }
+
+    /// Two of the others that are supported beside each other, where none is alone: two large effects can hide each other. One
+    /// of them has to stand out alone.
+    fn pair_of(
+        &self,
+        alone: &[EffectTest],
+        others: &[EffectIndex],
+        named: &[EffectIndex],
+    ) -> Option<[EffectIndex; 2]> {
+        let pairs = others.len() * others.len().saturating_sub(1) / 2;
+        let is_supported = |effect: EffectIndex, beside: EffectIndex| {
+            let beside: Vec<EffectIndex> = named.iter().copied().chain([beside]).collect();
+            self.test(effect, &beside, pairs).is_some_and(|test| test.is_supported())
+        };
+        let mut leads: Vec<&EffectTest> =
+            alone.iter().filter(|test| test.p_value < THRESHOLDS.lead_p_value).collect();
+        leads.sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
+        let leads = leads.into_iter().take(THRESHOLDS.most_leads);
+        let tries = leads.flat_map(|lead| others.iter().map(move |&other| [lead.effect, other]));
+        let found = tries
+            .collect::<Vec<[EffectIndex; 2]>>()
+            .into_par_iter()
+            .filter(|[lead, other]| {
+                lead != other && is_supported(*lead, *other) && is_supported(*other, *lead)
+            })
+            .filter_map(|two| {
+                let set: Vec<EffectIndex> = named.iter().copied().chain(two).collect();
+                Some((self.gain(&set, named)?.value, two))
+            });
+        found.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, two)| two)
+    }
+
+    /// Effects not in the model that explain clearly more than a named one in its place, as pairs of the old and the new one,
+    /// the largest gain first.
+    pub(crate) fn replacements(
+        &self,
+        all: &[EffectIndex],
+        named: &[EffectIndex],
+    ) -> Vec<(EffectIndex, EffectIndex)> {
+        let others: Vec<EffectIndex> =
+            self.effects().into_iter().filter(|effect| !all.contains(effect)).collect();
+        let tries = named.iter().flat_map(|&old| others.iter().map(move |&new| (old, new)));
+        let tries: Vec<(EffectIndex, EffectIndex)> = tries.collect();
+        let gains = tries.into_par_iter().filter_map(|(old, new)| {
+            let without: Vec<EffectIndex> = all.iter().copied().filter(|effect| *effect != old).collect();
+            self.test(new, &without, others.len()).filter(EffectTest::is_supported)?;
+            let set: Vec<EffectIndex> = without.iter().copied().chain([new]).collect();
+            let gain = self.gain(&set, all)?;
+            let replaces = gain.score() > THRESHOLDS.distinguishable_score
+                && !self.adds(old, new, &without, others.len());
+            replaces.then_some((gain.value, (old, new)))
+        });
+        let mut gains: Vec<(f64, (EffectIndex, EffectIndex))> = gains.collect();
+        gains.sort_by(|a, b| b.0.total_cmp(&a.0));
+        gains.into_iter().map(|(_, pair)| pair).collect()
+    }
+
+    /// Effects not in the model that explain as much as a named one in its place.
+    pub(crate) fn confusable_with(&self, effect: EffectIndex, named: &[EffectIndex]) -> Vec<EffectIndex> {
+        let without: Vec<EffectIndex> = named.iter().copied().filter(|other| *other != effect).collect();
+        let others: Vec<EffectIndex> =
+            self.effects().into_iter().filter(|other| !named.contains(other)).collect();
+        let is_confusable = |other: &EffectIndex| {
+            let is_supported =
+                self.test(*other, &without, others.len()).is_some_and(|test| test.is_supported());
+            let set: Vec<EffectIndex> = without.iter().copied().chain([*other]).collect();
+            is_supported
+                && self.gain(named, &set).is_some_and(|gain| gain.score() < THRESHOLDS.distinguishable_score)
+                && !self.adds(effect, *other, &without, others.len())
+        };
+        others.par_iter().copied().filter(is_confusable).collect()
+    }
+
+    /// Whether an effect is supported beside another one: then the two are not one and the same in two shapes.
+    fn adds(&self, effect: EffectIndex, other: EffectIndex, without: &[EffectIndex], tested: usize) -> bool {
+        let beside: Vec<EffectIndex> = without.iter().copied().chain([other]).collect();
+        self.test(effect, &beside, tested).is_some_and(|test| test.is_supported())
+    }
+}

@@ -1,0 +1,77 @@
+//! What settled models leave, compared with one another.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DVector;
+
+use crate::{
+    inference::linearized_recording::LinearizedRecording,
+    inference::split::HeldOutSplit,
+    linear_model::parameters::FittedParameter,
+    linear_model::reduced_equations::ReducedEquations,
+    linear_model::system::{FittedResiduals, INDEPENDENT, LinearSystem},
+    measurement::quantity::Quantity,
+    thresholds::{InferenceThresholds, Thresholds},
+};
+
+const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
+
+/// Difference in log-likelihood below which settled models leave as little as each other, where the better one explains this
+/// much. No model is exact, and what it is off by grows with what it explains.
+pub(crate) fn indistinguishable_below(explained: f64) -> f64 {
+    let score = THRESHOLDS.distinguishable_score;
+    (0.5 * score * score).max(THRESHOLDS.compared_model_error * explained)
+}
+
+/// What a settled model leaves of the fitted frames, as minus log-likelihood: residuals in the standard deviations of one
+/// system, cut off where they are no measurements, and what the nuisance parameters have to be. Infinite where the nuisance
+/// parameters cannot be fitted.
+pub(crate) fn minus_log_likelihood(
+    measured: &LinearizedRecording,
+    system: &LinearSystem,
+    columns: &[FittedParameter],
+    split: &HeldOutSplit,
+) -> f64 {
+    // The model as it is: nothing moves but the nuisance parameters.
+    let own = &measured.system;
+    let total = ReducedEquations::of(own.frames.iter(), own.size, columns.len());
+    let Some(fit) = total.fit(&[], &DVector::zeros(columns.len())) else { return f64::INFINITY };
+    let strain = 0.5 * fit.delta.norm_squared();
+    let mut means: BTreeMap<Quantity, (f64, f64)> = BTreeMap::new();
+    for (frame, weights) in split.fitted().zip(&own.weights) {
+        let frame = &measured.frames[frame];
+        let left = FittedResiduals::new(frame, weights, &fit.delta, &system.pose_sigmas);
+        let rows = frame.measurements.iter().zip(&left.residuals);
+        for (row, residual) in rows.filter(|(_, left)| left.is_finite()) {
+            if let Some(sigma) = system.sigmas.get(&row.quantity) {
+                let mean = means.entry(row.quantity).or_default();
+                let most = THRESHOLDS.compared_residual_sigmas * THRESHOLDS.compared_residual_sigmas;
+                mean.0 += (residual / sigma).powi(2).min(most);
+                mean.1 += 1.0;
+            }
+        }
+    }
+    // Other models find other numbers of lines: means count, times as many as there are independent.
+    let counted = means.iter().map(|(quantity, (sum, count))| {
+        let rows = if quantity.is_odometry() {
+            THRESHOLDS.odometry_rows
+        } else {
+            INDEPENDENT * THRESHOLDS.picture_rows
+        };
+        0.5 * rows * sum / count.max(1.0)
+    });
+    counted.sum::<f64>() + strain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn models_are_apart_by_more_than_what_they_explain_may_be_off_by() {
+        let score = THRESHOLDS.distinguishable_score;
+        assert_eq!(indistinguishable_below(0.0), 0.5 * score * score);
+        assert!(indistinguishable_below(1000.0) > indistinguishable_below(100.0));
+        assert!(indistinguishable_below(1000.0) < 100.0, "a tenth of what is explained is no tie");
+    }
+}
