@@ -1,7 +1,44 @@
-//! Where a camera's simulation and its pictures disagree, which effect is missing, and how much it explains.
+//! Where a camera's simulation and its pictures disagree, which effect is missing, and how much of the gap it explains.
 //!
-//! recording → [`measurement`] (lines and carpet in each picture) → [`linear_model`] (residuals and normal equations by
-//! frame) → [`inference`] (tests of effects, limits) → [`diagnostics`] (what no effect explains) → [`workflow`] → [`report`].
+//! A recording with reference poses is compared with what a model of the camera predicts for the same poses: the places of
+//! lines, their brightness and sharpness, the noise of the carpet, the steps of the odometry. Effects of a library that
+//! explain the differences are added to the model one after the other; what that brings is measured on frames that no fit has
+//! seen.
+//!
+//! | | |
+//! |---|---|
+//! | [`Recording`] | the frames of a sequence that are compared, with their reference poses |
+//! | [`Options`] | the seed that holds out frames, and effects that are left out of the library |
+//! | [`analyse`] | the whole workflow: an [`Analysis`] with the report and the extended model |
+//! | [`report::Report`] | all that was found: effects with sizes, what stays unknown, detection limits, the gap |
+//! | [`ChannelGap`] | the residuals of one [`Channel`] before and after, beside the noise floor |
+//! | [`gap_of`] | the gap of a model as it is |
+//! | [`html`], [`Pictures`] | the report as a page |
+//!
+//! ```
+//! use reality_sim_core::sequence::Sequence;
+//! use reality_sim_gap::{Options, Recording, ReferenceSource, analyse};
+//! use reality_sim_sensor::Model;
+//!
+//! # let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/pitch");
+//! let sequence = Sequence::open(&folder)?;
+//! let poses: Vec<_> = sequence.reference_poses().collect();
+//! let recording = Recording::new(&sequence, &poses, ReferenceSource::Measured, Some(0..30))?;
+//!
+//! let analysis = analyse(&recording, &Model::default(), &Options::default(), &|_| ())?;
+//! assert!(analysis.model.values("mount_pitch").is_some(), "the mount is pitched otherwise than its files say");
+//! assert!(analysis.report.gap.after < analysis.report.gap.before);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Inside, data flow one way:
+//!
+//! ```text
+//! recording → measurement (lines and carpet of each picture) → linear_model (residuals and normal equations)
+//!   → inference (tests of effects, model search, limits) → diagnostics (what no effect explains) → report
+//! ```
+//!
+//! `docs/gap.md` is the method with its sources, and how it was tested.
 
 mod diagnostics;
 mod inference;
