@@ -14,8 +14,14 @@ const ROOT: &str = "reality-sim-cli";
 const LIBRARY: &str = "reality-sim";
 
 /// Packages that must build without graphics and without a program's dependencies whatever their features.
-const PLAIN: [&str; 5] =
-    ["reality-sim-core", "reality-sim-db", "reality-sim-synthesis", "reality-sim-sensor", "reality-sim-gap"];
+const PLAIN: [&str; 6] = [
+    "reality-sim-core",
+    "reality-sim-db",
+    "reality-sim-synthesis",
+    "reality-sim-pipeline",
+    "reality-sim-sensor",
+    "reality-sim-gap",
+];
 
 /// What belongs to a graphics card or a window.
 const GRAPHICS: [&str; 7] = ["wgpu", "wgpu-core", "winit", "egui", "eframe", "egui-wgpu", "egui-winit"];
@@ -24,11 +30,12 @@ const GRAPHICS: [&str; 7] = ["wgpu", "wgpu-core", "winit", "egui", "eframe", "eg
 const PROGRAM: [&str; 3] = ["clap", "indicatif", "anyhow"];
 
 /// The packages of this workspace that each package may use.
-const MAY_USE: [(&str, &[&str]); 9] = [
+const MAY_USE: [(&str, &[&str]); 10] = [
     ("reality-sim-core", &[]),
     ("reality-sim-gpu", &["reality-sim-core"]),
     ("reality-sim-db", &["reality-sim-core"]),
     ("reality-sim-synthesis", &["reality-sim-core", "reality-sim-db"]),
+    ("reality-sim-pipeline", &["reality-sim-core", "reality-sim-db", "reality-sim-synthesis"]),
     ("reality-sim-sensor", &["reality-sim-core"]),
     ("reality-sim-hidden", &["reality-sim-core"]),
     ("reality-sim-gap", &["reality-sim-core", "reality-sim-sensor"]),
@@ -39,6 +46,7 @@ const MAY_USE: [(&str, &[&str]); 9] = [
             "reality-sim-gpu",
             "reality-sim-db",
             "reality-sim-synthesis",
+            "reality-sim-pipeline",
             "reality-sim-sensor",
             "reality-sim-gap",
         ],
@@ -50,6 +58,7 @@ const MAY_USE: [(&str, &[&str]); 9] = [
             "reality-sim-gpu",
             "reality-sim-db",
             "reality-sim-synthesis",
+            "reality-sim-pipeline",
             "reality-sim-sensor",
             "reality-sim-gap",
         ],

@@ -1,27 +1,22 @@
 //! `reality-sim build`: recordings with their poses into a database.
 
-use std::{
-    path::{Path, PathBuf},
-    time::Instant,
-};
+use std::{path::PathBuf, sync::Arc};
 
-use anyhow::bail;
+use anyhow::anyhow;
 use clap::Args;
 use serde::Serialize;
 
 use reality_sim::{
-    Archive, Sequence,
-    db::{Database, IngestReport, PoseEstimate, PoseSource},
-    localization::Picture,
-    sequence::{match_poses, read_tum},
-    synthesis::measure_hall,
+    Sequence,
+    db::IngestReport,
+    pipeline::{Event, PipelineError, Plan, PoseChoice},
     warp::Hall,
 };
 
 use super::{
     device::BackendArgs,
-    filter::{Tagged, tagged},
-    output::{aligned, check_output_file, frame_progress, print, print_json},
+    filter::{filter_plan, pose_error},
+    output::{StageProgress, aligned, check_output_file, print, print_json},
 };
 
 /// Options of `build`.
@@ -55,7 +50,7 @@ pub struct BuildArgs {
     json: bool,
 }
 
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 struct Report {
     database: String,
     sequences: Vec<SequenceReport>,
@@ -104,95 +99,82 @@ impl BuildArgs {
 
 /// Runs the command.
 pub fn run(args: &BuildArgs) -> anyhow::Result<()> {
-    let sequences: Vec<Sequence> =
-        args.sequences.iter().map(|folder| Sequence::open(folder)).collect::<Result<_, _>>()?;
+    let sequences: Vec<Arc<Sequence>> =
+        args.sequences.iter().map(|folder| Sequence::open(folder).map(Arc::new)).collect::<Result<_, _>>()?;
     let inputs: Vec<PathBuf> = sequences.iter().flat_map(|sequence| sequence.files.clone()).collect();
     check_output_file(&args.out, &inputs)?;
-    if args.out.exists() {
-        // Before the filter works for an hour: is it one?
-        drop(Database::create_or_open(&args.out)?);
+    let mut report = Report { database: args.out.display().to_string(), ..Report::default() };
+    let mut sources: Vec<&'static str> = Vec::new();
+    let mut progress = StageProgress::default();
+    for event in args.plan(&sequences).start() {
+        match event.map_err(with_options).inspect_err(|_| progress.finish())? {
+            Event::LocalizationStarted { frames, .. } | Event::StorageStarted { frames, .. } => {
+                progress.begin(frames)?;
+            }
+            Event::Localized { index, .. } => progress.set(index + 1),
+            Event::Stored { done, .. } => progress.set(done),
+            Event::PosesFound { poses, .. } => sources.push(poses.source.kind()),
+            Event::Ingested { recording, report: ingested, seconds } => {
+                let name = sequences[recording].name.clone();
+                report.sequences.push(SequenceReport::new(name, sources[recording], ingested, seconds));
+            }
+            Event::HallStarted => progress.finish(),
+            Event::Completed { images, hall } => {
+                (report.images, report.hall) = (images, hall.as_ref().map(HallReport::new));
+            }
+            _ => {}
+        }
     }
-    // All poses are known before a database is made.
-    let poses: Vec<Poses> =
-        sequences.iter().map(|sequence| poses(args, sequence)).collect::<Result<_, _>>()?;
-    let mut database = Database::create_or_open(&args.out)?;
-    let mut reports = Vec::new();
-    for (sequence, poses) in sequences.iter().zip(&poses) {
-        reports.push(add(sequence, poses, &mut database)?);
-    }
-    let images = database.images()?.len();
-    let is_new = reports.iter().any(|report| report.added > 0) || database.halls()?.is_empty();
-    let hall = if args.no_hall || !is_new { None } else { store_hall(&args.out, &mut database)? };
-    let report = Report { database: args.out.display().to_string(), sequences: reports, images, hall };
+    progress.finish();
     if args.json { print_json(&report) } else { print(&report.text()) }
 }
 
-/// One pose a frame, where it has one, and where they are from.
-struct Poses {
-    estimates: Vec<Option<PoseEstimate>>,
-    source: PoseSource,
-}
-
-fn add(sequence: &Sequence, poses: &Poses, database: &mut Database) -> anyhow::Result<SequenceReport> {
-    let Poses { estimates, source } = poses;
-    let progress = frame_progress(sequence.frames.len())?;
-    let start = Instant::now();
-    let ingested = database.ingest(sequence, estimates, source, |done| progress.set_position(done as u64));
-    progress.finish_and_clear();
-    let IngestReport { added, already_there, without_pose } = ingested?;
-    let images_per_second = added as f64 / start.elapsed().as_secs_f64();
-    let name = sequence.name.clone();
-    Ok(SequenceReport { name, poses: source.kind(), added, already_there, without_pose, images_per_second })
-}
-
-fn poses(args: &BuildArgs, sequence: &Sequence) -> anyhow::Result<Poses> {
-    if let Some(file) = &args.poses {
-        let poses = match_poses(file, read_tum(file)?, &sequence.frames)?;
-        if poses.iter().all(Option::is_none) {
-            bail!("{}: holds no poses: make it with `tag --out`", file.display());
-        }
-        let name = file.display().to_string();
-        let estimates = poses.into_iter().map(|pose| pose.map(PoseEstimate::from)).collect();
-        return Ok(Poses { estimates, source: PoseSource::File { name } });
+impl BuildArgs {
+    fn plan(&self, sequences: &[Arc<Sequence>]) -> Plan {
+        let poses = match &self.poses {
+            Some(file) => PoseChoice::File(file.clone()),
+            None if self.tag => PoseChoice::Filter,
+            None => PoseChoice::ReferenceElseFilter,
+        };
+        let filter = filter_plan(&self.backend, self.seed).with_unsure(self.unsure);
+        Plan::new(sequences.iter().cloned(), poses)
+            .with_filter(filter)
+            .with_database(&self.out)
+            .with_hall(!self.no_hall)
     }
-    if !args.tag && sequence.has_reference_poses() {
-        let estimates = sequence.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
-        return Ok(Poses { estimates, source: PoseSource::GroundTruth });
-    }
-    tagged_poses(args, sequence)
 }
 
-/// Poses by the filter, of the whole recording together.
-fn tagged_poses(args: &BuildArgs, sequence: &Sequence) -> anyhow::Result<Poses> {
-    let Tagged { frames, localizer, config, device } = tagged(sequence, &args.backend, args.seed)?;
-    let smoothed =
-        localizer.smoother().smooth(&frames, |index| sequence.load_image(index).map(Picture::from))?;
-    let estimates = PoseEstimate::of_localized(&frames, smoothed.as_deref(), args.unsure);
-    if estimates.iter().all(Option::is_none) {
-        bail!(
+/// Says which options help.
+fn with_options(error: PipelineError) -> anyhow::Error {
+    match error {
+        PipelineError::NothingSure { folder } => anyhow!(
             "{}: the filter is sure of no picture's pose: give the poses with --poses, or take them all with --unsure",
-            sequence.folder.display()
-        );
+            folder.display()
+        ),
+        error => pose_error(error),
     }
-    let program = concat!("reality-sim ", env!("CARGO_PKG_VERSION"));
-    let source = PoseSource::of_filter(program, &config, &device, smoothed.is_some());
-    Ok(Poses { estimates, source })
 }
 
-/// Measures the hall around the field that most images show, and keeps it.
-fn store_hall(path: &Path, database: &mut Database) -> anyhow::Result<Option<HallReport>> {
-    let archive = Archive::open(path, 0)?;
-    let Some(hall) = measure_hall(&archive)? else { return Ok(None) };
-    database.set_hall(archive.images()[0].field_id, &hall)?;
-    let Hall { min_m, max_m, ceiling_m, goal_depth_m } = hall;
-    Ok(Some(HallReport {
-        min_x_m: min_m.x,
-        min_y_m: min_m.y,
-        max_x_m: max_m.x,
-        max_y_m: max_m.y,
-        ceiling_m,
-        goal_depth_m,
-    }))
+impl SequenceReport {
+    fn new(name: String, poses: &'static str, report: IngestReport, seconds: f64) -> Self {
+        let IngestReport { added, already_there, without_pose } = report;
+        let images_per_second = added as f64 / seconds;
+        Self { name, poses, added, already_there, without_pose, images_per_second }
+    }
+}
+
+impl HallReport {
+    fn new(hall: &Hall) -> Self {
+        let Hall { min_m, max_m, ceiling_m, goal_depth_m } = *hall;
+        Self {
+            min_x_m: min_m.x,
+            min_y_m: min_m.y,
+            max_x_m: max_m.x,
+            max_y_m: max_m.y,
+            ceiling_m,
+            goal_depth_m,
+        }
+    }
 }
 
 impl Report {

@@ -10,7 +10,7 @@ use reality_sim::backend::BackendError;
 use reality_sim::backend::{Backend, CpuBackend};
 
 /// Where to compute.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct BackendArgs {
     /// Where to compute: auto takes a graphics card where there is one
     #[arg(long, value_enum, default_value = "auto")]

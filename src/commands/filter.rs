@@ -1,27 +1,36 @@
-//! Recordings tagged on the way to something else: what `build` and `gap` share.
+//! The particle filter on the way to something else: what `build` and `gap` share.
 
-use reality_sim::{LocalizedFrame, Localizer, LocalizerConfig, Sequence, observation::ObservationKind};
+use std::sync::Arc;
 
-use super::{device::BackendArgs, output::frame_progress};
+use anyhow::anyhow;
 
-/// A recording whose pictures the particle filter has tagged.
-pub struct Tagged {
-    pub frames: Vec<LocalizedFrame>,
-    pub localizer: Localizer,
-    pub config: LocalizerConfig,
-    /// Name of the device that did it.
-    pub device: String,
+use reality_sim::{
+    LocalizerConfig, ObservationKind,
+    backend::BackendError,
+    pipeline::{Device, FilterPlan, OpenDevice, PipelineError},
+};
+
+use super::device::BackendArgs;
+
+/// The filter with the usual settings, on the device that the options name.
+pub fn filter_plan(backend: &BackendArgs, seed: u64) -> FilterPlan {
+    let backend = backend.clone();
+    let open: OpenDevice = Arc::new(move || {
+        let device = backend.device().map_err(BackendError::new)?;
+        Ok(Device { name: device.name.to_owned(), backend: device.backend })
+    });
+    FilterPlan::default()
+        .with_config(LocalizerConfig::new(ObservationKind::Contrast).with_seed(seed))
+        .with_device(open)
+        .with_program(concat!("reality-sim ", env!("CARGO_PKG_VERSION")))
 }
 
-/// Tags every picture with the usual settings, under a progress bar.
-pub fn tagged(sequence: &Sequence, backend: &BackendArgs, seed: u64) -> anyhow::Result<Tagged> {
-    let config = LocalizerConfig::new(ObservationKind::Contrast).with_seed(seed);
-    let device = backend.device()?;
-    let Sequence { setup, field, start, .. } = sequence;
-    let builder = Localizer::builder(&setup.camera, field).config(config).start(*start);
-    let mut localizer = builder.backend(device.backend).build()?;
-    let progress = frame_progress(sequence.frames.len())?;
-    let frames: Result<_, _> = localizer.run(sequence).inspect(|_| progress.inc(1)).collect();
-    progress.finish_and_clear();
-    Ok(Tagged { frames: frames?, localizer, config, device: device.name.to_owned() })
+/// Says which option helps where a file has no poses.
+pub fn pose_error(error: PipelineError) -> anyhow::Error {
+    match error {
+        PipelineError::NoPoses { file } => {
+            anyhow!("{}: holds no poses: make it with `tag --out`", file.display())
+        }
+        error => error.into(),
+    }
 }

@@ -101,6 +101,33 @@ pub fn frame_progress(frames: usize) -> anyhow::Result<ProgressBar> {
     Ok(bar)
 }
 
+/// One progress bar after the other, for work in stages.
+#[derive(Default)]
+pub struct StageProgress(Option<ProgressBar>);
+
+impl StageProgress {
+    /// A stage of so many frames begins.
+    pub fn begin(&mut self, frames: usize) -> anyhow::Result<()> {
+        self.finish();
+        self.0 = Some(frame_progress(frames)?);
+        Ok(())
+    }
+
+    /// So many frames of the stage are done.
+    pub fn set(&self, done: usize) {
+        if let Some(bar) = &self.0 {
+            bar.set_position(done as u64);
+        }
+    }
+
+    /// The stage is over.
+    pub fn finish(&self) {
+        if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 fn parent(path: &Path) -> PathBuf {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),

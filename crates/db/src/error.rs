@@ -102,6 +102,12 @@ pub enum DbFault {
     /// Neither the file nor its folder can be changed.
     #[error("cannot be written: check the permissions of the file and of its folder")]
     ReadOnly,
+    /// A time that is no number.
+    #[error("the time of frame {frame_index} is no finite number: give seconds of the recording's clock")]
+    TimeImpossible {
+        /// Number of the frame, from 0.
+        frame_index: usize,
+    },
     /// This program opened it for reading.
     #[error("was opened for reading: open it for writing to add pictures")]
     OpenedForReading,

@@ -2,16 +2,15 @@
 
 use std::{path::Path, sync::PoisonError};
 
-use reality_sim_core::{
-    pose::{CameraPose, wrap_angle},
-    sequence::Sequence,
-};
-use rusqlite::{OptionalExtension, Row, Transaction, TransactionBehavior, params};
+use reality_sim_core::sequence::Sequence;
+use rusqlite::{Connection, Transaction, TransactionBehavior};
 
 use crate::{
-    Database,
+    database::Database,
     error::{DbError, DbFault},
-    record::{PoseEstimate, PoseSource, covariance_bytes, pose_from_row},
+    insert::{self, Shared, insert},
+    record::{PoseEstimate, PoseSource},
+    recording::{Insertion, NewImage, Recording},
 };
 
 /// Frames that are committed together, at most.
@@ -19,9 +18,6 @@ const BATCH_FRAMES: usize = 64;
 
 /// A transaction is committed once it holds so much: all of it stays in the writer's memory until then.
 const BATCH_BYTES: usize = 16 << 20;
-
-/// Poses nearer than this, metres and radians, are one: a filter computes them anew when work goes on.
-const SAME_POSE: f64 = 1e-6;
 
 /// What became of a sequence's frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -63,6 +59,26 @@ impl Database {
         self.ingest_batches(sequence, poses, source, progress, |_| {})
     }
 
+    /// Adds one image, in a transaction of its own. One that the database holds already, by the number of its frame in the
+    /// recording, is compared: another picture, pose, time, camera or field is [`DbFault::Changed`].
+    pub fn insert(&mut self, recording: &Recording, image: &NewImage<'_>) -> Result<Insertion, DbError> {
+        let path = self.path().to_path_buf();
+        let fail = |fault| DbError::new(&path, fault);
+        if !self.is_writer {
+            return Err(fail(DbFault::OpenedForReading));
+        }
+        insert::check(&path, recording, image)?;
+        let insert_now = |connection: &mut Connection| -> Result<Insertion, DbFault> {
+            let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+            let shared = Shared::find_or_add(&transaction, recording)?;
+            let insertion = insert(&transaction, recording, &shared, image)?;
+            transaction.commit()?;
+            Ok(insertion)
+        };
+        let connection = self.connection.get_mut().unwrap_or_else(PoisonError::into_inner);
+        insert_now(connection).map_err(fail)
+    }
+
     /// `goes_on` gets the number of frames done after every frame, `committed` after every batch.
     fn ingest_batches(
         &mut self,
@@ -78,7 +94,8 @@ impl Database {
             return Err(fail(DbFault::OpenedForReading));
         }
         check_poses(sequence, poses).map_err(fail)?;
-        let recording = Recording::new(&path, sequence, poses, source)?;
+        let recording = Recording::of_sequence(sequence, source.clone())?;
+        let frames = Frames { path: &path, sequence, poses, recording };
         let connection = self.connection.get_mut().unwrap_or_else(PoisonError::into_inner);
         let mut report = IngestReport::default();
         let (mut done, mut is_wanted) = (0, true);
@@ -90,7 +107,7 @@ impl Database {
                 is_wanted = goes_on(done);
                 is_wanted
             };
-            done = recording.add_batch(&transaction, done, &mut report, &mut goes_on)?;
+            done = frames.add_batch(&transaction, done, &mut report, &mut goes_on)?;
             transaction.commit().map_err(|error| fail(error.into()))?;
             committed(done);
         }
@@ -107,37 +124,15 @@ fn check_poses(sequence: &Sequence, poses: &[Option<PoseEstimate>]) -> Result<()
     poses.iter().position(is_bad).map_or(Ok(()), |frame_index| Err(DbFault::PoseImpossible { frame_index }))
 }
 
-/// What is added, and the texts it shares.
-struct Recording<'a> {
+/// The frames of a folder, and what they share.
+struct Frames<'a> {
     path: &'a Path,
     sequence: &'a Sequence,
     poses: &'a [Option<PoseEstimate>],
-    source: &'a PoseSource,
-    first_frame: String,
-    camera: String,
-    field: String,
+    recording: Recording,
 }
 
-/// Rows that all images of a recording refer to.
-struct Shared {
-    sequence_id: i64,
-    camera_id: i64,
-    field_id: i64,
-    pose_source_id: i64,
-}
-
-impl<'a> Recording<'a> {
-    fn new(
-        path: &'a Path,
-        sequence: &'a Sequence,
-        poses: &'a [Option<PoseEstimate>],
-        source: &'a PoseSource,
-    ) -> Result<Self, DbError> {
-        let camera = sequence.setup.to_toml(&sequence.folder)?;
-        let field = sequence.field.to_toml(&sequence.folder)?;
-        Ok(Self { path, sequence, poses, source, first_frame: first_frame(sequence), camera, field })
-    }
-
+impl Frames<'_> {
     /// Adds frames from this one on, as long as `goes_on` says true after each, and says which is next.
     fn add_batch(
         &self,
@@ -146,7 +141,9 @@ impl<'a> Recording<'a> {
         report: &mut IngestReport,
         goes_on: &mut dyn FnMut(usize) -> bool,
     ) -> Result<usize, DbError> {
-        let shared = self.shared(transaction).map_err(|error| DbError::new(self.path, error))?;
+        let fail = |fault| DbError::new(self.path, fault);
+        let shared =
+            Shared::find_or_add(transaction, &self.recording).map_err(|error| fail(DbFault::from(error)))?;
         let end = self.poses.len().min(first + BATCH_FRAMES);
         let mut held_bytes = 0;
         for index in first..end {
@@ -158,10 +155,11 @@ impl<'a> Recording<'a> {
                 Some(estimate) => {
                     let bytes = self.sequence.image_bytes(index)?;
                     held_bytes += bytes.len();
-                    let is_new = self
-                        .add_frame(transaction, &shared, index, estimate, &bytes)
-                        .map_err(|fault| DbError::new(self.path, fault))?;
-                    *(if is_new { &mut report.added } else { &mut report.already_there }) += 1;
+                    let image = self.image(index, estimate, &bytes).map_err(fail)?;
+                    match insert(transaction, &self.recording, &shared, &image).map_err(fail)? {
+                        Insertion::Added => report.added += 1,
+                        Insertion::AlreadyThere => report.already_there += 1,
+                    }
                 }
             }
             if !goes_on(index + 1) {
@@ -171,155 +169,14 @@ impl<'a> Recording<'a> {
         Ok(end)
     }
 
-    /// Adds a frame that is not there yet; returns whether it was not.
-    fn add_frame(
-        &self,
-        transaction: &Transaction<'_>,
-        shared: &Shared,
+    fn image<'b>(
+        &'b self,
         index: usize,
-        estimate: &PoseEstimate,
-        bytes: &[u8],
-    ) -> Result<bool, DbFault> {
+        estimate: &'b PoseEstimate,
+        bytes: &'b [u8],
+    ) -> Result<NewImage<'b>, DbFault> {
         let frame = &self.sequence.frames[index];
         let file_name = frame.image.to_str().ok_or(DbFault::NameNotUtf8 { frame_index: index })?;
-        let Some(stored) = StoredFrame::find(transaction, shared.sequence_id, index, bytes)? else {
-            let image = NewImage { index, timestamp_s: frame.timestamp_s, file_name, estimate, bytes };
-            image.insert(transaction, shared)?;
-            return Ok(true);
-        };
-        let differences = [
-            (stored.camera_id != shared.camera_id, "camera"),
-            (stored.field_id != shared.field_id, "field"),
-            (stored.timestamp_s != frame.timestamp_s, "time"),
-            (stored.file_name != file_name, "file name"),
-            (!stored.has_these_bytes, "picture"),
-            (!is_same_pose(stored.pose, estimate.pose), "pose"),
-        ];
-        match differences.iter().find(|(differs, _)| *differs) {
-            None => Ok(false),
-            Some((_, what)) => {
-                Err(DbFault::Changed { sequence: self.sequence.name.clone(), frame_index: index, what })
-            }
-        }
-    }
-
-    /// Finds the rows that the images refer to, or adds them.
-    fn shared(&self, transaction: &Transaction<'_>) -> rusqlite::Result<Shared> {
-        let row = |table: &str, columns: [&str; 2], values: [&str; 2]| {
-            let [first, second] = columns;
-            let insert = format!("INSERT OR IGNORE INTO {table} ({first}, {second}) VALUES (?1, ?2)");
-            transaction.execute(&insert, values)?;
-            let find = format!("SELECT id FROM {table} WHERE {first} = ?1 AND {second} = ?2");
-            transaction.query_row(&find, values, |row| row.get(0))
-        };
-        let text = |table: &str, toml: &str| {
-            transaction.execute(&format!("INSERT OR IGNORE INTO {table} (toml) VALUES (?1)"), [toml])?;
-            transaction
-                .query_row(&format!("SELECT id FROM {table} WHERE toml = ?1"), [toml], |row| row.get(0))
-        };
-        Ok(Shared {
-            sequence_id: row("sequences", ["name", "first_frame"], [&self.sequence.name, &self.first_frame])?,
-            camera_id: text("cameras", &self.camera)?,
-            field_id: text("fields", &self.field)?,
-            pose_source_id: row(
-                "pose_sources",
-                ["kind", "description"],
-                [self.source.kind(), self.source.description()],
-            )?,
-        })
-    }
-}
-
-/// What tells a sequence from others of its name: all that is known of its first frame but the picture.
-fn first_frame(sequence: &Sequence) -> String {
-    let Some(frame) = sequence.frames.first() else { return String::new() };
-    let odometry =
-        frame.odometry.map_or(String::new(), |pose| format!("{},{},{}", pose.x_m, pose.y_m, pose.yaw_rad));
-    let image = frame.image.display();
-    format!("{},{image},{odometry},{},{}", frame.timestamp_s, frame.pitch_rad, frame.roll_rad)
-}
-
-fn is_same_pose(a: CameraPose, b: CameraPose) -> bool {
-    let lengths_m = [a.x_m - b.x_m, a.y_m - b.y_m, a.height_m - b.height_m];
-    let angles_rad =
-        [a.yaw_rad - b.yaw_rad, a.pitch_rad - b.pitch_rad, a.roll_rad - b.roll_rad].map(wrap_angle);
-    lengths_m.iter().chain(&angles_rad).all(|difference| difference.abs() < SAME_POSE)
-}
-
-/// A frame's own part of its row, and its picture.
-struct NewImage<'a> {
-    index: usize,
-    timestamp_s: f64,
-    file_name: &'a str,
-    estimate: &'a PoseEstimate,
-    bytes: &'a [u8],
-}
-
-impl NewImage<'_> {
-    fn insert(&self, transaction: &Transaction<'_>, shared: &Shared) -> rusqlite::Result<()> {
-        let pose = self.estimate.pose;
-        transaction.execute(
-            "INSERT INTO images (sequence_id, frame_index, camera_id, field_id, pose_source_id, timestamp_s,
-                file_name, byte_length, x_m, y_m, yaw_rad, height_m, pitch_rad, roll_rad, covariance)
-                VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15)",
-            params![
-                shared.sequence_id,
-                self.index as i64,
-                shared.camera_id,
-                shared.field_id,
-                shared.pose_source_id,
-                self.timestamp_s,
-                self.file_name,
-                self.bytes.len() as i64,
-                pose.x_m,
-                pose.y_m,
-                pose.yaw_rad,
-                pose.height_m,
-                pose.pitch_rad,
-                pose.roll_rad,
-                self.estimate.covariance.as_ref().map(covariance_bytes),
-            ],
-        )?;
-        let id = transaction.last_insert_rowid();
-        transaction
-            .execute("INSERT INTO image_bytes (image_id, bytes) VALUES (?1, ?2)", params![id, self.bytes])?;
-        Ok(())
-    }
-}
-
-/// What the database holds of a frame.
-struct StoredFrame {
-    camera_id: i64,
-    field_id: i64,
-    timestamp_s: f64,
-    file_name: String,
-    pose: CameraPose,
-    has_these_bytes: bool,
-}
-
-impl StoredFrame {
-    /// The frame of a sequence, if it is there, compared with the bytes of a picture.
-    fn find(
-        transaction: &Transaction<'_>,
-        sequence_id: i64,
-        index: usize,
-        bytes: &[u8],
-    ) -> rusqlite::Result<Option<Self>> {
-        let query = "SELECT camera_id, field_id, timestamp_s, file_name,
-                x_m, y_m, yaw_rad, height_m, pitch_rad, roll_rad, bytes IS ?3
-                FROM images LEFT JOIN image_bytes ON image_bytes.image_id = images.id
-                WHERE sequence_id = ?1 AND frame_index = ?2";
-        transaction.query_row(query, params![sequence_id, index as i64, bytes], Self::from_row).optional()
-    }
-
-    fn from_row(row: &Row<'_>) -> rusqlite::Result<Self> {
-        Ok(Self {
-            camera_id: row.get(0)?,
-            field_id: row.get(1)?,
-            timestamp_s: row.get(2)?,
-            file_name: row.get(3)?,
-            pose: pose_from_row(row, 4)?,
-            has_these_bytes: row.get(10)?,
-        })
+        Ok(NewImage { frame_index: index, timestamp_s: frame.timestamp_s, file_name, estimate, bytes })
     }
 }

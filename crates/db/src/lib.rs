@@ -2,7 +2,8 @@
 //!
 //! | type | what |
 //! |---|---|
-//! | [`Database`] | the file: [`Database::ingest`] puts recordings in, the other methods read |
+//! | [`Database`] | the file: [`Database::ingest`] puts recordings in, [`Database::insert`] one image, the other methods read |
+//! | [`Recording`], [`NewImage`] | one image on its way in, and what it shares with others |
 //! | [`ImageRecord`] | what is known of an image without its pixels: pose, covariance, time, camera, field |
 //! | [`PoseEstimate`], [`PoseSource`] | a pose on its way in, and where poses come from |
 //! | [`metric::PixelMetric`] | how far apart two poses are: how far the picture moves between them, pixels |
@@ -44,8 +45,10 @@ mod database;
 mod error;
 pub mod index;
 mod ingest;
+mod insert;
 pub mod metric;
 mod record;
+mod recording;
 mod schema;
 
 pub use self::{
@@ -53,6 +56,7 @@ pub use self::{
     error::{DbError, DbFault},
     ingest::IngestReport,
     record::{ImageRecord, PoseEstimate, PoseSource},
+    recording::{Insertion, NewImage, Recording},
     schema::SCHEMA_VERSION,
 };
 

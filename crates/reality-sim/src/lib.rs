@@ -98,6 +98,7 @@ pub use reality_sim_core::{
 };
 pub use reality_sim_db as db;
 pub use reality_sim_gap as gap;
+pub use reality_sim_pipeline as pipeline;
 pub use reality_sim_sensor as sensor;
 pub use reality_sim_synthesis as synthesis;
 pub use reality_sim_synthesis::{Archive, Reconstruction, SynthesisError, Synthesizer};

@@ -1,15 +1,19 @@
 //! The reference poses of a comparison: measured, or found in the pictures.
 
-use anyhow::bail;
+use std::sync::Arc;
 
 use reality_sim::{
     CameraPose, Pose2, Sequence,
+    db::PoseSource,
     gap::ReferenceSource,
-    sequence::{match_poses, read_tum},
+    pipeline::{Event, FoundPoses, Plan, PoseChoice},
 };
 
 use super::GapArgs;
-use crate::commands::filter;
+use crate::commands::{
+    filter::{filter_plan, pose_error},
+    output::StageProgress,
+};
 
 /// One pose a frame, where there is one, and where they come from.
 pub struct Reference {
@@ -19,26 +23,40 @@ pub struct Reference {
 
 /// The sequence's own, those of a file, or those of the particle filter.
 pub fn reference(args: &GapArgs, sequence: &Sequence) -> anyhow::Result<Reference> {
-    if let Some(file) = &args.poses {
-        let poses = match_poses(file, read_tum(file)?, &sequence.frames)?;
-        if poses.iter().all(Option::is_none) {
-            bail!("{}: holds no poses: make it with `tag --out`", file.display());
+    let mut settled = Vec::new();
+    let mut found = None;
+    let mut progress = StageProgress::default();
+    for event in plan(args, sequence).start() {
+        match event.map_err(pose_error).inspect_err(|_| progress.finish())? {
+            Event::LocalizationStarted { frames, .. } => progress.begin(frames)?,
+            Event::Localized { index, frame, .. } => {
+                progress.set(index + 1);
+                settled.push(frame.settled.then(|| frame.pose.planar()));
+            }
+            Event::PosesFound { poses, .. } => found = Some(poses),
+            _ => {}
         }
-        return Ok(tagged(sequence, poses.into_iter().map(|pose| pose.map(CameraPose::planar))));
     }
-    if !args.tag && sequence.has_reference_poses() {
-        return Ok(Reference {
-            poses: sequence.reference_poses().collect(),
-            source: ReferenceSource::Measured,
-        });
-    }
-    by_filter(args, sequence)
+    progress.finish();
+    let FoundPoses { estimates, source, .. } =
+        found.unwrap_or_else(|| unreachable!("a plan ends with poses"));
+    let poses = estimates.into_iter().map(|estimate| estimate.map(|estimate| estimate.pose));
+    Ok(match source {
+        PoseSource::GroundTruth => Reference { poses: poses.collect(), source: ReferenceSource::Measured },
+        PoseSource::File { .. } => tagged(sequence, poses.map(|pose| pose.map(CameraPose::planar))),
+        PoseSource::Filter { .. } => tagged(sequence, settled.into_iter()),
+    })
 }
 
-fn by_filter(args: &GapArgs, sequence: &Sequence) -> anyhow::Result<Reference> {
-    let frames = filter::tagged(sequence, &args.backend, args.seed)?.frames;
-    let planar = frames.iter().map(|frame| frame.settled.then(|| frame.pose.planar()));
-    Ok(tagged(sequence, planar))
+/// The poses as each picture gave them: smoothing would take in whatever is wrong with the mount.
+fn plan(args: &GapArgs, sequence: &Sequence) -> Plan {
+    let poses = match &args.poses {
+        Some(file) => PoseChoice::File(file.clone()),
+        None if args.tag => PoseChoice::Filter,
+        None => PoseChoice::ReferenceElseFilter,
+    };
+    let filter = filter_plan(&args.backend, args.seed).with_smoothing(false).with_unsure(true);
+    Plan::new([Arc::new(sequence.clone())], poses).with_filter(filter)
 }
 
 /// Places found in the pictures, with the height, pitch and roll that the robot knows of itself: those of the pictures

@@ -31,6 +31,11 @@ impl<L: BorrowMut<Localizer>> Run<L> {
         Self { localizer, playback: Playback::new(sequence), observation: None, has_failed: false }
     }
 
+    /// Ends here, and gives the localizer back.
+    pub fn into_localizer(self) -> L {
+        self.localizer
+    }
+
     /// The localizer as the last frame left it.
     pub fn localizer(&self) -> &Localizer {
         self.localizer.borrow()

@@ -30,7 +30,7 @@ pub use self::{
     field_file::read_field,
     frames::FrameRecord,
     groundtruth::match_poses,
-    picture::{decode_image, save_image},
+    picture::{check_image, decode_image, save_image},
     tum::{StampedPose, read_tum, write_tum},
 };
 use self::{

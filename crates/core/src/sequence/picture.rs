@@ -27,8 +27,14 @@ pub(super) fn load_picture(path: &Path, size: [u32; 2]) -> Result<RgbImage, Sequ
 /// The bytes of a picture's file, once they are known to be a whole picture of this size, pixels.
 pub(super) fn read_picture(path: &Path, size: [u32; 2]) -> Result<Vec<u8>, SequenceError> {
     let bytes = read_bytes(path, MAX_PICTURE_BYTES)?;
-    check_picture(&bytes, size).map_err(|fault| SequenceError::of_file(path, fault))?;
+    check_image(path, &bytes, size)?;
     Ok(bytes)
+}
+
+/// Checks that bytes are a whole JPEG or PNG of this size, pixels, by its header and its end; the pixels are not decoded.
+/// `path` is what an error calls them.
+pub fn check_image(path: &Path, bytes: &[u8], size: [u32; 2]) -> Result<(), SequenceError> {
+    check_picture(bytes, size).map_err(|fault| SequenceError::of_file(path, fault))
 }
 
 /// Writes a picture as PNG or JPEG, by the ending of the file's name, and creates its folder. The file has its name

@@ -1,6 +1,7 @@
 //! The demonstration walk into a database and out again, and what can go wrong on the way.
 
 mod ingesting;
+mod inserting;
 mod interrupted;
 mod opening;
 mod reading;

@@ -7,7 +7,7 @@ use reality_sim_core::sequence::Sequence;
 
 use super::{
     settings::DriveSettings,
-    source::{Poses, Source, build, holds_back},
+    source::{Source, build, holds_back},
     widgets::{counted, device_ui},
 };
 use crate::{
@@ -127,11 +127,7 @@ impl Recorded {
         let device = by_name(devices, &settings.device).cloned();
         self.is_stopped = false;
         self.work = Some(Task::spawn(ui.ctx(), "Making the database …", move |progress| {
-            let poses = match Poses::known(&sequence) {
-                Some(poses) => poses,
-                None => Poses::found(&sequence, device.as_ref(), progress)?,
-            };
-            build(&sequence, poses, progress)
+            build(&sequence, device.as_ref(), progress)
         }));
     }
 }

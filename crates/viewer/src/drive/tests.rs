@@ -27,7 +27,7 @@ use super::{
     driving::Driving,
     kind::{PictureKind, Shown, View},
     painter::{Answer, Around, Painted, Painter, Wish},
-    source::{Poses, Source, build},
+    source::{Source, build},
 };
 use crate::{
     background::{Outcome, Task},
@@ -57,8 +57,7 @@ fn finished<T: Send + 'static>(task: &Task<T>) -> Result<T, String> {
 
 fn built(sequence: Sequence) -> Source {
     let sequence = Arc::new(sequence);
-    let poses = Poses::known(&sequence).unwrap();
-    let task = Task::spawn(&Context::default(), "", move |progress| build(&sequence, poses, progress));
+    let task = Task::spawn(&Context::default(), "", move |progress| build(&sequence, None, progress));
     finished(&task).unwrap()
 }
 
@@ -138,12 +137,8 @@ fn without_ground_truth_the_filter_finds_where_pictures_were_taken() {
     let mut recording = walk();
     recording.frames.truncate(12);
     let truth: Vec<_> = recording.frames.iter_mut().map(|frame| frame.reference_pose.take()).collect();
-    assert!(Poses::known(&recording).is_none());
     let recording = Arc::new(recording);
-    let task = Task::spawn(&Context::default(), "", move |progress| {
-        let poses = Poses::found(&recording, None, progress)?;
-        build(&recording, poses, progress)
-    });
+    let task = Task::spawn(&Context::default(), "", move |progress| build(&recording, None, progress));
     let source = finished(&task).unwrap();
     let held = source.probes.as_ref().map_or(0, |probes| probes.poses().len());
     assert!(source.archive.images().len() + held >= 10, "{} and {held}", source.archive.images().len());
@@ -365,9 +360,7 @@ fn the_provenance_of_poses_found_says_how_they_were_found() {
     recording.frames.truncate(4);
     recording.frames.iter_mut().for_each(|frame| frame.reference_pose = None);
     let recording = Arc::new(recording);
-    let task = Task::spawn(&Context::default(), "", move |progress| {
-        build(&recording, Poses::found(&recording, None, progress)?, progress)
-    });
+    let task = Task::spawn(&Context::default(), "", move |progress| build(&recording, None, progress));
     let source = finished(&task).unwrap();
     let described = source.archive.database().pose_sources().unwrap();
     let text = format!("{described:?}");

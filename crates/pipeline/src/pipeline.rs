@@ -1,0 +1,105 @@
+//! A plan at work.
+
+use std::{path::Path, sync::mpsc, thread};
+
+use reality_sim_db::Database;
+
+use crate::{
+    error::PipelineError,
+    event::{Event, FoundPoses},
+    outbox::{Outbox, Stop},
+    plan::Plan,
+    poses::PoseFinder,
+    storage::{store, store_hall},
+};
+
+/// Events on their way at most.
+const QUEUE: usize = 1;
+
+/// A plan at work on a thread of its own, as a stream of events. After an error there are no more. Dropping it cancels the
+/// work and waits until that has ended; what was stored before stays, and another pipeline goes on from there.
+#[derive(Debug)]
+pub struct Pipeline {
+    /// None once they have ended.
+    events: Option<mpsc::Receiver<Result<Event, PipelineError>>>,
+    thread: Option<thread::JoinHandle<()>>,
+}
+
+impl Plan {
+    /// Begins.
+    pub fn start(self) -> Pipeline {
+        let (sender, events) = mpsc::sync_channel(QUEUE);
+        let thread = thread::spawn(move || {
+            let outbox = Outbox::new(sender);
+            if let Err(Stop::Failed(error)) = work(&self, &outbox) {
+                outbox.fail(error);
+            }
+        });
+        Pipeline { events: Some(events), thread: Some(thread) }
+    }
+}
+
+/// All poses are known before a database is made: whoever waits for the filter must not be left with half of one.
+fn work(plan: &Plan, outbox: &Outbox) -> Result<(), Stop> {
+    if let Some(path) = plan.database.as_deref().filter(|path| path.exists()) {
+        // Before the filter works for an hour: is it one?
+        drop(Database::create_or_open(path)?);
+    }
+    let mut finder = PoseFinder::new(plan, outbox);
+    let mut poses = Vec::with_capacity(plan.recordings.len());
+    for recording in 0..plan.recordings.len() {
+        let found = finder.find(recording)?;
+        outbox.send(Event::PosesFound { recording, poses: found.clone() })?;
+        poses.push(found);
+    }
+    match &plan.database {
+        Some(path) => store_all(plan, path, &poses, outbox),
+        None => Ok(()),
+    }
+}
+
+fn store_all(plan: &Plan, path: &Path, poses: &[FoundPoses], outbox: &Outbox) -> Result<(), Stop> {
+    let mut database = Database::create_or_open(path)?;
+    let mut is_new = false;
+    for (recording, (sequence, poses)) in plan.recordings.iter().zip(poses).enumerate() {
+        is_new |= store(&mut database, recording, sequence, poses, outbox)?.added > 0;
+    }
+    let images = database.images()?.len();
+    let mut hall = None;
+    if plan.measures_hall && (is_new || database.halls()?.is_empty()) {
+        outbox.send(Event::HallStarted)?;
+        hall = store_hall(path, &mut database)?;
+    }
+    drop(database);
+    outbox.send(Event::Completed { images, hall })
+}
+
+impl Pipeline {
+    /// Waits for the end of the thread; a panic in it goes on here.
+    fn end(&mut self) {
+        self.events = None;
+        if let Some(Err(panic)) = self.thread.take().map(thread::JoinHandle::join)
+            && !thread::panicking()
+        {
+            std::panic::resume_unwind(panic);
+        }
+    }
+}
+
+impl Iterator for Pipeline {
+    type Item = Result<Event, PipelineError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let event = self.events.as_ref()?.recv().ok();
+        if !matches!(event, Some(Ok(_))) {
+            self.end();
+        }
+        event
+    }
+}
+
+impl Drop for Pipeline {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
