@@ -3,8 +3,10 @@
 #[cfg(feature = "gpu")]
 use reality_sim::gpu::GpuError;
 use reality_sim::{
-    SynthesisError,
+    LocalizationError, SynthesisError,
+    backend::BackendError,
     db::{DbError, DbFault, index::NoNeighbours},
+    pipeline::PipelineError,
 };
 #[cfg(feature = "viewer")]
 use reality_sim_viewer::ViewerError;
@@ -14,6 +16,12 @@ pub fn advice(error: &anyhow::Error) -> Option<&'static str> {
     error.chain().find_map(|cause| {
         if let Some(error) = cause.downcast_ref() {
             return of_synthesis(error);
+        }
+        if let Some(error) = cause.downcast_ref() {
+            return of_pipeline(error);
+        }
+        if let Some(LocalizationError::Backend(error)) = cause.downcast_ref() {
+            return of_backend(error);
         }
         #[cfg(feature = "gpu")]
         if let Some(error) = cause.downcast_ref() {
@@ -30,6 +38,7 @@ pub fn advice(error: &anyhow::Error) -> Option<&'static str> {
 fn of_synthesis(error: &SynthesisError) -> Option<&'static str> {
     match error {
         SynthesisError::Database(error) => of_database(error),
+        SynthesisError::Backend(error) => of_backend(error),
         SynthesisError::Empty { .. } => Some("`reality-sim build RECORDING --out DATABASE`"),
         SynthesisError::NoNeighbours { reason: NoNeighbours::OutOfReach { .. }, .. }
         | SynthesisError::TooLittleSeen { .. } => Some("`--best-effort`"),
@@ -38,6 +47,27 @@ fn of_synthesis(error: &SynthesisError) -> Option<&'static str> {
         }
         _ => None,
     }
+}
+
+fn of_pipeline(error: &PipelineError) -> Option<&'static str> {
+    match error {
+        PipelineError::Database(error) => of_database(error),
+        PipelineError::Hall(error) => of_synthesis(error),
+        PipelineError::Device(error) | PipelineError::Localization(LocalizationError::Backend(error)) => {
+            of_backend(error)
+        }
+        _ => None,
+    }
+}
+
+#[cfg(feature = "gpu")]
+fn of_backend(error: &BackendError) -> Option<&'static str> {
+    error.get_ref().downcast_ref().and_then(of_graphics)
+}
+
+#[cfg(not(feature = "gpu"))]
+fn of_backend(_: &BackendError) -> Option<&'static str> {
+    None
 }
 
 fn of_database(error: &DbError) -> Option<&'static str> {

@@ -5,9 +5,7 @@ use std::sync::Arc;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 
-#[cfg(feature = "viewer")]
-use reality_sim::backend::BackendError;
-use reality_sim::backend::{Backend, CpuBackend};
+use reality_sim::backend::{Backend, BackendError, CpuBackend};
 
 /// Where to compute.
 #[derive(Debug, Clone, Args)]
@@ -93,12 +91,24 @@ impl BackendArgs {
     }
 }
 
+/// The error of a device that cannot be opened, with the device's own error in it where there is one.
+#[cfg(feature = "gpu")]
+pub fn backend_error(error: anyhow::Error) -> BackendError {
+    error.downcast::<reality_sim::gpu::GpuError>().map_or_else(BackendError::new, BackendError::from)
+}
+
+/// The error of a device that cannot be opened.
+#[cfg(not(feature = "gpu"))]
+pub fn backend_error(error: anyhow::Error) -> BackendError {
+    BackendError::new(error)
+}
+
 /// The devices that a window lets choose from, the usual one first.
 #[cfg(feature = "viewer")]
 pub fn all() -> Vec<reality_sim_viewer::Device> {
     let choose = |name: String, backend: Choice, adapter: Option<String>| {
         let args = BackendArgs { backend, adapter };
-        let open = move || args.device().map(|device| device.backend).map_err(BackendError::new);
+        let open = move || args.device().map(|device| device.backend).map_err(backend_error);
         reality_sim_viewer::Device { name, open: Arc::new(open) }
     };
     let mut devices = vec![

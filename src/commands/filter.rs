@@ -6,17 +6,16 @@ use anyhow::anyhow;
 
 use reality_sim::{
     LocalizerConfig, ObservationKind,
-    backend::BackendError,
     pipeline::{Device, FilterPlan, OpenDevice, PipelineError},
 };
 
-use super::device::BackendArgs;
+use super::device::{BackendArgs, backend_error};
 
 /// The filter with the usual settings, on the device that the options name.
 pub fn filter_plan(backend: &BackendArgs, seed: u64) -> FilterPlan {
     let backend = backend.clone();
     let open: OpenDevice = Arc::new(move || {
-        let device = backend.device().map_err(BackendError::new)?;
+        let device = backend.device().map_err(backend_error)?;
         Ok(Device { name: device.name.to_owned(), backend: device.backend })
     });
     FilterPlan::default()
