@@ -77,8 +77,7 @@ pub(crate) fn find(
     check(recording, model)?;
     let columns = columns(&options.without);
     let split = HeldOutSplit::new(recording.frames.len(), options.seed);
-    let given: Vec<EffectIndex> =
-        model.effects.iter().filter_map(|used| EffectIndex::find(used.effect.id())).collect();
+    let given = effects_of(model);
     let source = FittedRecording { recording, columns: &columns, split: &split };
     let search = ModelSearch { source: &source, columns: &columns, split: &split, given: &given, progress };
     progress(Progress::Measuring);
@@ -128,6 +127,11 @@ pub(crate) fn find(
     }
     let confusable = search.confusable(&measured, &named, &ties)?;
     Ok(SelectedModel { columns, split, measured, given, named, p_values, confusable })
+}
+
+/// The effects of a model that the library has.
+fn effects_of(model: &Model) -> Vec<EffectIndex> {
+    model.effects.iter().filter_map(|used| EffectIndex::find(used.effect.id())).collect()
 }
 
 /// A recording measured with a model as it is.
