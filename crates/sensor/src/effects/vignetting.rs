@@ -1,7 +1,8 @@
 //! Vignetting: less light reaches the corners of the sensor.
 //!
 //! `falloff = 1 − strength ρ² − shape ρ² (ρ² − 1) − bend ρ² (ρ² − 1) (2 ρ² − 1)`: an even polynomial of the sixth degree, as
-//! Goldman and Chen ("Vignette and exposure calibration and compensation", ICCV 2005) fit falloffs, in a basis in which shape and bend leave the corner and the middle as they are.
+//! Goldman and Chen ("Vignette and exposure calibration and compensation", ICCV 2005) fit falloffs, in a basis in which
+//! shape and bend leave the corner and the middle as they are.
 
 use crate::{
     effect::{About, Changes, Covariate, Effect, Estimates, Need, Parameter, Stage, values},
