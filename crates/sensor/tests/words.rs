@@ -206,9 +206,14 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// The part of a file before its tests, which name effects as they like.
-fn without_tests(source: &str) -> &str {
-    source.split("#[cfg(test)]").next().unwrap_or(source)
+/// The code of a file before its tests and without comments: tests and examples name effects as they like.
+fn code(source: &str) -> String {
+    let before_tests = source.split("#[cfg(test)]").next().unwrap_or(source);
+    before_tests.lines().filter(|line| !line.trim_start().starts_with("//")).collect()
+}
+
+fn is_test(path: &Path) -> bool {
+    path.iter().any(|part| ["tests", "tests.rs", "testing.rs"].iter().any(|name| part == *name))
 }
 
 #[test]
@@ -222,14 +227,12 @@ fn no_source_file_but_its_own_names_an_effect() {
         .chain([&workspace.join("src")])
         .filter(|folder| folder.is_dir())
         .flat_map(|folder| sources(folder))
+        .filter(|path| !is_test(path.strip_prefix(&workspace).unwrap()))
         .collect();
     for effect in library() {
         let (literal, own) = (format!("\"{}\"", effect.id()), format!("effects/{}.rs", effect.id()));
-        let naming: Vec<_> = files
-            .iter()
-            .filter(|path| !path.ends_with("tests.rs") && !path.ends_with("testing.rs"))
-            .filter(|path| without_tests(&fs::read_to_string(path).unwrap()).contains(&literal))
-            .collect();
+        let naming: Vec<_> =
+            files.iter().filter(|path| code(&fs::read_to_string(path).unwrap()).contains(&literal)).collect();
         assert!(naming.len() == 1 && naming[0].ends_with(&own), "{literal}: {naming:?}");
     }
 }
