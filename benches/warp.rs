@@ -7,7 +7,7 @@ use reality_sim::{
     CameraPose, Pose2,
     backend::Backend,
     camera::KernelCamera,
-    warp::{BlendWeights, Hall, Hull, Picture, Placement, RayTable, Source, Target},
+    warp::{BlendWeights, Hall, Picture, Placement, ProxyGeometry, RayTable, Source, Target},
 };
 
 use crate::scene::Scene;
@@ -22,8 +22,8 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dyn B
     let rays = RayTable::new(&walk.setup.camera);
     let Pose2 { x_m, y_m, yaw_rad } = scene.pose();
     let pose = scene.mount().at(Pose2::new(x_m + 0.1, y_m - 0.05, yaw_rad + 0.1));
-    let hull = Hull::new(&Hall::usual(&walk.field), &walk.field).holding(pose);
-    let target = Target { rays: &rays, placement: Placement::new(pose), hull: &hull };
+    let proxy = ProxyGeometry::new(&Hall::usual(&walk.field), &walk.field).holding(pose);
+    let target = Target { rays: &rays, placement: Placement::new(pose), proxy: &proxy };
     for (name, count) in METHODS {
         let views: Vec<(CameraPose, Arc<Picture>)> =
             scene.views(count).map(|(pose, picture)| (pose, Arc::new(Picture::from(picture)))).collect();

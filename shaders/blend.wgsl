@@ -1,7 +1,7 @@
 // One picture from several: every pixel from those sources that see its place best. A thread a pixel.
 // Twin: `blend` in crates/core/src/warp/blend.rs.
 
-#import shared/hull.wgsl
+#import shared/proxy_geometry.wgsl
 
 const SOURCES: u32 = 8u;
 const THREADS: u32 = 64u;
@@ -17,7 +17,7 @@ const MIXED: u32 = 2u;
 /// The picture that is wanted.
 struct Scene {
     eye: Placement,
-    hull: Hull,
+    proxy: ProxyGeometry,
     width: u32,
     height: u32,
     /// Number of sources.
@@ -97,7 +97,7 @@ fn sample(number: u32, place: vec2<f32>) -> vec3<f32> {
 }
 
 /// The weight of a source that sees the point, before it is compared with the others.
-fn source_weight(number: u32, point: HullPoint, pixel: Pixel) -> f32 {
+fn source_weight(number: u32, point: ProxyPoint, pixel: Pixel) -> f32 {
     let position = sources[number].placement.position.xyz;
     let cosine = dot(point.direction, point.place - position) * pixel.nearness;
     let ground = point.on_ground;
@@ -114,7 +114,7 @@ fn source_weight(number: u32, point: HullPoint, pixel: Pixel) -> f32 {
     return fade / (penalty * penalty);
 }
 
-fn opinion_of(number: u32, point: HullPoint) -> Opinion {
+fn opinion_of(number: u32, point: ProxyPoint) -> Opinion {
     let camera = sources[number].camera;
     let is_radial = lenses == RADIAL || (lenses == MIXED && camera.is_radial == 1u);
     let pixel = see(camera, is_radial, sources[number].placement, point);
@@ -157,7 +157,7 @@ fn agreed(before: vec4<f32>) -> vec4<f32> {
 }
 
 /// What is known of a point: its colour and source in a word, then the trust.
-fn mixed(point: HullPoint) -> vec2<u32> {
+fn mixed(point: ProxyPoint) -> vec2<u32> {
     var best = 0.0;
     for (var number = 0u; number < scene.sources; number++) {
         opinions[number] = opinion_of(number, point);
@@ -194,5 +194,5 @@ fn blend(
         warped[index] = vec2<u32>(NOWHERE << 24u, 0u);
         return;
     }
-    warped[index] = mixed(hull_point(scene.eye, in_camera));
+    warped[index] = mixed(proxy_point(scene.eye, in_camera));
 }

@@ -5,7 +5,7 @@ use reality_sim_core::{
     camera::{KernelCamera, Lens, RADIAL_TERMS},
     observation::{CameraFromGround, ContrastScale},
     pose::CameraPose,
-    warp::{BlendWeights, Hull, MAX_SOURCES, Placement, Screen, Source, Target},
+    warp::{Billboard, BlendWeights, MAX_SOURCES, Placement, ProxyGeometry, Source, Target},
 };
 
 /// `Camera` in `shaders/shared/camera.wgsl`.
@@ -124,7 +124,7 @@ pub(crate) struct OutcomeLayout {
     pub spread_m: f32,
 }
 
-/// `Placement` in `shaders/shared/hull.wgsl`.
+/// `Placement` in `shaders/shared/proxy_geometry.wgsl`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct PlacementLayout {
@@ -134,10 +134,10 @@ pub(crate) struct PlacementLayout {
     position: [f32; 4],
 }
 
-/// `Screen` in `shaders/shared/hull.wgsl`.
+/// `Billboard` in `shaders/shared/proxy_geometry.wgsl`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct ScreenLayout {
+pub(crate) struct BillboardLayout {
     x: f32,
     half_width: f32,
     top: f32,
@@ -148,13 +148,13 @@ pub(crate) struct ScreenLayout {
     padding_2: u32,
 }
 
-/// `Hull` in `shaders/shared/hull.wgsl`.
+/// `ProxyGeometry` in `shaders/shared/proxy_geometry.wgsl`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct HullLayout {
+pub(crate) struct ProxyGeometryLayout {
     low: [f32; 4],
     high: [f32; 4],
-    screens: [ScreenLayout; 4],
+    billboards: [BillboardLayout; 4],
 }
 
 /// `Scene` in `shaders/blend.wgsl`.
@@ -162,7 +162,7 @@ pub(crate) struct HullLayout {
 #[repr(C)]
 pub(crate) struct SceneLayout {
     eye: PlacementLayout,
-    hull: HullLayout,
+    proxy: ProxyGeometryLayout,
     width: u32,
     height: u32,
     sources: u32,
@@ -280,14 +280,14 @@ impl From<&Placement> for PlacementLayout {
     }
 }
 
-impl From<Screen> for ScreenLayout {
-    fn from(screen: Screen) -> Self {
+impl From<Billboard> for BillboardLayout {
+    fn from(billboard: Billboard) -> Self {
         Self {
-            x: screen.x_m as f32,
-            half_width: screen.half_width_m as f32,
-            top: screen.height_m as f32,
-            opening_half_width: screen.opening_half_width_m as f32,
-            opening_top: screen.opening_height_m as f32,
+            x: billboard.x_m as f32,
+            half_width: billboard.half_width_m as f32,
+            top: billboard.height_m as f32,
+            opening_half_width: billboard.opening_half_width_m as f32,
+            opening_top: billboard.opening_height_m as f32,
             padding_0: 0,
             padding_1: 0,
             padding_2: 0,
@@ -295,12 +295,12 @@ impl From<Screen> for ScreenLayout {
     }
 }
 
-impl From<&Hull> for HullLayout {
-    fn from(hull: &Hull) -> Self {
+impl From<&ProxyGeometry> for ProxyGeometryLayout {
+    fn from(proxy: &ProxyGeometry) -> Self {
         Self {
-            low: padded(hull.min_in_world.as_vec3().to_array()),
-            high: padded(hull.max_in_world.as_vec3().to_array()),
-            screens: hull.screens.map(ScreenLayout::from),
+            low: padded(proxy.min_in_world.as_vec3().to_array()),
+            high: padded(proxy.max_in_world.as_vec3().to_array()),
+            billboards: proxy.billboards.map(BillboardLayout::from),
         }
     }
 }
@@ -309,7 +309,7 @@ impl SceneLayout {
     pub fn new(target: &Target, sources: usize, weights: &BlendWeights) -> Self {
         Self {
             eye: PlacementLayout::from(&target.placement),
-            hull: HullLayout::from(target.hull),
+            proxy: ProxyGeometryLayout::from(target.proxy),
             width: target.rays.width,
             height: target.rays.height,
             sources: sources as u32,
@@ -387,11 +387,11 @@ mod tests {
         assert_same_layout!(CameraLayout in "blend.wgsl" as "Camera":
             focal_px centre_px largest_px min_cos is_radial circle lens_parameters);
         assert_same_layout!(PlacementLayout in "blend.wgsl" as "Placement": right down forward position);
-        assert_same_layout!(ScreenLayout in "blend.wgsl" as "Screen":
+        assert_same_layout!(BillboardLayout in "blend.wgsl" as "Billboard":
             x half_width top opening_half_width opening_top padding_0 padding_1 padding_2);
-        assert_same_layout!(HullLayout in "blend.wgsl" as "Hull": low high screens);
+        assert_same_layout!(ProxyGeometryLayout in "blend.wgsl" as "ProxyGeometry": low high billboards);
         assert_same_layout!(SceneLayout in "blend.wgsl" as "Scene":
-            eye hull width height sources angle_on_ground angle_above resolution border_px softness disagreement
+            eye proxy width height sources angle_on_ground angle_above resolution border_px softness disagreement
             padding_0 padding_1 padding_2);
         assert_same_layout!(SourceLayout in "blend.wgsl" as "Source":
             camera placement gain size layer padding);

@@ -32,7 +32,7 @@ pub(crate) const FILES: &[(&str, &str)] = files![
     "shared/color.wgsl",
     "shared/filter.wgsl",
     "shared/ground.wgsl",
-    "shared/hull.wgsl",
+    "shared/proxy_geometry.wgsl",
     "shared/largest.wgsl",
     "shared/picture.wgsl",
     "shared/pose.wgsl",

@@ -198,7 +198,7 @@ mod tests {
         camera::{Camera, Distortion, KernelCamera},
         field::FieldDimensions,
         pose::{CameraPose, Pose2},
-        warp::{Hall, Hull, Picture, Placement, RayTable, blend},
+        warp::{Hall, Picture, Placement, ProxyGeometry, RayTable, blend},
     };
 
     use super::*;
@@ -222,9 +222,9 @@ mod tests {
     /// What the warper draws at a size from pictures along a line; asserts that it is what the CPU draws.
     fn drawn(warper: &GpuWarper, size: [u32; 2], pictures: &[Arc<Picture>]) -> Warped {
         let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
-        let hull = Hull::new(&Hall::usual(&field), &field);
+        let proxy = ProxyGeometry::new(&Hall::usual(&field), &field);
         let rays = RayTable::new(&camera(size));
-        let target = Target { rays: &rays, placement: Placement::new(pose(0.0)), hull: &hull };
+        let target = Target { rays: &rays, placement: Placement::new(pose(0.0)), proxy: &proxy };
         let cameras: Vec<KernelCamera> = pictures
             .iter()
             .map(|picture| KernelCamera::new(&camera([picture.width.max(2), picture.height.max(2)])))
@@ -284,10 +284,10 @@ mod tests {
         let context = test_context();
         let warper = GpuWarper::new(context.clone()).unwrap();
         let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
-        let hull = Hull::new(&Hall::usual(&field), &field);
+        let proxy = ProxyGeometry::new(&Hall::usual(&field), &field);
         let (camera, placement) = (camera([20, 16]), Placement::new(pose(0.0)));
         let (rays, camera) = (RayTable::new(&camera), KernelCamera::new(&camera));
-        let target = Target { rays: &rays, placement, hull: &hull };
+        let target = Target { rays: &rays, placement, proxy: &proxy };
         let wide = context.device.limits().max_texture_dimension_2d + 1;
         let torn = Arc::new(Picture { pixels: vec![0; 7], ..(*plain([40, 30], 0)).clone() });
         for (picture, words) in [(plain([wide, 2], 0), "scale it down"), (torn, "has 7 words")] {

@@ -9,14 +9,15 @@ use reality_sim_core::{
     mount::MountPose,
     pose::{CameraPose, Pose2},
     warp::{
-        BlendWeights, Hall, Hull, MAX_SOURCES, Origin, Picture, Placement, RayTable, Source, Target, blend,
+        BlendWeights, Hall, MAX_SOURCES, Origin, Picture, Placement, ProxyGeometry, RayTable, Source, Target,
+        blend,
     },
 };
 
 use crate::{GpuContext, GpuError, GpuWarper};
 
 /// So many of the pixels may differ by more than a grey level, come from another source, or differ in trust by more than
-/// two: those at the edges of goals, of the hull and of what a source sees fall to one side here and to the other there,
+/// two: those at the edges of goals, of the proxy geometry and of what a source sees fall to one side here and to the other there,
 /// and of two sources that are worth the same either may be named.
 pub const WARP_TOLERANCE: f64 = 1e-4;
 
@@ -54,9 +55,9 @@ pub fn compare_warps(context: &Arc<GpuContext>, scenes: u64) -> Result<WarpCompa
     let mut comparison = WarpComparison::default();
     for seed in 0..scenes {
         let scene = Scene::new(seed, &cameras);
-        let hull = Hull::new(&Hall::usual(&field), &field).holding(scene.pose);
+        let proxy = ProxyGeometry::new(&Hall::usual(&field), &field).holding(scene.pose);
         let target =
-            Target { rays: &tables[scene.camera], placement: Placement::new(scene.pose), hull: &hull };
+            Target { rays: &tables[scene.camera], placement: Placement::new(scene.pose), proxy: &proxy };
         let sources: Vec<Source> =
             scene.views.iter().map(|view| view.source(&kernel_cameras[view.camera])).collect();
         let found = warper.draw(&target, &sources, &BlendWeights::default())?;

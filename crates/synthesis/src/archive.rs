@@ -8,7 +8,7 @@ use reality_sim_core::{
     field::FieldDimensions,
     pose::CameraPose,
     sequence::CameraSetup,
-    warp::{Hall, Hull, Picture, Placement, Source},
+    warp::{Hall, Picture, Placement, ProxyGeometry, Source},
 };
 use reality_sim_db::{
     Database, ImageRecord,
@@ -26,7 +26,7 @@ pub struct Archive {
     cameras: BTreeMap<i64, (Camera, KernelCamera)>,
     setup: CameraSetup,
     field: FieldDimensions,
-    hull: Hull,
+    proxy: ProxyGeometry,
     index: PoseIndex,
     cache: PictureCache,
 }
@@ -53,11 +53,11 @@ impl Archive {
         let metric = PixelMetric::new(&setup.camera, usual_pose(&poses), &field)
             .ok_or_else(|| SynthesisError::BlindCamera { database: path.display().to_string() })?;
         let hall = database.halls()?.remove(&field_id).unwrap_or_else(|| Hall::usual(&field));
-        let hull = Hull::new(&hall, &field);
-        let hull = poses.iter().fold(hull, |hull, pose| hull.holding(*pose));
+        let proxy = ProxyGeometry::new(&hall, &field);
+        let proxy = poses.iter().fold(proxy, |proxy, pose| proxy.holding(*pose));
         let index = PoseIndex::new(metric, poses);
         let cache = PictureCache::new(cache_bytes);
-        Ok(Self { database, images, cameras, setup, field, hull, index, cache })
+        Ok(Self { database, images, cameras, setup, field, proxy, index, cache })
     }
 
     /// The file it was opened from.
@@ -81,8 +81,8 @@ impl Archive {
     }
 
     /// What stands for the world around the field.
-    pub fn hull(&self) -> &Hull {
-        &self.hull
+    pub fn proxy_geometry(&self) -> &ProxyGeometry {
+        &self.proxy
     }
 
     /// Images by pose.

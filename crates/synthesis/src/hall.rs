@@ -1,7 +1,7 @@
 //! Where the walls stand: found by what pictures taken at different places agree on.
 //!
 //! A hall's measures are good when the colours that one picture shows are those that another shows at the same places of the
-//! [`Hull`]. One measure after the other is moved to where the mean difference, cut off so that what stands in
+//! [`ProxyGeometry`]. One measure after the other is moved to where the mean difference, cut off so that what stands in
 //! front does not decide, is least (coordinate descent), first in coarse steps, then in finer ones.
 
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use image::imageops::{FilterType, resize};
 use rayon::prelude::*;
 use reality_sim_core::{
     camera::{Camera, ImageCircle, KernelCamera},
-    warp::{BlendWeights, Hall, Hull, Picture, Placement, RayTable, Source, Target, glimpses},
+    warp::{BlendWeights, Hall, Picture, Placement, ProxyGeometry, RayTable, Source, Target, glimpses},
 };
 
 use crate::{Archive, SynthesisError, select::select};
@@ -103,18 +103,18 @@ impl<'a> Views<'a> {
         let (count, wanted) = (archive.images().len(), archive.images().len().min(VIEWS));
         let chosen = (0..wanted).into_par_iter().with_max_len(1).map(|i| view(archive, i * count / wanted));
         let views: Vec<View> = chosen.collect::<Result<_, _>>()?;
-        let hull = Hull::new(usual, archive.field());
+        let proxy = ProxyGeometry::new(usual, archive.field());
         let targets = (0..views.len()).step_by(TARGET_STEP);
-        let pairs = targets.flat_map(|target| partners(&views, target, &hull)).collect();
+        let pairs = targets.flat_map(|target| partners(&views, target, &proxy)).collect();
         Ok(Self { archive, views, pairs })
     }
 
     /// Mean difference between the colours of pictures and of their partners.
     fn difference(&self, hall: &Hall) -> Difference {
-        let hull = Hull::new(hall, self.archive.field());
+        let proxy = ProxyGeometry::new(hall, self.archive.field());
         let sums = self.pairs.par_iter().map(|&[target, partner]| {
             let [own, other] = [target, partner].map(|index| &self.views[index]);
-            let target = Target { rays: &own.rays, placement: own.placement, hull: &hull };
+            let target = Target { rays: &own.rays, placement: own.placement, proxy: &proxy };
             let colors = glimpses(&target, &own.source()).into_iter().zip(glimpses(&target, &other.source()));
             let differences = colors.filter_map(|(a, b)| Some(color_difference(a?, b?)));
             differences.fold([0.0, 0.0], |sum, difference| [sum[0] + difference, sum[1] + 1.0])
@@ -198,7 +198,7 @@ fn smaller(camera: &Camera, size: [u32; 2]) -> Camera {
 }
 
 /// Pairs of a picture with those that see much of the same from elsewhere.
-fn partners(views: &[View], target: usize, hull: &Hull) -> Vec<[usize; 2]> {
+fn partners(views: &[View], target: usize, proxy: &ProxyGeometry) -> Vec<[usize; 2]> {
     let own = &views[target];
     let distance_m = |other: &View| {
         let [a, b] = [own, other].map(|view| glam::Vec3::from_array(view.placement.position_in_world));
@@ -207,7 +207,7 @@ fn partners(views: &[View], target: usize, hull: &Hull) -> Vec<[usize; 2]> {
     let others: Vec<usize> =
         (0..views.len()).filter(|&other| distance_m(&views[other]) > BASELINE_M).collect();
     let sources: Vec<Source> = others.iter().map(|&other| views[other].source()).collect();
-    let wanted = Target { rays: &own.rays, placement: own.placement, hull };
+    let wanted = Target { rays: &own.rays, placement: own.placement, proxy };
     let chosen = select(&wanted, &sources, &BlendWeights::default(), PARTNERS);
     chosen.into_iter().map(|index| [target, others[index]]).collect()
 }

@@ -1,4 +1,4 @@
-//! One neighbour, through the ground plane and both lenses; what does not lie on the ground, through goals and hull.
+//! One neighbour, through the ground plane and both lenses; what does not lie on the ground, through goals and proxy geometry.
 
 use reality_sim_core::pose::CameraPose;
 

@@ -6,7 +6,9 @@ use image::RgbImage;
 use reality_sim_core::{
     camera::Camera,
     pose::CameraPose,
-    warp::{BlendWeights, CpuWarper, Hull, MAX_SOURCES, Placement, RayTable, Source, Target, Warper},
+    warp::{
+        BlendWeights, CpuWarper, MAX_SOURCES, Placement, ProxyGeometry, RayTable, Source, Target, Warper,
+    },
 };
 use reality_sim_db::index::{ImageIndex, Neighbour};
 
@@ -126,8 +128,8 @@ impl Synthesizer {
     /// Decodes the pictures that a picture at this pose is made from, by whichever method, so that it is drawn without
     /// delay later.
     pub fn prepare(&self, pose: CameraPose) -> Result<(), SynthesisError> {
-        let hull = self.archive.hull().holding(pose);
-        let images = self.chosen(&self.target(pose, &hull), pose, self.config.sources)?;
+        let proxy = self.archive.proxy_geometry().holding(pose);
+        let images = self.chosen(&self.target(pose, &proxy), pose, self.config.sources)?;
         let mut images: Vec<ImageIndex> = images.iter().map(|neighbour| neighbour.image).collect();
         images.extend(self.nearest_of_size(pose).ok().map(|nearest| nearest.image));
         images.sort_unstable();
@@ -151,15 +153,15 @@ impl Synthesizer {
         found.ok_or(SynthesisError::OtherSize { pose, width, height })
     }
 
-    /// The picture drawn from so many neighbours through ground, goals and hull.
+    /// The picture drawn from so many neighbours through the proxy geometry.
     pub(crate) fn warped(
         &self,
         method: &'static str,
         pose: CameraPose,
         count: usize,
     ) -> Result<Reconstruction, SynthesisError> {
-        let hull = self.archive.hull().holding(pose);
-        let target = self.target(pose, &hull);
+        let proxy = self.archive.proxy_geometry().holding(pose);
+        let target = self.target(pose, &proxy);
         let chosen = self.chosen(&target, pose, count)?;
         let images: Vec<ImageIndex> = chosen.iter().map(|neighbour| neighbour.image).collect();
         let pictures = self.archive.pictures(&images)?;
@@ -183,8 +185,8 @@ impl Synthesizer {
         Ok(reconstruction)
     }
 
-    fn target<'a>(&'a self, pose: CameraPose, hull: &'a Hull) -> Target<'a> {
-        Target { rays: &self.rays, placement: Placement::new(pose), hull }
+    fn target<'a>(&'a self, pose: CameraPose, proxy: &'a ProxyGeometry) -> Target<'a> {
+        Target { rays: &self.rays, placement: Placement::new(pose), proxy }
     }
 
     /// The neighbours to draw from: of the nearest and the natural ones those that together show most.

@@ -4,7 +4,7 @@ use image::{Rgb, RgbImage};
 use reality_sim_core::{
     pose::{CameraPose, Pose2},
     sequence::{FrameRecord, Sequence, save_image},
-    warp::{Hall, Hull, MAX_SOURCES},
+    warp::{Hall, MAX_SOURCES, ProxyGeometry},
 };
 use reality_sim_db::{Database, PoseEstimate, PoseSource, index::NoNeighbours};
 use tempfile::TempDir;
@@ -266,9 +266,9 @@ fn the_hall_is_measured_from_what_pictures_agree_on() {
         ceiling_m: 2.6,
         goal_depth_m: 0.4,
     };
-    let mut hull = Hull::new(&hall, &walk.field);
-    hull.screens.iter_mut().for_each(|screen| screen.half_width_m = -1.0);
-    let (_pictures, sequence) = painted(&walk, &hull);
+    let mut proxy = ProxyGeometry::new(&hall, &walk.field);
+    proxy.billboards.iter_mut().for_each(|billboard| billboard.half_width_m = -1.0);
+    let (_pictures, sequence) = painted(&walk, &proxy);
     let (_folder, archive) = stored(&sequence);
     let found = measure_hall(&archive).unwrap().unwrap();
     assert!((found.min_m - hall.min_m).abs().max_element() < 0.15, "{found:?}");
@@ -277,7 +277,7 @@ fn the_hall_is_measured_from_what_pictures_agree_on() {
 }
 
 /// A recording of a painted hall from many places.
-fn painted(walk: &Sequence, hull: &Hull) -> (TempDir, Sequence) {
+fn painted(walk: &Sequence, proxy: &ProxyGeometry) -> (TempDir, Sequence) {
     let pictures = tempfile::tempdir().unwrap();
     let folder = pictures.path().to_path_buf();
     let mut setup = walk.setup.clone();
@@ -299,7 +299,7 @@ fn painted(walk: &Sequence, hull: &Hull) -> (TempDir, Sequence) {
             let ray = pose.rotation_world_from_camera() * setup.camera.unproject(pixel).unwrap();
             let mut distance = f64::INFINITY;
             for axis in 0..3 {
-                let wall = if ray[axis] < 0.0 { hull.min_in_world[axis] } else { hull.max_in_world[axis] };
+                let wall = if ray[axis] < 0.0 { proxy.min_in_world[axis] } else { proxy.max_in_world[axis] };
                 distance = distance.min((wall - pose.position_in_world()[axis]) / ray[axis]);
             }
             let end = pose.position_in_world() + distance * ray;

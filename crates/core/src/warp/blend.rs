@@ -11,9 +11,9 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::{
-    Hull, Picture,
+    Picture, ProxyGeometry,
     fill::fill,
-    kernel::{HullPoints, Placement, hull_points, sample, see, unhidden},
+    kernel::{Placement, ProxyPoints, proxy_points, sample, see, unhidden},
     origin::Origin,
     rays::{RayBlock, RayTable},
 };
@@ -28,7 +28,7 @@ pub const MAX_SOURCES: usize = 8;
 pub struct BlendWeights {
     /// Penalty of a right angle between the lines of sight on the ground.
     pub angle_on_ground: f32,
-    /// Penalty of a right angle between the lines of sight above the ground, where the hull is a guess.
+    /// Penalty of a right angle between the lines of sight above the ground, where the proxy geometry is a guess.
     pub angle_above: f32,
     /// Penalty where a source's pixels are four times as large as the target's.
     pub resolution: f32,
@@ -106,7 +106,7 @@ pub struct Target<'a> {
     /// Its pose.
     pub placement: Placement,
     /// The shape of the world.
-    pub hull: &'a Hull,
+    pub proxy: &'a ProxyGeometry,
 }
 
 /// A picture drawn from others.
@@ -159,7 +159,7 @@ fn blend_row(
     let opinions = &mut opinions[..sources.len()];
     for ((rays, colors), origins) in rays.iter().zip(colors.chunks_mut(LANES)).zip(origins.chunks_mut(LANES))
     {
-        let points = hull_points(target.hull, &target.placement, rays);
+        let points = proxy_points(target.proxy, &target.placement, rays);
         let mixed = mix(target, sources, weights, &points, opinions);
         for (lane, (color, origin)) in colors.iter_mut().zip(origins).enumerate() {
             *color = mixed.color.map(|channel| (channel[lane] + 0.5) as u8);
@@ -188,7 +188,7 @@ fn mix(
     target: &Target,
     sources: &[Source],
     weights: &BlendWeights,
-    points: &HullPoints,
+    points: &ProxyPoints,
     opinions: &mut [Opinion],
 ) -> Mixed {
     for (opinion, source) in opinions.iter_mut().zip(sources) {
@@ -235,12 +235,12 @@ fn source_weight(
     target: &Target,
     source: &Source,
     weights: &BlendWeights,
-    points: &HullPoints,
+    points: &ProxyPoints,
     pixels: &Pixels,
 ) -> Lanes {
     let [x, y, z] = source.placement.position_in_world;
     let (height, target_height) = (z, target.placement.position_in_world[2]);
-    let unhidden = unhidden(target.hull, &source.placement, points);
+    let unhidden = unhidden(target.proxy, &source.placement, points);
     let mut weight = [0.0_f32; LANES];
     for i in 0..LANES {
         let nearness = pixels.nearness[i];
@@ -337,7 +337,7 @@ pub fn costs(target: &Target, source: &Source, weights: &BlendWeights) -> Vec<f3
 pub fn glimpses(target: &Target, source: &Source) -> Vec<Option<[f32; 3]>> {
     let mut glimpses = Vec::with_capacity(LOOK_ROWS * LANES);
     for points in spread_points(target) {
-        let unhidden = unhidden(target.hull, &source.placement, &points);
+        let unhidden = unhidden(target.proxy, &source.placement, &points);
         let pixels = see(source.camera, &source.placement, &points);
         let colors = pixels.map(|pixels| (pixels.seen, sample(source.picture, &pixels)));
         glimpses.extend((0..LANES).map(|i| {
@@ -349,10 +349,10 @@ pub fn glimpses(target: &Target, source: &Source) -> Vec<Option<[f32; 3]>> {
     glimpses
 }
 
-fn spread_points(target: &Target) -> impl Iterator<Item = HullPoints> {
+fn spread_points(target: &Target) -> impl Iterator<Item = ProxyPoints> {
     (0..LOOK_ROWS).map(|row| {
         let blocks = target.rays.row((2 * row + 1) * target.rays.height as usize / (2 * LOOK_ROWS));
-        hull_points(target.hull, &target.placement, &spread(blocks, target.rays.width as usize))
+        proxy_points(target.proxy, &target.placement, &spread(blocks, target.rays.width as usize))
     })
 }
 

@@ -1,11 +1,11 @@
-//! The loops over pixels: a pixel's ray to the hull, from there into another picture, and the colour found there.
+//! The loops over pixels: a pixel's ray to the proxy geometry, from there into another picture, and the colour found there.
 //!
 //! Sixteen pixels at a time, in plain arrays that the compiler turns into vector instructions. The compute shader of the
 //! same name does the same, one pixel a thread.
 
 #![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
 
-use super::{Hull, Picture, Screen, rays::RayBlock};
+use super::{Billboard, Picture, ProxyGeometry, rays::RayBlock};
 use crate::{
     camera::{KernelCamera, LANES, Lanes, Pixels, project_lanes},
     pose::CameraPose,
@@ -32,7 +32,7 @@ impl Placement {
     }
 }
 
-/// The edges of a screen, metres.
+/// The edges of a billboard, metres.
 struct Edges {
     half_width: f32,
     top: f32,
@@ -42,16 +42,16 @@ struct Edges {
 
 impl Edges {
     #[inline(always)]
-    fn new(screen: &Screen) -> Self {
+    fn new(billboard: &Billboard) -> Self {
         Self {
-            half_width: screen.half_width_m as f32,
-            top: screen.height_m as f32,
-            opening_half_width: screen.opening_half_width_m as f32,
-            opening_top: screen.opening_height_m as f32,
+            half_width: billboard.half_width_m as f32,
+            top: billboard.height_m as f32,
+            opening_half_width: billboard.opening_half_width_m as f32,
+            opening_top: billboard.opening_height_m as f32,
         }
     }
 
-    /// Whether a place in the screen's plane, above the ground, lies on it, or beside it by no more than this, metres.
+    /// Whether a place in the billboard's plane, above the ground, lies on it, or beside it by no more than this, metres.
     #[inline(always)]
     fn hold(&self, across: f32, up: f32, margin: f32) -> bool {
         let across = across.abs();
@@ -62,7 +62,7 @@ impl Edges {
 
 /// What sixteen pixels look at.
 #[derive(Clone, Copy)]
-pub(crate) struct HullPoints {
+pub(crate) struct ProxyPoints {
     /// World axes, metres.
     pub place: [Lanes; 3],
     /// Unit directions from the camera, world axes.
@@ -73,16 +73,16 @@ pub(crate) struct HullPoints {
     pub on_ground: Lanes,
 }
 
-/// Follows rays from a camera inside the hull.
+/// Follows rays from a camera inside the proxy geometry.
 #[inline(always)]
-pub(crate) fn hull_points(hull: &Hull, from: &Placement, rays: &RayBlock) -> HullPoints {
+pub(crate) fn proxy_points(proxy: &ProxyGeometry, from: &Placement, rays: &RayBlock) -> ProxyPoints {
     let axes = &from.axes_in_world;
     let mut direction = [[0.0_f32; LANES]; 3];
     let mut distance = [f32::INFINITY; LANES];
     let mut on_ground = [0.0_f32; LANES];
     for axis in 0..3 {
-        let low = hull.min_in_world[axis] as f32 - from.position_in_world[axis];
-        let high = hull.max_in_world[axis] as f32 - from.position_in_world[axis];
+        let low = proxy.min_in_world[axis] as f32 - from.position_in_world[axis];
+        let high = proxy.max_in_world[axis] as f32 - from.position_in_world[axis];
         for i in 0..LANES {
             let d = axes[0][axis] * rays[0][i] + axes[1][axis] * rays[1][i] + axes[2][axis] * rays[2][i];
             direction[axis][i] = d;
@@ -95,18 +95,19 @@ pub(crate) fn hull_points(hull: &Hull, from: &Placement, rays: &RayBlock) -> Hul
             }
         }
     }
-    for screen in &hull.screens {
-        let x = screen.x_m as f32 - from.position_in_world[0];
+    for billboard in &proxy.billboards {
+        let x = billboard.x_m as f32 - from.position_in_world[0];
         if !direction[0].iter().any(|d| d * x > 0.0) {
             continue;
         }
-        let screen = Edges::new(screen);
+        let billboard = Edges::new(billboard);
         for i in 0..LANES {
-            let to_screen = x / direction[0][i];
-            let y = from.position_in_world[1] + to_screen * direction[1][i];
-            let z = from.position_in_world[2] + to_screen * direction[2][i];
-            let is_hit = (to_screen > 0.0) & (to_screen < distance[i]) & (z >= 0.0) & screen.hold(y, z, 0.0);
-            distance[i] = if is_hit { to_screen } else { distance[i] };
+            let to_billboard = x / direction[0][i];
+            let y = from.position_in_world[1] + to_billboard * direction[1][i];
+            let z = from.position_in_world[2] + to_billboard * direction[2][i];
+            let is_hit =
+                (to_billboard > 0.0) & (to_billboard < distance[i]) & (z >= 0.0) & billboard.hold(y, z, 0.0);
+            distance[i] = if is_hit { to_billboard } else { distance[i] };
             on_ground[i] = if is_hit { 0.0 } else { on_ground[i] };
         }
     }
@@ -116,12 +117,12 @@ pub(crate) fn hull_points(hull: &Hull, from: &Placement, rays: &RayBlock) -> Hul
             place[axis][i] = from.position_in_world[axis] + distance[i] * direction[axis][i];
         }
     }
-    HullPoints { place, direction, distance, on_ground }
+    ProxyPoints { place, direction, distance, on_ground }
 }
 
 /// Where another camera sees the points; `None` where it sees none of them.
 #[inline(always)]
-pub(crate) fn see(camera: &KernelCamera, placement: &Placement, points: &HullPoints) -> Option<Pixels> {
+pub(crate) fn see(camera: &KernelCamera, placement: &Placement, points: &ProxyPoints) -> Option<Pixels> {
     let mut in_camera = [[0.0_f32; LANES]; 3];
     let [x, y, z] = placement.position_in_world;
     for axis in 0..3 {
@@ -136,37 +137,37 @@ pub(crate) fn see(camera: &KernelCamera, placement: &Placement, points: &HullPoi
 
 /// 0 where a goal stands between a camera and the points, else 1.
 #[inline(always)]
-pub(crate) fn unhidden(hull: &Hull, from: &Placement, points: &HullPoints) -> Lanes {
-    /// A point on the screen itself is not hidden by it, as a share of the way to it.
+pub(crate) fn unhidden(proxy: &ProxyGeometry, from: &Placement, points: &ProxyPoints) -> Lanes {
+    /// A point on the billboard itself is not hidden by it, as a share of the way to it.
     const ON_SCREEN: f32 = 1.0 - 1e-3;
     /// Of a usual post. Seen from the side, a round one hides more than the flat one that stands for it; by how
     /// much, grows with one over the cosine.
     const POST_RADIUS_M: f32 = 0.05;
     /// Below 1: pixels and compression spread a post's colour beyond its edge.
     const SHARP_EDGE: f32 = 0.6;
-    /// Nearly along the screen it would hide everything.
+    /// Nearly along the billboard it would hide everything.
     const MOST_OBLIQUE: f32 = 4.0;
     let [x, y, z] = from.position_in_world;
     let mut unhidden = [1.0_f32; LANES];
     // NaN is left out of both.
     let least_x = points.place[0].iter().fold(x, |least, place| least.min(*place));
     let most_x = points.place[0].iter().fold(x, |most, place| most.max(*place));
-    for screen in &hull.screens {
-        let to_screen = screen.x_m as f32 - x;
-        // Most screens stand behind the camera, or behind all of the points.
-        if !(least_x..=most_x).contains(&(screen.x_m as f32)) {
+    for billboard in &proxy.billboards {
+        let to_billboard = billboard.x_m as f32 - x;
+        // Most billboards stand behind the camera, or behind all of the points.
+        if !(least_x..=most_x).contains(&(billboard.x_m as f32)) {
             continue;
         }
-        let screen = Edges::new(screen);
+        let billboard = Edges::new(billboard);
         for i in 0..LANES {
             let (dx, dy) = (points.place[0][i] - x, points.place[1][i] - y);
-            let share = to_screen / dx;
+            let share = to_billboard / dx;
             let across = y + share * dy;
             let up = z + share * (points.place[2][i] - z);
             let is_between = (share > 0.0) & (share < ON_SCREEN);
             let slope = dy / dx;
             let margin = POST_RADIUS_M * ((1.0 + slope * slope).sqrt().min(MOST_OBLIQUE) - SHARP_EDGE);
-            let is_hidden = is_between & screen.hold(across, up, margin);
+            let is_hidden = is_between & billboard.hold(across, up, margin);
             unhidden[i] = if is_hidden { 0.0 } else { unhidden[i] };
         }
     }

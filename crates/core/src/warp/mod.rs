@@ -5,18 +5,18 @@
 
 mod blend;
 mod fill;
-mod hull;
 mod kernel;
 mod origin;
 mod picture;
+mod proxy_geometry;
 mod rays;
 
 pub use self::{
     blend::{BlendWeights, MAX_SOURCES, Source, Target, Warped, blend, costs, glimpses},
-    hull::{Hall, Hull, Screen},
     kernel::Placement,
     origin::Origin,
     picture::Picture,
+    proxy_geometry::{Billboard, Hall, ProxyGeometry},
     rays::RayTable,
 };
 use crate::backend_error::BackendError;

@@ -49,23 +49,25 @@ fn paint(point: DVec3) -> [f64; 3] {
     ]
 }
 
-/// Where a ray from inside the hull ends, without the code under test.
-fn end_of_ray(hull: &Hull, from: DVec3, ray: DVec3) -> DVec3 {
+/// Where a ray from inside the proxy geometry ends, without the code under test.
+fn end_of_ray(proxy: &ProxyGeometry, from: DVec3, ray: DVec3) -> DVec3 {
     let mut nearest = f64::INFINITY;
     for axis in 0..3 {
-        for wall in [hull.min_in_world[axis], hull.max_in_world[axis]] {
+        for wall in [proxy.min_in_world[axis], proxy.max_in_world[axis]] {
             let distance = (wall - from[axis]) / ray[axis];
             if distance > 0.0 && distance < nearest {
                 nearest = distance;
             }
         }
     }
-    for screen in &hull.screens {
-        let distance = (screen.x_m - from.x) / ray.x;
+    for billboard in &proxy.billboards {
+        let distance = (billboard.x_m - from.x) / ray.x;
         let point = from + distance * ray;
-        let is_opening = point.y.abs() < screen.opening_half_width_m && point.z < screen.opening_height_m;
-        let is_on =
-            point.y.abs() <= screen.half_width_m && (0.0..=screen.height_m).contains(&point.z) && !is_opening;
+        let is_opening =
+            point.y.abs() < billboard.opening_half_width_m && point.z < billboard.opening_height_m;
+        let is_on = point.y.abs() <= billboard.half_width_m
+            && (0.0..=billboard.height_m).contains(&point.z)
+            && !is_opening;
         if distance > 0.0 && distance < nearest && is_on {
             nearest = distance;
         }
@@ -74,12 +76,12 @@ fn end_of_ray(hull: &Hull, from: DVec3, ray: DVec3) -> DVec3 {
 }
 
 /// The painted world through a lens.
-fn photograph(camera: &Camera, pose: CameraPose, hull: &Hull) -> RgbImage {
+fn photograph(camera: &Camera, pose: CameraPose, proxy: &ProxyGeometry) -> RgbImage {
     RgbImage::from_fn(camera.width, camera.height, |u, v| {
         match camera.unproject(DVec2::new(f64::from(u), f64::from(v))) {
             Ok(ray) => {
                 let ray = pose.rotation_world_from_camera() * ray;
-                Rgb(paint(end_of_ray(hull, pose.position_in_world(), ray)).map(|value| value.round() as u8))
+                Rgb(paint(end_of_ray(proxy, pose.position_in_world(), ray)).map(|value| value.round() as u8))
             }
             Err(_) => Rgb([0; 3]),
         }
@@ -87,10 +89,10 @@ fn photograph(camera: &Camera, pose: CameraPose, hull: &Hull) -> RgbImage {
 }
 
 /// A hall without goals: every place is seen from everywhere.
-fn open_hull() -> Hull {
-    let mut hull = Hull::new(&Hall::usual(&field()), &field());
-    hull.screens.iter_mut().for_each(|screen| screen.half_width_m = -1.0);
-    hull
+fn open_geometry() -> ProxyGeometry {
+    let mut proxy = ProxyGeometry::new(&Hall::usual(&field()), &field());
+    proxy.billboards.iter_mut().for_each(|billboard| billboard.half_width_m = -1.0);
+    proxy
 }
 
 struct Taken {
@@ -110,9 +112,9 @@ impl Taken {
     }
 }
 
-fn drawn(camera: &Camera, pose: CameraPose, hull: &Hull, taken: &[Taken]) -> Warped {
+fn drawn(camera: &Camera, pose: CameraPose, proxy: &ProxyGeometry, taken: &[Taken]) -> Warped {
     let rays = RayTable::new(camera);
-    let target = Target { rays: &rays, placement: Placement::new(pose), hull };
+    let target = Target { rays: &rays, placement: Placement::new(pose), proxy };
     let sources: Vec<Source> = taken.iter().map(Taken::source).collect();
     blend(&target, &sources, &BlendWeights::default())
 }
@@ -127,16 +129,16 @@ proptest! {
 
     #[test]
     fn what_a_source_saw_is_drawn_as_the_world_looks_from_the_target(pose in any_pose(), forward in -0.4..0.4, turn in -0.5..0.5) {
-        let hull = open_hull();
+        let proxy = open_geometry();
         for (target, source) in [(fisheye(), fisheye()), (opencv(), fisheye()), (fisheye(), opencv())] {
             let from = near(pose, forward, turn);
-            let taken = Taken::new(&source, from, &photograph(&source, from, &hull));
-            let warped = drawn(&target, pose, &hull, &[taken]);
+            let taken = Taken::new(&source, from, &photograph(&source, from, &proxy));
+            let warped = drawn(&target, pose, &proxy, &[taken]);
             let seen = |index: usize| warped.origins[index].source == 0;
             let count = (0..warped.colors.len()).filter(|index| seen(*index)).count();
             prop_assert!(count > warped.colors.len() / 16, "{count} pixels");
             // Seen flat over the ground a pixel is metres long: a few far ones may differ by more.
-            let truth = photograph(&target, pose, &hull);
+            let truth = photograph(&target, pose, &proxy);
             let different = warped.colors.iter().zip(truth.pixels()).enumerate()
                 .filter(|(index, (a, b))| seen(*index) && (0..3).any(|i| a[i].abs_diff(b.0[i]) > 5)).count();
             prop_assert!((different as f64) < 0.05 * count as f64, "{different} of {count}");
@@ -145,10 +147,10 @@ proptest! {
 
     #[test]
     fn from_its_own_pose_a_picture_is_drawn_as_it_is(pose in any_pose()) {
-        let hull = Hull::new(&Hall::usual(&field()), &field());
+        let proxy = ProxyGeometry::new(&Hall::usual(&field()), &field());
         let camera = fisheye();
-        let picture = photograph(&camera, pose, &hull);
-        let warped = drawn(&camera, pose, &hull, &[Taken::new(&camera, pose, &picture)]);
+        let picture = photograph(&camera, pose, &proxy);
+        let warped = drawn(&camera, pose, &proxy, &[Taken::new(&camera, pose, &picture)]);
         // Right behind the edge of a goal a place counts as hidden, and at the picture's edge rounding decides.
         let seen = |index: usize| warped.origins[index].source == 0;
         prop_assert!(worst_difference(&warped, &picture, seen) <= 1);
@@ -158,19 +160,19 @@ proptest! {
     /// A goal stands between the source and the wall: the wall must not be painted with it.
     #[test]
     fn goals_are_drawn_where_they_stand_and_not_on_the_wall_behind(y in -1.0..1.0, yaw in -0.3..0.3, left in -0.5..0.5) {
-        let hull = Hull::new(&Hall::usual(&field()), &field());
+        let proxy = ProxyGeometry::new(&Hall::usual(&field()), &field());
         let camera = fisheye();
         let pose = CameraPose::new(Pose2::new(1.2, y, yaw), 0.5, 0.3, 0.0);
         let from = CameraPose { y_m: y + left, ..pose };
         let black_goals = |pose: CameraPose| {
             RgbImage::from_fn(camera.width, camera.height, |u, v| {
                 let ray = camera.unproject(DVec2::new(f64::from(u), f64::from(v))).unwrap();
-                let end = end_of_ray(&hull, pose.position_in_world(), pose.rotation_world_from_camera() * ray);
-                let is_goal = hull.screens.iter().any(|screen| (end.x - screen.x_m).abs() < 1e-6 && end.z > 1e-6);
+                let end = end_of_ray(&proxy, pose.position_in_world(), pose.rotation_world_from_camera() * ray);
+                let is_goal = proxy.billboards.iter().any(|billboard| (end.x - billboard.x_m).abs() < 1e-6 && end.z > 1e-6);
                 Rgb(if is_goal { [0; 3] } else { [200; 3] })
             })
         };
-        let warped = drawn(&camera, pose, &hull, &[Taken::new(&camera, from, &black_goals(from))]);
+        let warped = drawn(&camera, pose, &proxy, &[Taken::new(&camera, from, &black_goals(from))]);
         let truth = black_goals(pose);
         let wrong = warped.colors.iter().zip(truth.pixels()).zip(&warped.origins)
             .filter(|((a, b), origin)| origin.source == 0 && a[0].abs_diff(b.0[0]) > 100).count();
@@ -191,23 +193,23 @@ proptest! {
         let from = CameraPose::new(Pose2::new(a, b, c), d, e, f);
         let camera = opencv();
         let picture = RgbImage::from_pixel(size.0, size.1, Rgb([9; 3]));
-        let hull = open_hull();
+        let proxy = open_geometry();
         let taken = [Taken::new(&camera, from, &picture), Taken::new(&fisheye(), pose, &picture)];
-        prop_assert_eq!(drawn(&camera, pose, &hull, &taken).colors.len(), 128 * 96);
-        prop_assert_eq!(drawn(&camera, pose, &hull, &[]).colors.len(), 128 * 96);
+        prop_assert_eq!(drawn(&camera, pose, &proxy, &taken).colors.len(), 128 * 96);
+        prop_assert_eq!(drawn(&camera, pose, &proxy, &[]).colors.len(), 128 * 96);
     }
 }
 
 #[test]
 fn an_obstacle_that_one_of_four_pictures_shows_leaves_no_ghost() {
-    let (camera, hull) = (fisheye(), open_hull());
+    let (camera, proxy) = (fisheye(), open_geometry());
     let pose = CameraPose::new(Pose2::new(0.0, 0.0, 0.3), 0.5, 0.42, 0.0);
     let mut taken: Vec<Taken> = Vec::new();
     for (number, (forward, turn)) in
         [(0.1, 0.1), (-0.15, 0.0), (0.2, -0.1), (-0.1, 0.15)].into_iter().enumerate()
     {
         let from = near(pose, forward, turn);
-        let mut picture = photograph(&camera, from, &hull);
+        let mut picture = photograph(&camera, from, &proxy);
         if number == 1 {
             for (u, v) in (60..90).flat_map(|u| (50..80).map(move |v| (u, v))) {
                 picture.put_pixel(u, v, Rgb([255, 0, 0]));
@@ -215,21 +217,21 @@ fn an_obstacle_that_one_of_four_pictures_shows_leaves_no_ghost() {
         }
         taken.push(Taken::new(&camera, from, &picture));
     }
-    let truth = photograph(&camera, pose, &hull);
-    let with_ghost = worst_difference(&drawn(&camera, pose, &hull, &taken[1..2]), &truth, |_| true);
+    let truth = photograph(&camera, pose, &proxy);
+    let with_ghost = worst_difference(&drawn(&camera, pose, &proxy, &taken[1..2]), &truth, |_| true);
     assert!(with_ghost > 100, "the obstacle is there");
-    let warped = drawn(&camera, pose, &hull, &taken);
+    let warped = drawn(&camera, pose, &proxy, &taken);
     let seen = |index: usize| warped.origins[index].source != Origin::NOWHERE;
     assert!(worst_difference(&warped, &truth, seen) < 20);
 }
 
 #[test]
 fn what_nobody_saw_is_marked_and_takes_the_colour_of_its_surroundings() {
-    let (camera, hull) = (fisheye(), open_hull());
+    let (camera, proxy) = (fisheye(), open_geometry());
     let pose = CameraPose::new(Pose2::new(0.0, 0.0, 0.0), 0.5, 0.42, 0.0);
     let from = CameraPose { yaw_rad: 0.9, ..pose };
     let grey = RgbImage::from_pixel(camera.width, camera.height, Rgb([70, 80, 90]));
-    let warped = drawn(&camera, pose, &hull, &[Taken::new(&camera, from, &grey)]);
+    let warped = drawn(&camera, pose, &proxy, &[Taken::new(&camera, from, &grey)]);
     let unseen = warped.origins.iter().filter(|origin| origin.source == Origin::NOWHERE);
     assert!(unseen.clone().count() > 1000 && unseen.clone().all(|origin| origin.trust == 0));
     assert!(warped.colors.iter().all(|color| *color == [70, 80, 90]));
@@ -237,34 +239,34 @@ fn what_nobody_saw_is_marked_and_takes_the_colour_of_its_surroundings() {
 
 #[test]
 fn a_nearer_picture_is_trusted_more_and_chosen_before_a_farther_one() {
-    let (camera, hull) = (fisheye(), open_hull());
+    let (camera, proxy) = (fisheye(), open_geometry());
     let pose = CameraPose::new(Pose2::new(0.0, 0.0, 0.0), 0.5, 0.42, 0.0);
     let at = |forward: f64| {
         let from = near(pose, forward, 0.0);
-        Taken::new(&camera, from, &photograph(&camera, from, &hull))
+        Taken::new(&camera, from, &photograph(&camera, from, &proxy))
     };
     let mean_trust =
         |warped: &Warped| warped.origins.iter().map(|origin| f64::from(origin.trust)).sum::<f64>();
     let (near_one, far_one) =
-        (drawn(&camera, pose, &hull, &[at(0.05)]), drawn(&camera, pose, &hull, &[at(-1.5)]));
+        (drawn(&camera, pose, &proxy, &[at(0.05)]), drawn(&camera, pose, &proxy, &[at(-1.5)]));
     assert!(mean_trust(&near_one) > 1.2 * mean_trust(&far_one));
-    let both = drawn(&camera, pose, &hull, &[at(-1.5), at(0.05)]);
+    let both = drawn(&camera, pose, &proxy, &[at(-1.5), at(0.05)]);
     let from_near = both.origins.iter().filter(|origin| origin.source == 1).count();
     assert!(from_near as f64 > 0.8 * both.origins.len() as f64);
     let rays = RayTable::new(&camera);
-    let target = Target { rays: &rays, placement: Placement::new(pose), hull: &hull };
+    let target = Target { rays: &rays, placement: Placement::new(pose), proxy: &proxy };
     let total = |taken: &Taken| costs(&target, &taken.source(), &BlendWeights::default()).iter().sum::<f32>();
     assert!(total(&at(0.05)) < total(&at(-1.5)));
 }
 
 #[test]
 fn glimpses_are_the_colours_of_the_places_seen() {
-    let (camera, hull) = (fisheye(), open_hull());
+    let (camera, proxy) = (fisheye(), open_geometry());
     let pose = CameraPose::new(Pose2::new(0.0, 0.0, 0.0), 0.5, 0.42, 0.0);
     let (a, b) = (near(pose, 0.2, 0.1), near(pose, -0.2, -0.1));
-    let taken = [a, b].map(|from| Taken::new(&camera, from, &photograph(&camera, from, &hull)));
+    let taken = [a, b].map(|from| Taken::new(&camera, from, &photograph(&camera, from, &proxy)));
     let rays = RayTable::new(&camera);
-    let target = Target { rays: &rays, placement: Placement::new(pose), hull: &hull };
+    let target = Target { rays: &rays, placement: Placement::new(pose), proxy: &proxy };
     let [a, b] = taken.each_ref().map(|taken| glimpses(&target, &taken.source()));
     let both: Vec<_> = a.iter().zip(&b).filter_map(|(a, b)| Some(((*a)?, (*b)?))).collect();
     assert!(both.len() > 100);

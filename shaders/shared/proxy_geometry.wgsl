@@ -1,4 +1,4 @@
-// What a pixel looks at, and who else sees that place: the same steps, in the same order, as `hull_points`, `see` and
+// What a pixel looks at, and who else sees that place: the same steps, in the same order, as `proxy_points`, `see` and
 // `unhidden` in crates/core/src/warp/kernel.rs.
 
 #import shared/camera.wgsl
@@ -12,7 +12,7 @@ struct Placement {
 }
 
 /// An upright rectangle across the x axis, metres.
-struct Screen {
+struct Billboard {
     x: f32,
     half_width: f32,
     top: f32,
@@ -24,15 +24,15 @@ struct Screen {
 }
 
 /// A box around the field with the goals in it.
-struct Hull {
+struct ProxyGeometry {
     low: vec4<f32>,
     high: vec4<f32>,
-    screens: array<Screen, SCREENS>,
+    billboards: array<Billboard, BILLBOARDS>,
 }
 
-const SCREENS: u32 = 4u;
+const BILLBOARDS: u32 = 4u;
 
-struct HullPoint {
+struct ProxyPoint {
     /// World axes, metres.
     place: vec3<f32>,
     /// Unit direction from the camera, world axes.
@@ -43,40 +43,40 @@ struct HullPoint {
     on_ground: f32,
 }
 
-/// Farther than every hull, metres.
+/// Farther than every proxy geometry, metres.
 const FAR_M: f32 = 1e30;
 
-/// Whether a place in the plane of a screen that is wider on all sides by so much, above the ground, lies on it.
-fn holds(screen: Screen, wider: f32, across: f32, up: f32) -> bool {
-    let is_opening = abs(across) < screen.opening_half_width - wider && up < screen.opening_top - wider;
-    return abs(across) <= screen.half_width + wider && up <= screen.top + wider && !is_opening;
+/// Whether a place in the plane of a billboard that is wider on all sides by so much, above the ground, lies on it.
+fn holds(billboard: Billboard, wider: f32, across: f32, up: f32) -> bool {
+    let is_opening = abs(across) < billboard.opening_half_width - wider && up < billboard.opening_top - wider;
+    return abs(across) <= billboard.half_width + wider && up <= billboard.top + wider && !is_opening;
 }
 
-/// Follows a ray from a camera inside the hull.
-fn hull_point(eye: Placement, ray: vec3<f32>) -> HullPoint {
+/// Follows a ray from a camera inside the proxy geometry.
+fn proxy_point(eye: Placement, ray: vec3<f32>) -> ProxyPoint {
     let position = eye.position.xyz;
     let direction = eye.right.xyz * ray.x + eye.down.xyz * ray.y + eye.forward.xyz * ray.z;
-    let end = select(scene.hull.high.xyz, scene.hull.low.xyz, direction < vec3<f32>(0.0)) - position;
+    let end = select(scene.proxy.high.xyz, scene.proxy.low.xyz, direction < vec3<f32>(0.0)) - position;
     // What runs along a wall never meets it: no division by 0.
     let is_across = abs(direction) > vec3<f32>(1e-12);
     let to_wall = select(vec3<f32>(FAR_M), end / direction, is_across);
     var distance = min(to_wall.x, to_wall.y);
     var on_ground = select(0.0, 1.0, to_wall.z < distance && direction.z < 0.0);
     distance = min(distance, to_wall.z);
-    for (var number = 0u; number < SCREENS; number++) {
-        let screen = scene.hull.screens[number];
-        let to_screen = (screen.x - position.x) / direction.x;
-        let y = position.y + to_screen * direction.y;
-        let z = position.z + to_screen * direction.z;
-        let is_hit = to_screen > 0.0 && to_screen < distance && z >= 0.0 && holds(screen, 0.0, y, z);
-        distance = select(distance, to_screen, is_hit);
+    for (var number = 0u; number < BILLBOARDS; number++) {
+        let billboard = scene.proxy.billboards[number];
+        let to_billboard = (billboard.x - position.x) / direction.x;
+        let y = position.y + to_billboard * direction.y;
+        let z = position.z + to_billboard * direction.z;
+        let is_hit = to_billboard > 0.0 && to_billboard < distance && z >= 0.0 && holds(billboard, 0.0, y, z);
+        distance = select(distance, to_billboard, is_hit);
         on_ground = select(on_ground, 0.0, is_hit);
     }
-    return HullPoint(position + distance * direction, direction, distance, on_ground);
+    return ProxyPoint(position + distance * direction, direction, distance, on_ground);
 }
 
 /// Where another camera sees the point.
-fn see(camera: Camera, is_radial: bool, placement: Placement, point: HullPoint) -> Pixel {
+fn see(camera: Camera, is_radial: bool, placement: Placement, point: ProxyPoint) -> Pixel {
     let offset = point.place - placement.position.xyz;
     let in_camera = vec3<f32>(
         dot(placement.right.xyz, offset),
@@ -86,29 +86,29 @@ fn see(camera: Camera, is_radial: bool, placement: Placement, point: HullPoint) 
     return project_point(camera, is_radial, in_camera);
 }
 
-/// A point on the screen itself is not hidden by it, as a share of the way to it.
+/// A point on the billboard itself is not hidden by it, as a share of the way to it.
 const ON_SCREEN: f32 = 0.999;
 /// Of a usual post. Seen from the side, a round one hides more than the flat one that stands for it; by how much, grows with
 /// one over the cosine.
 const POST_RADIUS_M: f32 = 0.05;
 /// Below 1: pixels and compression spread a post's colour beyond its edge.
 const SHARP_EDGE: f32 = 0.6;
-/// Nearly along the screen it would hide everything.
+/// Nearly along the billboard it would hide everything.
 const MOST_OBLIQUE: f32 = 4.0;
 
 /// Whether no goal stands between a camera and the point.
-fn unhidden(position: vec3<f32>, point: HullPoint) -> bool {
+fn unhidden(position: vec3<f32>, point: ProxyPoint) -> bool {
     var is_unhidden = true;
     let way = point.place - position;
     let slope = way.y / way.x;
     let margin = POST_RADIUS_M * (min(sqrt(1.0 + slope * slope), MOST_OBLIQUE) - SHARP_EDGE);
-    for (var number = 0u; number < SCREENS; number++) {
-        let screen = scene.hull.screens[number];
-        let share = (screen.x - position.x) / way.x;
+    for (var number = 0u; number < BILLBOARDS; number++) {
+        let billboard = scene.proxy.billboards[number];
+        let share = (billboard.x - position.x) / way.x;
         let across = position.y + share * way.y;
         let up = position.z + share * way.z;
         let is_between = share > 0.0 && share < ON_SCREEN;
-        is_unhidden = is_unhidden && !(is_between && holds(screen, margin, across, up));
+        is_unhidden = is_unhidden && !(is_between && holds(billboard, margin, across, up));
     }
     return is_unhidden;
 }

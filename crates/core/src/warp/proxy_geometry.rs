@@ -1,9 +1,9 @@
-//! The shape that stands for the world: what the ray of a pixel ends on.
+//! Proxy geometry: the shape that stands for the world, on which the ray of a pixel ends.
 //!
-//! The ground is the plane z = 0, exactly. Each goal is two upright *screens*: its frame, from which posts and crossbar do not
-//! stand out by more than half their thickness, and its back. All else (walls, ceiling, what stands in front of them) is
-//! taken to lie on a box around the field, the *hull* of the hall. Ground and hull are closed: the map from one picture to
-//! another has no seam where the ground ends.
+//! The ground is the plane z = 0, exactly. Each goal is two upright *billboards*: its frame, from which posts and crossbar
+//! do not stand out by more than half their thickness, and its back. All else (walls, ceiling, what stands in front of
+//! them) is taken to lie on a box around the field. Together they are the *proxy geometry*, which is closed: the map from
+//! one picture to another has no seam where the ground ends.
 
 use glam::{DVec2, DVec3};
 
@@ -16,14 +16,14 @@ const USUAL_CEILING_M: f64 = 3.0;
 
 /// No hall is larger, metres from the field's centre.
 const LARGEST_M: f64 = 1000.0;
-/// Room around a camera inside the hull, metres.
+/// Room around a camera inside the proxy geometry, metres.
 const ROOM_M: f64 = 0.3;
 /// Nets and backs of goals stand this far behind the posts, metres.
 const USUAL_GOAL_DEPTH_M: f64 = 0.5;
 
 /// An upright rectangle on the ground, across the x axis and symmetric to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Screen {
+pub struct Billboard {
     /// Where it stands, metres.
     pub x_m: f64,
     /// Half its width, metres.
@@ -72,26 +72,26 @@ impl Hall {
 
 /// A box around the field with the goals in it, axes as the world's; its floor is the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hull {
+pub struct ProxyGeometry {
     /// Corner with the smallest coordinates, metres; z is 0.
     pub min_in_world: DVec3,
     /// Corner with the largest coordinates, metres.
     pub max_in_world: DVec3,
     /// Frame and back of both goals.
-    pub screens: [Screen; 4],
+    pub billboards: [Billboard; 4],
 }
 
-impl Hull {
+impl ProxyGeometry {
     /// The shape of a hall with a field in it.
     pub fn new(hall: &Hall, field: &FieldDimensions) -> Self {
         Self {
             min_in_world: hall.min_m.extend(0.0),
             max_in_world: hall.max_m.extend(hall.ceiling_m),
-            screens: goal_screens(field, hall.goal_depth_m),
+            billboards: goal_billboards(field, hall.goal_depth_m),
         }
     }
 
-    /// The same hull, grown where it must be to hold a camera with some room around it.
+    /// The same geometry, grown where it must be to hold a camera with some room around it.
     pub fn holding(mut self, pose: CameraPose) -> Self {
         let room = DVec3::splat(ROOM_M);
         self.min_in_world = self.min_in_world.min(pose.position_in_world() - room).with_z(0.0);
@@ -101,22 +101,22 @@ impl Hull {
 }
 
 /// Frame and back of both goals.
-fn goal_screens(field: &FieldDimensions, depth_m: f64) -> [Screen; 4] {
+fn goal_billboards(field: &FieldDimensions, depth_m: f64) -> [Billboard; 4] {
     let (inner_half_width, thickness) = (field.goal_width_m / 2.0, field.goal_post_diameter_m);
-    let front = Screen {
+    let front = Billboard {
         x_m: field.length_m / 2.0,
         half_width_m: inner_half_width + thickness,
         height_m: field.goal_height_m + thickness,
         opening_half_width_m: inner_half_width,
         opening_height_m: field.goal_height_m,
     };
-    let back = Screen {
+    let back = Billboard {
         x_m: front.x_m + depth_m,
         half_width_m: inner_half_width,
         height_m: field.goal_height_m,
         opening_half_width_m: 0.0,
         opening_height_m: 0.0,
     };
-    let mirrored = |screen: Screen| Screen { x_m: -screen.x_m, ..screen };
+    let mirrored = |billboard: Billboard| Billboard { x_m: -billboard.x_m, ..billboard };
     [front, back, mirrored(front), mirrored(back)]
 }
