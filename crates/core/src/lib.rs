@@ -60,6 +60,7 @@ pub mod preprocess;
 pub mod refine;
 pub mod search;
 pub mod sequence;
+pub mod statistics;
 pub mod warp;
 
 #[cfg(test)]

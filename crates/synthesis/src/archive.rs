@@ -8,6 +8,7 @@ use reality_sim_core::{
     field::FieldDimensions,
     pose::CameraPose,
     sequence::CameraSetup,
+    statistics::median,
     warp::{Hall, Picture, Placement, ProxyGeometry, Source},
 };
 use reality_sim_db::{
@@ -149,11 +150,7 @@ fn most_common(ids: impl Iterator<Item = i64>) -> Option<i64> {
 }
 
 fn usual_pose(poses: &[CameraPose]) -> CameraPose {
-    let median = |of: fn(&CameraPose) -> f64| {
-        let mut values: Vec<f64> = poses.iter().map(of).collect();
-        values.sort_by(f64::total_cmp);
-        values.get(values.len() / 2).copied().unwrap_or_default()
-    };
+    let median = |of: fn(&CameraPose) -> f64| median(poses.iter().map(of));
     CameraPose {
         height_m: median(|pose| pose.height_m),
         pitch_rad: median(|pose| pose.pitch_rad),

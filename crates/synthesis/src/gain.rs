@@ -5,7 +5,10 @@
 //! those that are cut off.
 
 use nalgebra::{DMatrix, DVector};
-use reality_sim_core::warp::{Source, Target, glimpses};
+use reality_sim_core::{
+    statistics::median,
+    warp::{Source, Target, glimpses},
+};
 
 /// Grey values outside this range say nothing about brightness: noise, or saturated.
 const USABLE: std::ops::Range<f32> = 10.0..245.0;
@@ -52,11 +55,10 @@ fn channel_gains(seen: &[Vec<Option<[f32; 3]>>], channel: usize) -> Vec<f32> {
 fn median_log_ratio(a: &[Option<[f32; 3]>], b: &[Option<[f32; 3]>], channel: usize) -> Option<(f64, f64)> {
     let both = a.iter().zip(b).filter_map(|(a, b)| Some(((*a)?[channel], (*b)?[channel])));
     let usable = both.filter(|(a, b)| USABLE.contains(a) && USABLE.contains(b));
-    let mut logs: Vec<f64> = usable.map(|(a, b)| f64::from(b / a).ln()).collect();
+    let logs: Vec<f64> = usable.map(|(a, b)| f64::from(b / a).ln()).collect();
     if logs.len() < LEAST_PLACES {
         return None;
     }
-    let places = logs.len();
-    let (_, median, _) = logs.select_nth_unstable_by(places / 2, f64::total_cmp);
-    Some((*median, places as f64))
+    let places = logs.len() as f64;
+    Some((median(logs), places))
 }

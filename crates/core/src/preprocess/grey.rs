@@ -3,7 +3,10 @@
 use image::{GrayImage, RgbImage};
 use rayon::prelude::*;
 
-/// Luma by ITU-R BT.601, rounded down.
+/// Weights of red, green and blue in luma, ITU-R BT.601, as in JPEG files.
+pub const LUMA_WEIGHTS: [f64; 3] = [0.299, 0.587, 0.114];
+
+/// Luma by ITU-R BT.601 with weights in 256ths, rounded down.
 pub fn luma(picture: &RgbImage) -> GrayImage {
     map_pixels(picture, |[r, g, b]| ((u32::from(r) * 77 + u32::from(g) * 150 + u32::from(b) * 29) >> 8) as u8)
 }

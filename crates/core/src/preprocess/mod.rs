@@ -15,7 +15,7 @@ pub use self::{
     border::{BorderDetector, CELL_PX, FieldBorder},
     carpet::CarpetColor,
     distance::{DISTANCE_RADIUS_PX, DISTANCE_UNITS_PER_PX, distance_field},
-    grey::{luma, whiteness},
+    grey::{LUMA_WEIGHTS, luma, whiteness},
     prepared::{Prepared, Preprocessor},
     texture::Texture,
     white_line::{LineScale, WhiteLevels, white_levels, white_line_evidence},

@@ -10,6 +10,7 @@ use crate::{
     mount::{MountPose, MountPoseSigma},
     pose::{CameraPose, wrap_angle},
     preprocess::Texture,
+    statistics::robust_sigma,
 };
 
 /// Settings of [`Refiner`].
@@ -238,21 +239,6 @@ pub(super) fn pose_difference(from: CameraPose, to: CameraPose) -> Vector6<f64> 
         to.pitch_rad - from.pitch_rad,
         wrap_angle(to.roll_rad - from.roll_rad),
     )
-}
-
-/// Median of the absolute values, scaled to a standard deviation.
-pub(super) fn robust_sigma(values: impl Iterator<Item = f64>) -> f64 {
-    1.4826 * median(values.map(f64::abs))
-}
-
-/// The middle value; 0 of none.
-pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// Tukey's biweight with its usual constant.

@@ -4,11 +4,12 @@
 
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Vector3, Vector6};
 
-use super::picture::{PoseFit, median, mount_error, moved, pose_difference, robust_sigma};
+use super::picture::{PoseFit, mount_error, moved, pose_difference};
 use crate::{
     filter::MotionNoise,
     mount::{MountPose, MountPoseSigma},
     pose::{CameraPose, Motion2},
+    statistics::{median, robust_sigma},
 };
 
 /// Rounds of Gauss–Newton; the chain is nearly linear.

@@ -13,7 +13,7 @@ use reality_sim_core::{
 use super::{
     kind::{PictureKind, View},
     layout::Layout,
-    map::{Map, Scene},
+    map::{Map, MapContent},
     painter::{Answer, Around, Painted, Painter, Wish},
     pictures::{Gallery, Pictures},
     robot::Robot,
@@ -180,7 +180,7 @@ impl Driving {
         };
         let drawn = self.painted.get(&made).and_then(|painted| painted.result.as_ref().ok());
         let used_by = made.kind.name();
-        let scene = Scene {
+        let content = MapContent {
             source: &self.source,
             layers: settings.layers,
             around: self.around.as_ref(),
@@ -189,12 +189,12 @@ impl Driving {
             probes: self.probes.as_ref(),
         };
         let room = vec2(ui.available_width(), (ui.available_height() - CONTROLS).max(160.0));
-        self.map.ui(ui, room, &scene, &mut self.robot);
+        self.map.ui(ui, room, &content, &mut self.robot);
         egui::ScrollArea::vertical()
             .show(ui, |ui| {
                 self.map.path_ui(ui, &mut self.robot);
                 ui.separator();
-                self.map.layers_ui(ui, &scene, &mut settings.layers);
+                self.map.layers_ui(ui, &content, &mut settings.layers);
                 ui.separator();
                 near_ui(ui, &self.source, self.around.as_ref());
                 device_ui(ui, &mut settings.device, devices);

@@ -12,10 +12,10 @@ use reality_sim_synthesis::Archive;
 use super::{
     kind::{PictureKind, Shown, View},
     layout::Layout,
-    map::{hue, swatch},
     painter::{Facts, Painted},
     settings::DriveSettings,
     source::NearProbe,
+    widgets::{hue, swatch},
 };
 use crate::picture_view::{PictureCanvas, Uploaded};
 

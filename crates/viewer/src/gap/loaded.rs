@@ -4,7 +4,10 @@ use std::{fs::File, io::BufReader, path::Path, sync::Arc};
 
 use eframe::egui::ColorImage;
 use image::{ImageReader, RgbImage};
-use reality_sim_core::field::{FieldDimensions, preset_names};
+use reality_sim_core::{
+    field::{FieldDimensions, preset_names},
+    preprocess::LUMA_WEIGHTS,
+};
 use reality_sim_gap::{
     ChannelGap,
     report::{EffectReport, Report},
@@ -125,8 +128,8 @@ fn same_size(
 
 /// Measured minus simulated luma, pixel by pixel.
 fn difference(measured: &RgbImage, simulated: &RgbImage) -> Vec<f64> {
-    // Rec. 601, as in JPEG files.
-    let luma = |[r, g, b]: [u8; 3]| 0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b);
+    let [red, green, blue] = LUMA_WEIGHTS;
+    let luma = |[r, g, b]: [u8; 3]| red * f64::from(r) + green * f64::from(g) + blue * f64::from(b);
     let pairs = measured.pixels().zip(simulated.pixels());
     pairs.map(|(measured, simulated)| luma(measured.0) - luma(simulated.0)).collect()
 }
