@@ -430,23 +430,27 @@ mod tests {
             for (found, expected) in gpu.alternatives().iter().zip(cpu.alternatives()) {
                 assert!(distance(*found, *expected) < 1e-5, "{about}");
             }
-            // A particle whose expected copies lie at a whole number may get one more or less; in the residual scheme that
-            // moves all slots behind it.
-            let (found, expected) = (gpu.particles().unwrap(), cpu.particles());
-            assert_eq!(found.len(), expected.len());
-            let same = |a: CameraPose, b: CameraPose| distance(a, b) < 1e-5;
-            if config.resampling != Resampling::Residual {
-                let off = found.iter().zip(expected).filter(|(a, b)| !same(**a, **b)).count();
-                assert!(off * 50 <= found.len(), "{off} of {} slots differ, {about}", found.len());
-            }
-            let copies =
-                |of: CameraPose, among: &[CameraPose]| among.iter().filter(|other| same(of, **other)).count();
-            let differing = found.iter().map(|&pose| copies(pose, &found).abs_diff(copies(pose, expected)));
-            let differing: Vec<usize> = differing.filter(|&difference| difference > 0).collect();
-            assert!(differing.iter().all(|&difference| difference == 1), "{differing:?}, {about}");
-            assert!(differing.len() * 20 <= found.len(), "{} copies differ, {about}", differing.len());
+            let is_residual = config.resampling == Resampling::Residual;
+            assert_same_particles(&gpu.particles().unwrap(), cpu.particles(), is_residual, &about);
         }
         context.status().unwrap();
+    }
+
+    /// A particle whose expected copies lie at a whole number may get one more or less; in the residual scheme that moves all
+    /// slots behind it.
+    fn assert_same_particles(found: &[CameraPose], expected: &[CameraPose], is_residual: bool, about: &str) {
+        assert_eq!(found.len(), expected.len());
+        let same = |a: CameraPose, b: CameraPose| distance(a, b) < 1e-5;
+        if !is_residual {
+            let off = found.iter().zip(expected).filter(|(a, b)| !same(**a, **b)).count();
+            assert!(off * 50 <= found.len(), "{off} of {} slots differ, {about}", found.len());
+        }
+        let copies =
+            |of: CameraPose, among: &[CameraPose]| among.iter().filter(|other| same(of, **other)).count();
+        let differing = found.iter().map(|&pose| copies(pose, found).abs_diff(copies(pose, expected)));
+        let differing: Vec<usize> = differing.filter(|&difference| difference > 0).collect();
+        assert!(differing.iter().all(|&difference| difference == 1), "{differing:?}, {about}");
+        assert!(differing.len() * 20 <= found.len(), "{} copies differ, {about}", differing.len());
     }
 
     fn filter_on(context: &Arc<GpuContext>, config: FilterConfig) -> Result<GpuFilter, GpuError> {
