@@ -10,12 +10,11 @@ mod rendering;
 use std::{
     fs,
     path::{Path, PathBuf},
-    process::{Command, Output, Stdio},
+    process::{Command, Output},
     sync::OnceLock,
 };
 
-use image::RgbImage;
-use reality_sim::{Sequence, db::Database, sequence::save_image, write_tum};
+use reality_sim::Sequence;
 use serde_json::Value;
 use tempfile::TempDir;
 
