@@ -6,7 +6,7 @@ use reality_sim::{
     Sequence,
     gap::{
         Options, Recording, ReferenceSource, analyse,
-        report::{Report, Verdict},
+        report::{Finding, Report, Verdict},
     },
     sensor::{Model, effect},
 };
@@ -28,7 +28,7 @@ pub struct Outcome {
     pub verdict: Verdict,
     /// Named effects, each with those that it cannot be told from.
     pub named: Vec<(String, Vec<String>)>,
-    pub unexplained: Vec<String>,
+    pub unexplained: Vec<Finding>,
     /// True value, estimate and its standard deviation, of parameters with a known true value.
     pub estimates: Vec<Compared>,
     /// Of the whole: before, after, and with the true effects added, where the library can express them.
@@ -101,7 +101,7 @@ pub fn run(task: &Task, hidden: &[Chosen]) -> Result<Outcome, Box<dyn Error>> {
             .iter()
             .map(|effect| (effect.id.clone(), effect.confusable_with.clone()))
             .collect(),
-        unexplained: report.unexplained.iter().map(|u| format!("{} {}", u.channel, u.r#where)).collect(),
+        unexplained: report.unexplained.clone(),
         estimates: effects.iter().flat_map(|hidden| compared(hidden, &report)).collect(),
         gap: [report.gap.before, report.gap.after],
         oracle: oracle(&sequence, &effects, &options)?,

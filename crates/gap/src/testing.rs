@@ -4,12 +4,16 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 use nalgebra::{DMatrix, DVector};
+use reality_sim_core::field::FieldDimensions;
+use reality_sim_sensor::{Parameter, effect};
 
 use crate::{
     linear_model::normal_equations::NormalEquations,
     linear_model::system::LinearSystem,
     measurement::quantity::{ColorChannel, Quantity},
     measurement::scalar::Measurement,
+    recording::ReferenceSource,
+    report::data::{EffectReport, Estimate, Gap, PosesReport, Report, Verdict},
 };
 
 /// Numbers from a fixed linear congruential generator, summed to be nearly normal.
@@ -64,5 +68,50 @@ pub(crate) fn system_of(frames: Vec<(DMatrix<f64>, DVector<f64>)>) -> LinearSyst
         sigmas: BTreeMap::new(),
         pose_sigmas: [1.0; 6],
         weights: Vec::new(),
+    }
+}
+
+/// An effect in which every parameter has this value, surely, and nothing else is known.
+pub(crate) fn effect_report(id: &str, value: f64) -> EffectReport {
+    let parameters = effect(id).map_or(&[][..], |known| known.parameters());
+    let estimate = |parameter: &Parameter| {
+        let unit = Some(parameter.unit.to_owned());
+        (parameter.name.to_owned(), Estimate { value, sigma: 0.01 * value.abs(), unit })
+    };
+    EffectReport {
+        id: id.to_owned(),
+        parameters: parameters.iter().map(estimate).collect(),
+        correlations: BTreeMap::new(),
+        given: BTreeMap::new(),
+        p_value: 1e-9,
+        held_out_gain: Estimate { value: 310.0, sigma: 12.0, unit: None },
+        confusable_with: Vec::new(),
+        closes: BTreeMap::new(),
+    }
+}
+
+/// A report in which nothing was found.
+pub(crate) fn report() -> Report {
+    Report {
+        recording: "hall".to_owned(),
+        frames: 120,
+        judged_frames: 30,
+        left_out: Vec::new(),
+        verdict: Verdict::None,
+        effects: Vec::new(),
+        in_model: Vec::new(),
+        unexplained: Vec::new(),
+        gap: Gap { before: 1.0, after: 1.0, floor: 1.0, channels: BTreeMap::new() },
+        not_found: Vec::new(),
+        unobservable: Vec::new(),
+        poses: PosesReport {
+            source: ReferenceSource::Measured,
+            rotation_sigma_rad: [0.002, 0.001, 0.003],
+            position_sigma_m: [0.01, 0.012, 0.003],
+        },
+        maps: BTreeMap::new(),
+        shown_frame: 17,
+        seed: 0,
+        field: FieldDimensions::preset("humanoid-kidsize-2010").unwrap(),
     }
 }

@@ -19,10 +19,10 @@ use egui_kittest::kittest::Queryable;
 use image::{Rgb, RgbImage};
 use reality_sim_core::field::FieldDimensions;
 use reality_sim_gap::{
-    ChannelGap, ReferenceSource,
+    Channel, ChannelGap, ReferenceSource,
     report::{
-        Course, EffectReport, Estimate, Gap, Limit, Map, Maps, NotFoundReport, PosesReport, Report,
-        Unexplained, Unobservable, Verdict,
+        Course, EffectReport, Estimate, Finding, Gap, Limit, Map, Maps, NotFoundReport, PatternCell,
+        PosesReport, Report, Unobservable, UnobservableCause, Verdict, text,
     },
 };
 use tempfile::TempDir;
@@ -37,20 +37,18 @@ type Window = common::Viewer<'static>;
 const WITHOUT: &str = "measured, 50 % of the width; then simulated without the effect";
 const WITH: &str = "measured, 50 % of the width; then simulated with the effect";
 
-fn effect(id: &str, name: &str) -> EffectReport {
+fn effect(id: &str, parameter: &str) -> EffectReport {
     let estimate =
         |value, sigma, unit: Option<&str>| Estimate { value, sigma, unit: unit.map(str::to_owned) };
     EffectReport {
         id: id.to_owned(),
-        name: name.to_owned(),
-        size: format!("the size of {id}"),
-        parameters: [("strength".to_owned(), estimate(0.42, 0.01, Some("1")))].into(),
+        parameters: [(parameter.to_owned(), estimate(0.42, 0.01, Some("1")))].into(),
+        correlations: BTreeMap::new(),
+        given: BTreeMap::new(),
         p_value: 2e-31,
         held_out_gain: estimate(310.0, 12.0, None),
         confusable_with: Vec::new(),
-        recording_that_would_decide: Vec::new(),
-        because: format!("the reason for {id}"),
-        closes: [("photometry".to_owned(), 0.75)].into(),
+        closes: [(Channel::Photometry, 0.75)].into(),
     }
 }
 
@@ -62,10 +60,9 @@ fn map(columns: usize, rows: usize, extent: [f64; 4]) -> Map {
     Map { columns, rows, extent, before, after }
 }
 
-fn maps(unit: &str) -> Maps {
+fn maps() -> Maps {
     let frames = 12;
     Maps {
-        unit: unit.to_owned(),
         picture: map(16, 12, [0.0, 0.0, 64.0, 48.0]),
         field: map(15, 11, [-3.725, 2.725, 3.725, -2.725]),
         time: Course {
@@ -79,10 +76,12 @@ fn maps(unit: &str) -> Maps {
 
 /// A report with something in every part of it.
 fn report() -> Report {
-    let channel = |unit: &str| ChannelGap { before: 0.2, after: 0.05, floor: 0.04, unit: unit.to_owned() };
-    let mut rival = effect("tone_curve", "brightness is encoded by another curve");
-    rival.confusable_with = vec!["black_level".to_owned()];
-    rival.recording_that_would_decide = vec!["the same place in half the light".to_owned()];
+    let channel = ChannelGap { before: 0.2, after: 0.05, floor: 0.04 };
+    let rival = EffectReport {
+        confusable_with: vec!["black_level".to_owned()],
+        ..effect("tone_curve", "gamma_change")
+    };
+    let strongest = PatternCell::Picture { column: 1, row: 3, grid: [8, 6] };
     Report {
         field: FieldDimensions::preset("humanoid-kidsize-2010").unwrap(),
         recording: "hall-3".to_owned(),
@@ -90,45 +89,32 @@ fn report() -> Report {
         judged_frames: 3,
         left_out: vec!["images/000007.jpg".to_owned()],
         verdict: Verdict::Confusable,
-        summary: "The lens darkens towards the corners, and another thing.".to_owned(),
-        effects: vec![effect("vignetting", "the lens darkens towards the corners"), rival],
-        in_model: vec![effect("defocus", "the lens is out of focus")],
-        unexplained: vec![Unexplained {
-            channel: "noise".to_owned(),
-            r#where: "in the left third of the picture".to_owned(),
-            size: 0.3,
-            unit: "1".to_owned(),
-            p_value: Some(1e-5),
-        }],
+        effects: vec![effect("vignetting", "strength"), rival],
+        in_model: vec![effect("defocus", "sigma_px")],
+        unexplained: vec![Finding::Pattern { channel: Channel::Noise, strongest, size: 0.3, p_value: 1e-5 }],
         gap: Gap {
             before: 3.1,
             after: 1.2,
             floor: 1.0,
-            unit: "noise floors".to_owned(),
-            channels: [("geometry".to_owned(), channel("px")), ("photometry".to_owned(), channel("1"))]
-                .into(),
+            channels: [(Channel::Geometry, channel.clone()), (Channel::Photometry, channel)].into(),
         },
         not_found: vec![NotFoundReport {
             id: "rolling_shutter".to_owned(),
-            name: "rows are exposed one after the other".to_owned(),
             parameter: "readout_s".to_owned(),
             detection_limit: Limit { value: 0.021, unit: "s".to_owned() },
             p_value: 1.0,
             held_out_gain: Estimate { value: -1.0, sigma: 2.0, unit: None },
         }],
         unobservable: vec![Unobservable {
-            id: "mount_pitch".to_owned(),
-            name: "the camera looks lower".to_owned(),
-            reason: "the head never moves".to_owned(),
-            recording_that_would_decide: "nod at one place".to_owned(),
+            id: "time_offset".to_owned(),
+            cause: UnobservableCause::CameraAtRest,
         }],
         poses: PosesReport {
             source: ReferenceSource::Measured,
             rotation_sigma_rad: [0.002; 3],
             position_sigma_m: [0.003; 3],
-            absorbed: String::new(),
         },
-        maps: [("geometry".to_owned(), maps("px")), ("photometry".to_owned(), maps("1"))].into(),
+        maps: [(Channel::Geometry, maps()), (Channel::Photometry, maps())].into(),
         shown_frame: 10,
         seed: 0,
     }
@@ -198,22 +184,16 @@ fn painted(window: &Window, label: &str) -> BTreeMap<[u8; 4], usize> {
 fn a_report_opens_alone_with_its_verdict_and_its_sentence() {
     let (window, _folder) = opened();
     assert!(shows(&window, "confusable"));
-    assert!(shows(&window, "The lens darkens towards the corners, and another thing."));
+    assert!(shows(&window, &text::summary(&report())));
     assert!(!texts(&window, "12 frames, 3 of them judged").is_empty());
     assert!(!shows(&window, "Walk") && !shows(&window, "Drive") && !shows(&window, "Dismiss"));
 }
 
 #[test]
 fn every_verdict_is_shown_in_words() {
-    let verdicts = [
-        (Verdict::None, "nothing missing"),
-        (Verdict::Named, "named"),
-        (Verdict::Unknown, "unknown"),
-        (Verdict::Inconclusive, "inconclusive"),
-    ];
-    for (verdict, word) in verdicts {
+    for verdict in [Verdict::None, Verdict::Named, Verdict::Unknown, Verdict::Inconclusive] {
         let (_folder, path) = written(&Report { verdict, ..report() });
-        until_label(&mut viewer(&path), word);
+        until_label(&mut viewer(&path), text::verdict_word(verdict));
     }
 }
 
@@ -299,11 +279,11 @@ fn the_maps_have_a_colour_for_every_value_and_pale_with_the_effect() {
 #[test]
 fn another_channel_has_other_maps_and_another_unit() {
     let mut changed = report();
-    let geometry = changed.maps.get_mut("geometry").unwrap();
+    let geometry = changed.maps.get_mut(&Channel::Geometry).unwrap();
     geometry.picture.before.iter_mut().chain(&mut geometry.field.before).for_each(|value| {
         *value = value.map(|value| -20.0 * value);
     });
-    changed.gap.channels.get_mut("geometry").unwrap().before = 9.0;
+    changed.gap.channels.get_mut(&Channel::Geometry).unwrap().before = 9.0;
     let (_folder, path) = written(&changed);
     let mut window = viewer(&path);
     until_label(&mut window, WITHOUT);
@@ -312,7 +292,7 @@ fn another_channel_has_other_maps_and_another_unit() {
     let (geometry, pixels) = (painted(&window, name), legend(&window).unwrap());
     assert!(pixels.ends_with(" px"), "{pixels}");
     // By its row in the table, by the keys, and by the list, whose entries come after that row.
-    window.get_by_role_and_label(Role::Button, "photometry").click();
+    window.get_by_role_and_label(Role::Button, "Photometry").click();
     window.run();
     assert!(legend(&window).is_some_and(|legend| !legend.ends_with(" px")), "{:?}", legend(&window));
     assert_ne!(painted(&window, name), geometry);
@@ -321,7 +301,7 @@ fn another_channel_has_other_maps_and_another_unit() {
     assert_eq!((painted(&window, name), legend(&window).unwrap()), (geometry, pixels));
     window.get_by_role_and_label(Role::ComboBox, "Residuals of").click();
     window.run_steps(4);
-    let entries = window.query_all_by_role_and_label(Role::Button, "photometry");
+    let entries = window.query_all_by_role_and_label(Role::Button, "Photometry");
     entries.last().unwrap().click();
     window.run_steps(4);
     assert!(legend(&window).is_some_and(|legend| !legend.ends_with(" px")), "{:?}", legend(&window));
@@ -346,32 +326,45 @@ fn a_channel_without_a_map_says_so() {
 #[test]
 fn the_effect_that_is_chosen_tells_all_that_is_known_of_it() {
     let (mut window, _folder) = opened();
-    assert!(shows(&window, "Because the reason for vignetting."), "the surest comes first");
-    assert!(shows(&window, "strength = 0.420 ± 0.010"));
-    assert!(shows(&window, "2e-31") && shows(&window, "310 ± 12"));
+    let all = report();
+    let because = |effect: &EffectReport| format!("Because {}.", text::effect_because(effect));
+    let [vignetting, tone_curve] = &all.effects[..] else { panic!() };
+    assert!(shows(&window, &because(vignetting)), "the surest comes first");
+    let estimate = text::estimate(&vignetting.parameters["strength"]);
+    assert!(shows(&window, &format!("strength = {estimate}")));
+    let numbers = [text::probability(vignetting.p_value), text::estimate(&vignetting.held_out_gain)];
+    assert!(numbers.iter().all(|number| shows(&window, number)));
     assert!(shows(&window, "Nothing else explains these frames as well."));
-    click(&mut window, "brightness is encoded by another curve");
-    assert!(shows(&window, "Because the reason for tone_curve."));
-    assert!(!shows(&window, "Because the reason for vignetting."));
+    click(&mut window, text::effect_name(tone_curve));
+    assert!(shows(&window, &because(tone_curve)) && !shows(&window, &because(vignetting)));
     assert!(shows(&window, "These frames cannot tell it from: black_level"));
-    assert!(shows(&window, "To decide, record: the same place in half the light"));
+    let deciding = text::deciding_recordings(tone_curve)[0];
+    assert!(shows(&window, &format!("To decide, record: {deciding}")));
     press(&mut window, Modifiers::NONE, Key::ArrowDown);
     window.run();
-    assert!(shows(&window, "Because the reason for defocus."), "those of the model follow");
+    assert!(shows(&window, &because(&all.in_model[0])), "those of the model follow");
     for _ in 0..5 {
         press(&mut window, Modifiers::NONE, Key::ArrowUp);
     }
-    assert!(shows(&window, "Because the reason for vignetting."));
+    assert!(shows(&window, &because(vignetting)));
 }
 
 #[test]
 fn what_is_left_what_was_not_found_and_what_cannot_be_seen_are_listed() {
     let (window, _folder) = opened();
-    for text in ["in the left third of the picture", "0.021 s", "rows are exposed one after the other"] {
-        assert!(shows(&window, text), "{text}");
-    }
-    for text in ["the head never moves", "To decide, record: nod at one place", "0.04 px"] {
-        assert!(shows(&window, text), "{text}");
+    let Report { unexplained, not_found, unobservable, gap, .. } = report();
+    let remedy = text::unobservable_remedy(&unobservable[0]);
+    let texts = [
+        text::finding_place(&unexplained[0]),
+        text::finding_size(&unexplained[0]),
+        text::limit(&not_found[0]),
+        text::library_name(&not_found[0].id).to_owned(),
+        text::unobservable_reason(&unobservable[0].cause).to_owned(),
+        format!("What would decide: {remedy}"),
+        text::amount(Channel::Geometry, gap.channels[&Channel::Geometry].floor, "px", 3),
+    ];
+    for text in texts {
+        assert!(shows(&window, &text), "{text}");
     }
 }
 
@@ -391,7 +384,7 @@ fn a_report_in_which_nothing_was_found_has_no_effects_and_still_the_limits() {
     assert!(shows(&window, "none") && shows(&window, "nothing significant"));
     assert!(!texts(&window, "(none was found)").is_empty());
     press(&mut window, Modifiers::NONE, Key::ArrowDown);
-    assert!(shows(&window, "0.021 s"));
+    assert!(shows(&window, &text::limit(&report().not_found[0])));
 }
 
 #[test]
@@ -399,7 +392,7 @@ fn a_report_that_is_broken_is_a_problem_in_words_and_no_panel() {
     let text = serde_json::to_string_pretty(&report()).unwrap();
     let too_few = {
         let mut report = report();
-        report.maps.get_mut("geometry").unwrap().field.after.pop();
+        report.maps.get_mut(&Channel::Geometry).unwrap().field.after.pop();
         serde_json::to_string(&report).unwrap()
     };
     let broken = [
@@ -484,11 +477,11 @@ fn what_is_looked_at_survives_a_restart_under_a_key_of_its_own() {
     click(&mut first, "with the effect");
     press(&mut first, Modifiers::NONE, Key::ArrowLeft);
     first.state_mut().save(&mut memory);
-    assert!(memory.0["gap"].contains("geometry"), "{}", memory.0["gap"]);
+    assert!(memory.0["gap"].to_lowercase().contains("geometry"), "{}", memory.0["gap"]);
     let mut second = viewer_with(&path, SIZE, Some(&memory));
     until_label(&mut second, WITH);
     let list = second.get_by_role_and_label(Role::ComboBox, "Residuals of");
-    assert_eq!(list.value().as_deref(), Some("geometry"));
+    assert_eq!(list.value().as_deref(), Some("Geometry"));
 }
 
 #[test]

@@ -2,7 +2,10 @@
 
 use std::{collections::BTreeMap, path::Path};
 
-use reality_sim::gap::report::{Report, Unobservable, size_in_words};
+use reality_sim::gap::report::{
+    Report, Unobservable,
+    text::{absorbed, amount, effect_size, finding_place, limit, summary, unobservable_reason},
+};
 
 use crate::commands::output::aligned;
 
@@ -10,7 +13,7 @@ use crate::commands::output::aligned;
 fn by_reason(unobservable: &[Unobservable]) -> BTreeMap<&str, Vec<&str>> {
     let mut reasons: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for effect in unobservable {
-        reasons.entry(&effect.reason).or_default().push(&effect.id);
+        reasons.entry(unobservable_reason(&effect.cause)).or_default().push(&effect.id);
     }
     reasons
 }
@@ -20,20 +23,20 @@ pub fn text(report: &Report, folder: &Path) -> String {
     let mut lines: Vec<(&str, String)> = Vec::new();
     for effect in &report.effects {
         let rivals: String = effect.confusable_with.iter().map(|rival| format!(", or {rival}")).collect();
-        lines.push(("found", format!("{}{rivals}: {}", effect.id, effect.size)));
+        lines.push(("found", format!("{}{rivals}: {}", effect.id, effect_size(effect))));
     }
     for effect in &report.in_model {
-        lines.push(("in model", format!("{}: {}", effect.id, effect.size)));
+        lines.push(("in model", format!("{}: {}", effect.id, effect_size(effect))));
     }
-    for unexplained in &report.unexplained {
-        lines.push(("unknown", format!("{}: {}", unexplained.channel, unexplained.r#where)));
+    for finding in &report.unexplained {
+        lines.push(("unknown", format!("{}: {}", finding.channel().name(), finding_place(finding))));
     }
     for (channel, gap) in &report.gap.channels {
-        let size = |size: f64| size_in_words(channel, size, &gap.unit);
+        let size = |size: f64| amount(*channel, size, channel.unit(), 3);
         let after = if gap.has_moved() { format!(" → {}", size(gap.after)) } else { String::new() };
-        lines.push((channel, format!("{}{after} (noise {})", size(gap.before), size(gap.floor))));
+        lines.push((channel.name(), format!("{}{after} (noise {})", size(gap.before), size(gap.floor))));
     }
-    let limits = report.not_found.iter().map(|effect| format!("{} {}", effect.id, effect.limit_in_words()));
+    let limits = report.not_found.iter().map(|effect| format!("{} {}", effect.id, limit(effect)));
     let limits: Vec<String> = limits.collect();
     if !limits.is_empty() {
         lines.push(("not found", format!("would have been from: {}", limits.join(", "))));
@@ -41,12 +44,13 @@ pub fn text(report: &Report, folder: &Path) -> String {
     for (reason, effects) in by_reason(&report.unobservable) {
         lines.push(("not seen", format!("{}: {reason}", effects.join(", "))));
     }
-    if !report.poses.absorbed.is_empty() {
-        lines.push(("poses", report.poses.absorbed.clone()));
+    let absorbed = absorbed(report.poses.source);
+    if !absorbed.is_empty() {
+        lines.push(("poses", absorbed.to_owned()));
     }
     for file in &report.left_out {
         lines.push(("left out", format!("{file}: the picture is missing or broken")));
     }
     lines.push(("report", folder.join("report.html").display().to_string()));
-    format!("{}\n{}", report.summary, aligned(&lines))
+    format!("{}\n{}", summary(report), aligned(&lines))
 }

@@ -1,12 +1,11 @@
-//! Things that stand on the carpet and walk away: where one stood, other pictures show plain carpet.
+//! Objects that stand on the carpet and walk away: where one stood, other pictures show plain carpet.
 
 use glam::DVec2;
 
-use crate::{
-    diagnostics::passing::{is_green_carpet, is_outlying},
-    diagnostics::residual_patterns::Residuals,
-    measurement::quantity::Channel,
-    report::data::Unexplained,
+use crate::diagnostics::{
+    carpet,
+    detector::{Detector, FitResiduals, FrameResiduals},
+    finding::Finding,
 };
 
 /// A foot and the carpet around it are one place within this distance, as are a thing and its sides, metres.
@@ -26,6 +25,15 @@ const LEAST_PART: f64 = 0.09;
 /// Places closer than this are one, metres.
 const SAME_M: f64 = 0.01;
 
+/// Finds objects that are not where they were in other pictures.
+pub(crate) struct DynamicObjects;
+
+impl Detector for DynamicObjects {
+    fn detect(&self, fit: &FitResiduals<'_>) -> Vec<Finding> {
+        Vec::from_iter(dynamic_objects(&fit.frames, carpet::sigma(fit.sigmas)))
+    }
+}
+
 /// A block of carpet, or of what hides it.
 #[derive(Debug, Clone, Copy)]
 struct Spot {
@@ -34,38 +42,25 @@ struct Spot {
 }
 
 /// What a picture shows of the carpet.
-struct NominalReflectance {
+struct Spots {
     time_s: f64,
     /// The place that the camera is above.
     camera: DVec2,
     spots: Vec<Spot>,
 }
 
-/// Things that are not where they were in other pictures. `sigma` is the carpet's standard deviation.
-pub(crate) fn moving(frames: &[Residuals<'_>], sigma: f64) -> Option<Unexplained> {
-    let scenes: Vec<NominalReflectance> =
-        frames.iter().map(|frame| NominalReflectance::new(frame, sigma)).collect();
-    let with_walker =
-        scenes.iter().filter(|scene| scene.feet().any(|foot| is_left(&scenes, scene.time_s, foot))).count();
-    let part = with_walker as f64 / scenes.len().max(1) as f64;
-    (part > LEAST_PART).then(|| Unexplained {
-        channel: Channel::Photometry.name().to_owned(),
-        r#where: format!(
-            "things that move: in {:.0} % of the pictures something stands on the carpet where others show it plain",
-            100.0 * part
-        ),
-        size: part,
-        unit: "1".to_owned(),
-        p_value: None,
-    })
+/// `sigma` is the standard deviation of a block of carpet.
+fn dynamic_objects(frames: &[FrameResiduals<'_>], sigma: f64) -> Option<Finding> {
+    let pictures: Vec<Spots> = frames.iter().map(|frame| Spots::new(frame, sigma)).collect();
+    let shows_one = |picture: &&Spots| picture.feet().any(|foot| has_left(&pictures, picture.time_s, foot));
+    let share = pictures.iter().filter(shows_one).count() as f64 / pictures.len().max(1) as f64;
+    (share > LEAST_PART).then_some(Finding::DynamicObjects { share })
 }
 
-impl NominalReflectance {
-    fn new(frame: &Residuals<'_>, sigma: f64) -> Self {
-        let rows = frame.measurements.iter().zip(&frame.values);
-        let spots = rows
-            .filter(|(row, value)| is_green_carpet(row) && value.is_finite())
-            .map(|(row, value)| Spot { ground: row.ground, is_hidden: is_outlying(*value, sigma) });
+impl Spots {
+    fn new(frame: &FrameResiduals<'_>, sigma: f64) -> Self {
+        let spots = carpet::blocks(frame)
+            .map(|(row, value)| Spot { ground: row.ground, is_hidden: carpet::is_hidden(value, sigma) });
         Self { time_s: frame.time_s, camera: frame.camera, spots: spots.collect() }
     }
 
@@ -91,18 +86,18 @@ impl NominalReflectance {
 }
 
 /// Whether other pictures show plain carpet where a thing stood at a time.
-fn is_left(scenes: &[NominalReflectance], time_s: f64, foot: DVec2) -> bool {
+fn has_left(pictures: &[Spots], time_s: f64, foot: DVec2) -> bool {
     let (mut seen, mut clear) = (0_usize, 0_usize);
-    for scene in scenes.iter().filter(|scene| (scene.time_s - time_s).abs() > LATER_S) {
+    for picture in pictures.iter().filter(|picture| (picture.time_s - time_s).abs() > LATER_S) {
         let around: Vec<&Spot> =
-            scene.spots.iter().filter(|spot| spot.ground.distance(foot) < NEAR_M).collect();
+            picture.spots.iter().filter(|spot| spot.ground.distance(foot) < NEAR_M).collect();
         let is_there = around.iter().any(|spot| spot.ground.distance(foot) < THERE_M);
         if is_there && around.len() >= LEAST_SPOTS {
             seen += 1;
             clear += usize::from(around.iter().all(|spot| !spot.is_hidden));
         }
     }
-    seen as f64 >= LEAST_SEEN * scenes.len() as f64 && clear as f64 >= CLEAR * seen as f64
+    seen as f64 >= LEAST_SEEN * pictures.len() as f64 && clear as f64 >= CLEAR * seen as f64
 }
 
 #[cfg(test)]
@@ -131,25 +126,25 @@ mod tests {
     }
 
     /// Twenty pictures in four seconds, the camera moving past.
-    fn judged(things: impl Fn(f64) -> Vec<DVec2>) -> Option<Unexplained> {
+    fn judged(things: impl Fn(f64) -> Vec<DVec2>) -> Option<Finding> {
         let times_s: Vec<f64> = (0..20).map(|i| 0.2 * f64::from(i)).collect();
         let camera = |time_s: f64| DVec2::new(0.5 * time_s, -1.0);
         let pictures: Vec<_> = times_s.iter().map(|&t| picture(camera(t), &things(t))).collect();
-        let frames = times_s.iter().zip(&pictures).map(|(&time_s, (rows, values))| Residuals {
+        let frames = times_s.iter().zip(&pictures).map(|(&time_s, (rows, values))| FrameResiduals {
             measurements: rows,
             values: values.clone(),
             time_s,
             camera: camera(time_s),
             size: [160, 160],
         });
-        moving(&frames.collect::<Vec<_>>(), SIGMA)
+        dynamic_objects(&frames.collect::<Vec<_>>(), SIGMA)
     }
 
     #[test]
     fn who_walks_over_the_carpet_is_seen_and_in_how_many_pictures() {
-        let found = judged(|time_s| vec![DVec2::new(0.1 + 0.5 * time_s, 0.9)]).unwrap();
-        assert!(found.size > 0.8, "{}", found.size);
-        assert!(found.r#where.contains("things that move"), "{}", found.r#where);
+        let found = judged(|time_s| vec![DVec2::new(0.1 + 0.5 * time_s, 0.9)]);
+        let Some(Finding::DynamicObjects { share }) = found else { panic!("{found:?}") };
+        assert!(share > 0.8, "{share}");
     }
 
     #[test]

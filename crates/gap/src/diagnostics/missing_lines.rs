@@ -1,11 +1,13 @@
-//! Lines that should be there and are not, and what else does not look like a field.
+//! Lines that should be on the field and are not.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use reality_sim_core::field::{Curve, FieldDimensions};
 
 use crate::{
-    measurement::frame::FrameMeasurements, measurement::quantity::Channel, report::data::Unexplained,
+    diagnostics::detector::{Detector, FitResiduals},
+    diagnostics::finding::{FieldLine, Finding},
+    measurement::frame::{FrameMeasurements, Line},
 };
 
 /// A line is missing where less than this part of its pieces is found, as against all lines.
@@ -18,6 +20,15 @@ const LEAST_PIECES: f64 = 24.0;
 const USUALLY_SEEN: f64 = 0.5;
 const LEAST_FRAMES: usize = 4;
 
+/// Finds lines of the field that are not where the model has them.
+pub(crate) struct MissingLines;
+
+impl Detector for MissingLines {
+    fn detect(&self, fit: &FitResiduals<'_>) -> Vec<Finding> {
+        missing_lines(&fit.measurements, &fit.recording.sequence.field)
+    }
+}
+
 /// Pieces that were found, and that were expected.
 #[derive(Debug, Clone, Copy, Default)]
 struct Count {
@@ -25,63 +36,72 @@ struct Count {
     expected: f64,
 }
 
-/// Lines of the field that are not where the model has them. Thin ones are found less often: a line is compared with
-/// pieces of other lines that are as wide in the picture.
-pub(crate) fn missing(looks: &[&FrameMeasurements], field: &FieldDimensions) -> Vec<Unexplained> {
-    let mut counts: BTreeMap<(usize, usize), Count> = BTreeMap::new();
-    let mut frames: BTreeMap<usize, usize> = BTreeMap::new();
-    for look in looks {
-        // What stands before a line says nothing of it.
-        for piece in look.expected_lines.iter().filter(|piece| !piece.is_hidden) {
-            counts.entry((piece.curve, width(piece.half_width_px))).or_default().expected += 1.0;
-        }
-        for line in
-            look.lines.iter().filter(|line| line.is_expected && line.profile.offset_px.abs() < NEAR_PX)
-        {
-            counts.entry((line.curve, width(line.half_width_px))).or_default().found += 1.0;
-        }
-        let in_sight = look.expected_lines.iter().filter(|piece| !piece.is_hidden);
-        let seen: BTreeSet<usize> = in_sight.map(|piece| piece.curve).collect();
-        seen.into_iter().for_each(|curve| *frames.entry(curve).or_default() += 1);
-    }
+/// Thin lines are found less often than broad ones: a line is compared with pieces of other lines that are as wide in the
+/// picture.
+fn missing_lines(frames: &[&FrameMeasurements], field: &FieldDimensions) -> Vec<Finding> {
+    let counts = Counts::of(frames);
     let curves = field.curves();
-    let often = frames.iter().filter(|(_, frames)| **frames >= LEAST_FRAMES).map(|(curve, _)| *curve);
+    let often = counts.frames.iter().filter(|(_, frames)| **frames >= LEAST_FRAMES).map(|(curve, _)| *curve);
     often
-        .filter_map(|curve| Some((curve, parts(&counts, curve)?)))
-        .filter(|(_, [part, usual])| *part < MISSING * usual)
-        .map(|(curve, [part, usual])| Unexplained {
-            channel: Channel::Geometry.name().to_owned(),
-            r#where: format!(
-                "{}: found in {:.0} % of the places where it should be, other lines as wide in {:.0} %",
-                name(&curves[curve]),
-                100.0 * part,
-                100.0 * usual
-            ),
-            size: 1.0 - part / usual,
-            unit: "1".to_owned(),
-            p_value: None,
+        .filter_map(|curve| Some((curve, counts.shares(curve)?)))
+        .filter(|(_, [found, usual])| *found < MISSING * usual)
+        .map(|(curve, [found_share, usual_share])| Finding::MissingLine {
+            line: field_line(&curves[curve]),
+            found_share,
+            usual_share,
         })
         .collect()
 }
 
-/// The part of a curve's pieces that is found, and the part that would be as usual for their widths. None where there are
-/// too few to tell.
-fn parts(counts: &BTreeMap<(usize, usize), Count>, curve: usize) -> Option<[f64; 2]> {
-    let (mut own, mut usual) = (Count::default(), 0.0);
-    for (&(_, width), count) in counts.iter().filter(|((of, _), _)| *of == curve) {
-        let others = counts.iter().filter(|((of, wide), _)| *of != curve && *wide == width);
-        let others = others.fold(Count::default(), |sum, (_, count)| Count {
-            found: sum.found + count.found,
-            expected: sum.expected + count.expected,
-        });
-        if others.expected >= LEAST_PIECES {
-            own.found += count.found;
-            own.expected += count.expected;
-            usual += count.expected * others.found / others.expected;
-        }
+/// Counts of the field's curves, by their indices.
+#[derive(Default)]
+struct Counts {
+    /// Pieces by curve and by their width in the picture.
+    pieces: BTreeMap<(usize, usize), Count>,
+    /// Frames in which a curve is in sight.
+    frames: BTreeMap<usize, usize>,
+}
+
+impl Counts {
+    fn of(frames: &[&FrameMeasurements]) -> Self {
+        let mut counts = Self::default();
+        frames.iter().for_each(|frame| counts.add(frame));
+        counts
     }
-    let enough = own.expected >= LEAST_PIECES && usual >= USUALLY_SEEN * own.expected;
-    enough.then(|| [own.found / own.expected, usual / own.expected])
+
+    fn add(&mut self, frame: &FrameMeasurements) {
+        // What stands before a line says nothing of it.
+        let in_sight = || frame.expected_lines.iter().filter(|piece| !piece.is_hidden);
+        for piece in in_sight() {
+            self.pieces.entry((piece.curve, width(piece.half_width_px))).or_default().expected += 1.0;
+        }
+        let is_at_its_place = |line: &&Line| line.is_expected && line.profile.offset_px.abs() < NEAR_PX;
+        for line in frame.lines.iter().filter(is_at_its_place) {
+            self.pieces.entry((line.curve, width(line.half_width_px))).or_default().found += 1.0;
+        }
+        let seen: BTreeSet<usize> = in_sight().map(|piece| piece.curve).collect();
+        seen.into_iter().for_each(|curve| *self.frames.entry(curve).or_default() += 1);
+    }
+
+    /// Returns the share of a curve's pieces that is found, and the share that would be as usual for their widths. `None`
+    /// where there are too few to tell.
+    fn shares(&self, curve: usize) -> Option<[f64; 2]> {
+        let (mut own, mut usual) = (Count::default(), 0.0);
+        for (&(_, width), count) in self.pieces.iter().filter(|((of, _), _)| *of == curve) {
+            let others = self.pieces.iter().filter(|((of, wide), _)| *of != curve && *wide == width);
+            let others = others.fold(Count::default(), |sum, (_, count)| Count {
+                found: sum.found + count.found,
+                expected: sum.expected + count.expected,
+            });
+            if others.expected >= LEAST_PIECES {
+                own.found += count.found;
+                own.expected += count.expected;
+                usual += count.expected * others.found / others.expected;
+            }
+        }
+        let enough = own.expected >= LEAST_PIECES && usual >= USUALLY_SEEN * own.expected;
+        enough.then(|| [own.found / own.expected, usual / own.expected])
+    }
 }
 
 /// Lines as wide as each other within a third of a pixel.
@@ -89,12 +109,10 @@ fn width(half_width_px: f64) -> usize {
     (1.5 * half_width_px).min(20.0) as usize
 }
 
-fn name(curve: &Curve) -> String {
+fn field_line(curve: &Curve) -> FieldLine {
     match curve {
-        Curve::Segment { from, to } => {
-            format!("the line from ({:.1}, {:.1}) m to ({:.1}, {:.1}) m", from.x, from.y, to.x, to.y)
-        }
-        Curve::Circle { radius_m, .. } => format!("the circle of {:.1} m", 2.0 * radius_m),
+        Curve::Segment { from, to } => FieldLine::Segment { from_m: from.to_array(), to_m: to.to_array() },
+        Curve::Circle { radius_m, .. } => FieldLine::Circle { diameter_m: 2.0 * radius_m },
     }
 }
 
@@ -104,10 +122,7 @@ mod tests {
     use reality_sim_core::field::preset_names;
 
     use super::*;
-    use crate::{
-        measurement::frame::{ExpectedLine, Line},
-        measurement::line_profile::Profile,
-    };
+    use crate::{measurement::frame::ExpectedLine, measurement::line_profile::Profile};
 
     const HALF_WIDTH_PX: f64 = 2.0;
 
@@ -154,15 +169,17 @@ mod tests {
         }
     }
 
-    fn missing_of(look: &FrameMeasurements, pictures: usize) -> Vec<Unexplained> {
-        missing(&vec![look; pictures], &field())
+    fn missing_of(look: &FrameMeasurements, pictures: usize) -> Vec<Finding> {
+        missing_lines(&vec![look; pictures], &field())
     }
 
     #[test]
     fn a_line_of_which_carpet_is_seen_instead_is_missing() {
-        let [told] = &missing_of(&look([0, 8, 7], false), 6)[..] else { panic!() };
-        assert!(told.r#where.contains(&name(&field().curves()[0])), "{}", told.r#where);
-        assert_eq!(told.size, 1.0);
+        let line = field_line(&field().curves()[0]);
+        let usual_share = 15.0 / 16.0;
+        let found = missing_of(&look([0, 8, 7], false), 6);
+        assert_eq!(found, [Finding::MissingLine { line, found_share: 0.0, usual_share }]);
+        assert_eq!(found[0].size(), 1.0);
     }
 
     #[test]

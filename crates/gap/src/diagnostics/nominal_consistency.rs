@@ -1,130 +1,143 @@
-//! Nominal values that would have to be farther off than they are trusted: no effect explains it, tolerances do not, either.
+//! Nominal values of the camera's file that would have to be farther off than they are trusted: no effect explains what is
+//! left, and the nuisance parameters do not, either.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::{
-    diagnostics::residual_patterns::LIKELY_CHANCE, inference::model_error::ModelError,
-    linear_model::nuisance::Nuisance, measurement::quantity::Channel, report::data::Unexplained,
+    diagnostics::detector::{Detector, FitResiduals, LIKELY_CHANCE},
+    diagnostics::finding::{Finding, NominalValue},
+    inference::model_error::ModelError,
+    linear_model::nuisance::Nuisance,
+    measurement::quantity::{Channel, Quantity},
 };
 
 /// Channels whose nominal values are in the camera's file.
 const CHANNELS: [Channel; 3] = [Channel::Photometry, Channel::Sharpness, Channel::Noise];
 
-/// What a fit makes of the tolerances, in their standard deviations: too much of all of a channel together is told, with
-/// the one that is farthest off.
-pub(crate) fn strained(tolerances: &[Nuisance], fitted: &[f64], explained: &ModelError) -> Vec<Unexplained> {
-    let told = |channel| of_channel(channel, tolerances, fitted, explained.most_off(channel));
-    CHANNELS.into_iter().filter_map(told).collect()
+/// Finds channels whose nominal values are inconsistent with the recording.
+pub(crate) struct NominalConsistency;
+
+impl Detector for NominalConsistency {
+    fn detect(&self, fit: &FitResiduals<'_>) -> Vec<Finding> {
+        inconsistent(fit.nuisances, fit.nuisance_values, fit.model_error)
+    }
 }
 
-/// `off` is by how much more the channel's numbers may be off.
-fn of_channel(channel: Channel, tolerances: &[Nuisance], fitted: &[f64], off: f64) -> Option<Unexplained> {
-    let nominal: Vec<(Nominal, f64)> = tolerances
+/// `fitted` are values of the nuisance parameters in their standard deviations. Too much of all of a channel together is
+/// told, with the one that is farthest off.
+fn inconsistent(nuisances: &[Nuisance], fitted: &[f64], model_error: &ModelError) -> Vec<Finding> {
+    let of = |channel| of_channel(channel, nuisances, fitted, model_error.most_off(channel));
+    CHANNELS.into_iter().filter_map(of).collect()
+}
+
+/// `off` is by how much more the channel's residuals may be off.
+fn of_channel(channel: Channel, nuisances: &[Nuisance], fitted: &[f64], off: f64) -> Option<Finding> {
+    let nominal: Vec<(Nominal, f64)> = nuisances
         .iter()
         .zip(fitted)
-        .filter_map(|(tolerance, value)| {
-            Some((Nominal::of(tolerance).filter(|nominal| nominal.channel == channel)?, *value))
+        .filter_map(|(nuisance, fitted)| {
+            Some((Nominal::of(nuisance).filter(|nominal| nominal.value.channel() == channel)?, *fitted))
         })
         .collect();
-    let strain = |(nominal, value): &(Nominal, f64)| value * nominal.sigma / nominal.allowed(off);
-    let squares: f64 = nominal.iter().map(|nominal| strain(nominal).powi(2)).sum();
+    let normalized = |(nominal, fitted): &(Nominal, f64)| fitted * nominal.sigma / nominal.allowed(off);
+    let squares: f64 = nominal.iter().map(|nominal| normalized(nominal).powi(2)).sum();
     let p_value = ChiSquared::new(nominal.len().max(1) as f64).ok()?.sf(squares);
-    let (farthest, value) = nominal.into_iter().max_by(|a, b| strain(a).abs().total_cmp(&strain(b).abs()))?;
-    (p_value < LIKELY_CHANCE).then(|| Unexplained {
-        channel: channel.name().to_owned(),
-        r#where: format!(
-            "in all pictures, most of all {}: farther from what camera.toml says than that is trusted",
-            farthest.name
-        ),
-        size: farthest.off_by(value),
-        unit: farthest.unit.to_owned(),
-        p_value: Some(p_value),
+    let (farthest, fitted) =
+        nominal.into_iter().max_by(|a, b| normalized(a).abs().total_cmp(&normalized(b).abs()))?;
+    (p_value < LIKELY_CHANCE).then(|| Finding::NominalValue {
+        value: farthest.value,
+        off_by: farthest.off_by(fitted),
+        p_value,
     })
 }
 
-/// A nominal value of the camera's file.
+/// A nominal value with its standard deviation.
 struct Nominal {
-    channel: Channel,
-    name: &'static str,
-    /// How far it is trusted.
+    value: NominalValue,
+    /// Standard deviation: how far it is trusted.
     sigma: f64,
-    unit: &'static str,
-    /// Whether it is an offset of the channel's numbers.
-    is_of_rows: bool,
+    /// Whether it is an offset of the channel's residuals.
+    is_offset: bool,
 }
 
 impl Nominal {
-    /// How far it may be off: beside what it is trusted, where it is an offset of the channel's numbers, by what those may be.
+    /// How far it may be off: beside what it is trusted, where it is an offset of the residuals, by what those may be.
     fn allowed(&self, off: f64) -> f64 {
-        if self.is_of_rows { self.sigma.hypot(off) } else { self.sigma }
+        if self.is_offset { self.sigma.hypot(off) } else { self.sigma }
     }
 
-    /// The part that it is off by where it is compared by its logarithm; else the difference. In standard deviations.
-    fn off_by(&self, value: f64) -> f64 {
-        let difference = value * self.sigma;
-        if self.channel == Channel::Sharpness { difference.abs() } else { difference.exp_m1().abs() }
+    /// The part that it is off by where it is compared by its logarithm; else the difference. `fitted` is in standard
+    /// deviations.
+    fn off_by(&self, fitted: f64) -> f64 {
+        let difference = fitted * self.sigma;
+        if self.value.channel() == Channel::Sharpness { difference.abs() } else { difference.exp_m1().abs() }
     }
 
-    /// What a tolerance is of; patches of carpet are in no file.
-    fn of(tolerance: &Nuisance) -> Option<Self> {
-        let is_of_rows = matches!(tolerance, Nuisance::Offset { .. } | Nuisance::Width { .. });
-        let (channel, name, sigma, unit) = match *tolerance {
-            Nuisance::Offset { quantity, sigma } => {
-                (quantity.channel(), quantity.name(), sigma, quantity.unit())
-            }
-            Nuisance::Sheen { sigma, .. } => {
-                (Channel::Photometry, "carpet seen at a grazing angle", sigma, "1")
-            }
-            Nuisance::Width { sigma } => {
-                (Channel::Sharpness, "the blur of broad lines against thin ones", sigma, "px2")
-            }
-            Nuisance::Kernel { sigma } | Nuisance::ThinKernel { sigma } => {
-                (Channel::Sharpness, "the shape of the blur", sigma, "1")
-            }
+    /// The nominal value that a nuisance parameter is of; patches of carpet are in no file.
+    fn of(nuisance: &Nuisance) -> Option<Self> {
+        let is_offset = matches!(nuisance, Nuisance::Offset { .. } | Nuisance::Width { .. });
+        let (value, sigma) = match *nuisance {
+            Nuisance::Offset { quantity, sigma } => (offset_of(quantity)?, sigma),
+            Nuisance::Sheen { sigma, .. } => (NominalValue::Sheen, sigma),
+            Nuisance::Width { sigma } => (NominalValue::BlurByWidth, sigma),
+            Nuisance::Kernel { sigma } | Nuisance::ThinKernel { sigma } => (NominalValue::BlurShape, sigma),
             Nuisance::Patch { .. } => return None,
         };
-        Some(Self { channel, name, sigma, unit, is_of_rows })
+        Some(Self { value, sigma, is_offset })
+    }
+}
+
+fn offset_of(quantity: Quantity) -> Option<NominalValue> {
+    match quantity {
+        Quantity::LineLevel(color) => Some(NominalValue::LineLevel(color)),
+        Quantity::CarpetLevel(color) => Some(NominalValue::CarpetLevel(color)),
+        Quantity::LineBlur => Some(NominalValue::Blur),
+        Quantity::NoiseVariance => Some(NominalValue::NoiseVariance),
+        _ => None,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        linear_model::nuisance::tolerances,
-        measurement::quantity::{ColorChannel, Quantity},
-    };
+    use crate::{linear_model::nuisance::tolerances, measurement::quantity::ColorChannel};
 
     /// What is told where the tolerances that are picked are so many standard deviations off, the others half a one.
-    fn told(value: f64, explained: &ModelError, picked: impl Fn(&Nominal) -> bool) -> Vec<Unexplained> {
+    fn told(value: f64, explained: &ModelError, picked: impl Fn(&Nominal) -> bool) -> Vec<Finding> {
         let tolerances = tolerances(&[]);
         let off = |tolerance| if Nominal::of(tolerance).is_some_and(|n| picked(&n)) { value } else { 0.5 };
-        strained(&tolerances, &tolerances.iter().map(off).collect::<Vec<_>>(), explained)
+        inconsistent(&tolerances, &tolerances.iter().map(off).collect::<Vec<_>>(), explained)
     }
 
     #[test]
     fn what_is_within_its_tolerance_is_not_told_and_what_is_far_beyond_is_named() {
         assert_eq!(told(0.5, &ModelError::default(), |_| true), []);
-        let [told] = &told(5.0, &ModelError::default(), |nominal| nominal.name == "red of carpet")[..] else {
+        let red = NominalValue::CarpetLevel(ColorChannel::Red);
+        let [Finding::NominalValue { value, off_by, p_value }] =
+            told(5.0, &ModelError::default(), |nominal| nominal.value == red)[..]
+        else {
             panic!()
         };
-        assert!(told.r#where.contains("red of carpet"), "{}", told.r#where);
-        assert!((told.size - 0.35_f64.exp_m1()).abs() < 1e-9 && told.p_value.unwrap() < LIKELY_CHANCE);
+        assert_eq!(value, red);
+        assert!((off_by - 0.35_f64.exp_m1()).abs() < 1e-9 && p_value < LIKELY_CHANCE);
     }
 
     #[test]
     fn what_a_model_explains_its_values_may_be_off_by_a_part_of() {
         let explained = ModelError::by(Quantity::LineLevel(ColorChannel::Blue), 2.0);
-        assert_eq!(told(5.0, &explained, |nominal| nominal.name == "blue of lines"), []);
-        assert_eq!(told(5.0, &explained, |nominal| nominal.channel == Channel::Noise).len(), 1);
+        assert_eq!(
+            told(5.0, &explained, |nominal| nominal.value == NominalValue::LineLevel(ColorChannel::Blue)),
+            []
+        );
+        assert_eq!(told(5.0, &explained, |nominal| nominal.value.channel() == Channel::Noise).len(), 1);
     }
 
     #[test]
     fn every_channel_is_judged_by_itself() {
         for channel in CHANNELS {
-            let told = told(6.0, &ModelError::default(), |nominal| nominal.channel == channel);
+            let told = told(6.0, &ModelError::default(), |nominal| nominal.value.channel() == channel);
             assert_eq!(told.len(), 1, "{told:?}");
-            assert_eq!(told[0].channel, channel.name());
+            assert_eq!(told[0].channel(), channel);
         }
     }
 }

@@ -1,20 +1,17 @@
-//! What is left of the odometry and follows the movement.
+//! Residuals of the odometry that follow the robot's movement.
 //!
 //! As for patterns in the pictures, a part of the recording is judged by what the other parts foretell.
-
-use std::collections::BTreeMap;
 
 use reality_sim_core::pose::Motion2;
 
 use crate::{
-    diagnostics::residual_patterns::Residuals,
+    diagnostics::detector::{Detector, FitResiduals, FrameResiduals},
+    diagnostics::finding::{Finding, Movement, OdometryComponent},
     inference::gain::sum_of,
-    inference::model_error::ModelError,
     inference::split::stretch,
     linear_model::odometry_steps::around,
-    measurement::quantity::{Channel, Quantity},
+    measurement::quantity::Quantity,
     recording::{Frame, Recording},
-    report::data::Unexplained,
 };
 
 /// Parts of the recording that are judged by the others.
@@ -27,42 +24,45 @@ const LEAST_GAIN: f64 = 8.0;
 const LEAST_PART: f64 = 0.5;
 /// And this many times what the model may be off by beside what it explains.
 const BEYOND: f64 = 2.0;
-/// What these may follow, in the order of [`movements`].
-const FOLLOWED: [&str; 3] = ["as the robot walks ahead", "as it turns", "as time goes by"];
+/// What residuals may follow, in the order of [`movements`].
+const FOLLOWED: [Movement; 3] = [Movement::Ahead, Movement::Turn, Movement::Time];
+/// Components of a step.
+const COMPONENTS: [(OdometryComponent, Quantity); 3] = [
+    (OdometryComponent::Forward, Quantity::OdometryForward),
+    (OdometryComponent::Left, Quantity::OdometryLeft),
+    (OdometryComponent::Turn, Quantity::OdometryTurn),
+];
 
 /// What a number may follow, and the number, both in its standard deviation.
 type Pair = (f64, f64);
 
-/// The odometry's residuals, as far as they follow the movement. `sigmas` are those of the quantities.
-pub(crate) fn following(
-    recording: &Recording<'_>,
-    frames: &[&Frame],
-    residuals: &[Residuals<'_>],
-    sigmas: &BTreeMap<Quantity, f64>,
-    explained: &ModelError,
-) -> Vec<Unexplained> {
-    let mut all = Vec::new();
-    let steps = movements(recording, frames);
-    for quantity in Quantity::ODOMETRY {
-        let Some(&sigma) = sigmas.get(&quantity) else { continue };
-        let value = |residuals: &Residuals<'_>| {
-            let mut rows = residuals.measurements.iter().zip(&residuals.values);
-            rows.find(|(row, value)| row.quantity == quantity && value.is_finite())
-                .map(|(_, value)| value / sigma)
-        };
-        let values: Vec<Option<f64>> = residuals.iter().map(value).collect();
-        let off = explained.off(quantity) / sigma;
-        all.extend(odometry(&steps, &values, quantity.name()).filter(|(_, rms)| *rms > BEYOND * off).map(
-            |(r#where, rms)| Unexplained {
-                channel: Channel::Motion.name().to_owned(),
-                r#where,
-                size: rms * sigma,
-                unit: quantity.unit().to_owned(),
-                p_value: None,
-            },
-        ));
+/// Finds residuals of the odometry that follow the movement.
+pub(crate) struct Odometry;
+
+impl Detector for Odometry {
+    fn detect(&self, fit: &FitResiduals<'_>) -> Vec<Finding> {
+        let steps = movements(fit.recording, &fit.steps);
+        let of = |(component, quantity)| of_component(fit, &steps, component, quantity);
+        COMPONENTS.into_iter().filter_map(of).collect()
     }
-    all
+}
+
+fn of_component(
+    fit: &FitResiduals<'_>,
+    steps: &[Option<[f64; 3]>],
+    component: OdometryComponent,
+    quantity: Quantity,
+) -> Option<Finding> {
+    let sigma = *fit.sigmas.get(&quantity)?;
+    let value = |frame: &FrameResiduals<'_>| {
+        let mut rows = frame.measurements.iter().zip(&frame.values);
+        rows.find(|(row, value)| row.quantity == quantity && value.is_finite())
+            .map(|(_, value)| value / sigma)
+    };
+    let values: Vec<Option<f64>> = fit.frames.iter().map(value).collect();
+    let off = fit.model_error.off(quantity) / sigma;
+    let (follows, rms) = most_followed(steps, &values).filter(|(_, rms)| *rms > BEYOND * off)?;
+    Some(Finding::Odometry { component, follows, size: rms * sigma })
 }
 
 /// What each step of the odometry may follow: how far the robot walks ahead at about that time, turns, and for how long. To
@@ -75,9 +75,9 @@ fn movements(recording: &Recording<'_>, frames: &[&Frame]) -> Vec<Option<[f64; 3
     around(recording, frames).into_iter().zip(frames).map(followed).collect()
 }
 
-/// What the odometry's steps of one kind follow most, in words, and how large that is in their standard deviations.
-fn odometry(steps: &[Option<[f64; 3]>], values: &[Option<f64>], name: &str) -> Option<(String, f64)> {
-    let follows = (0..).zip(FOLLOWED).filter_map(|(axis, followed): (usize, &str)| {
+/// What a component of the steps follows most, and how large that is in its standard deviations.
+fn most_followed(steps: &[Option<[f64; 3]>], values: &[Option<f64>]) -> Option<(Movement, f64)> {
+    let follows = (0..).zip(FOLLOWED).filter_map(|(axis, followed): (usize, Movement)| {
         let pair = |(step, value): (&Option<[f64; 3]>, &Option<f64>)| {
             Vec::from_iter(step.zip(*value).map(|(step, value)| (step[axis], value)))
         };
@@ -85,7 +85,7 @@ fn odometry(steps: &[Option<[f64; 3]>], values: &[Option<f64>], name: &str) -> O
         (follows.rms > LEAST_PART * follows.left).then_some((follows.rms, followed))
     });
     let (rms, followed) = follows.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some((format!("in its {name}, {followed}"), rms))
+    Some((followed, rms))
 }
 
 /// Numbers that follow others.

@@ -1,6 +1,7 @@
 //! How large an effect that was not found would have to be to be found, and which cannot be seen at all.
 
 use reality_sim_sensor::{Effect, EffectIndex, Need, Stage};
+use serde::{Deserialize, Serialize};
 
 use crate::{
     inference::effect_test::EffectTests,
@@ -25,14 +26,53 @@ pub enum NotFound {
         parameter: &'static str,
     },
     /// It cannot be seen in this recording.
-    Unobservable {
-        /// Why.
-        reason: String,
-        /// What to do to see it, as an imperative.
-        remedy: String,
-        /// Whether another recording by the same robot would do; else its files lack something.
-        by_recording: bool,
+    Unobservable(UnobservableCause),
+}
+
+/// Why an effect cannot be seen in a recording.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum UnobservableCause {
+    /// The recording's files do not have what the effect is compared with.
+    MissingInput {
+        /// What they do not have.
+        input: MissingInput,
     },
+    /// The camera hardly moves: nothing depends on when a row or a picture is taken.
+    CameraAtRest,
+    /// The robot hardly moves: its odometry has nothing to report.
+    RobotAtRest,
+    /// Too few views: what is odd in one of them may be the place's own.
+    FewViews {
+        /// Number of views.
+        views: usize,
+        /// Number from which on effects can be seen.
+        needed: usize,
+    },
+    /// Other parts of the model, or errors of the poses, change these pictures as the effect does.
+    NotSeparable,
+}
+
+/// Part of a recording's files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MissingInput {
+    /// Odometry of the frames.
+    Odometry,
+    /// Nominal reflectance of lines and carpet.
+    Reflectance,
+    /// Nominal noise of the sensor.
+    Noise,
+    /// Nominal sharpness of the picture.
+    Sharpness,
+}
+
+impl UnobservableCause {
+    /// Whether another recording by the same robot would do; else its files lack something.
+    pub(crate) fn is_of_the_recording(self) -> bool {
+        !matches!(self, Self::MissingInput { .. })
+    }
 }
 
 /// What can be said of an effect beside those in the model.
@@ -43,8 +83,8 @@ pub(crate) fn limit(
     all: &[EffectIndex],
 ) -> NotFound {
     let used = effect.effect();
-    if let Some([reason, remedy]) = missing_input(recording, used) {
-        return unobservable(reason, remedy, false);
+    if let Some(input) = missing_input(recording, used) {
+        return NotFound::Unobservable(UnobservableCause::MissingInput { input });
     }
     let columns = naming.columns_of(&[effect]);
     let sizes: Vec<ColumnIndex> =
@@ -52,7 +92,7 @@ pub(crate) fn limit(
     // The first that can be seen: parameters are listed by their weight.
     let limit = sizes.iter().find_map(|&column| Some((column, limit_of(naming, column, all)?)));
     let Some((column, value)) = limit else {
-        return unobservable(unseen_reason(recording, used), used.recording_that_would_decide(), true);
+        return NotFound::Unobservable(unseen_cause(recording, used));
     };
     let parameter = naming.columns[column.0].parameter();
     NotFound::Limit { value, unit: parameter.unit, parameter: parameter.name }
@@ -80,30 +120,14 @@ fn limit_of(naming: &EffectTests<'_>, column: ColumnIndex, all: &[EffectIndex]) 
     (value < reach).then_some(value)
 }
 
-fn unobservable(reason: &str, remedy: &str, by_recording: bool) -> NotFound {
-    NotFound::Unobservable { reason: reason.to_owned(), remedy: remedy.to_owned(), by_recording }
-}
-
-/// What an effect needs and the recording's files do not have, and how to add it.
-fn missing_input(recording: &Recording<'_>, effect: &dyn Effect) -> Option<[&'static str; 2]> {
+/// What an effect needs and the recording's files do not have.
+fn missing_input(recording: &Recording<'_>, effect: &dyn Effect) -> Option<MissingInput> {
     let missing = effect.about().needs.iter().find(|need| !provides(recording, **need))?;
     Some(match missing {
-        Need::Odometry => [
-            "there is no odometry in frames.csv",
-            "write odometry_x_m, odometry_y_m and odometry_yaw_rad into frames.csv",
-        ],
-        Need::NominalReflectance => [
-            "nothing in camera.toml says how bright lines and carpet are",
-            "write line_linear_rgb and carpet_linear_rgb into [photometry] of camera.toml",
-        ],
-        Need::NominalNoise => [
-            "nothing in camera.toml says how much noise to expect",
-            "write noise_shot and noise_read into [photometry] of camera.toml",
-        ],
-        Need::NominalSharpness => [
-            "nothing in camera.toml says how sharp the picture should be",
-            "write psf_sigma_px into [photometry] of camera.toml",
-        ],
+        Need::Odometry => MissingInput::Odometry,
+        Need::NominalReflectance => MissingInput::Reflectance,
+        Need::NominalNoise => MissingInput::Noise,
+        Need::NominalSharpness => MissingInput::Sharpness,
     })
 }
 
@@ -117,20 +141,14 @@ fn provides(recording: &Recording<'_>, need: Need) -> bool {
     }
 }
 
-fn unseen_reason(recording: &Recording<'_>, effect: &dyn Effect) -> &'static str {
+fn unseen_cause(recording: &Recording<'_>, effect: &dyn Effect) -> UnobservableCause {
     let moves = recording.moves();
     let views = recording.views().last().map_or(0, |last| last + 1);
     match effect.stage() {
-        Stage::Motion if !moves => {
-            "the camera hardly moves: nothing depends on when a row or a picture is taken"
-        }
-        Stage::Odometry if !moves => "the robot hardly moves: its odometry has nothing to report",
-        _ if views < LEAST_VIEWS => {
-            "the frames show one and the same view, or a few: what is odd in it may be the place's"
-        }
-        _ => {
-            "what it changes in these pictures, other parts of the model or errors of the poses could change as well"
-        }
+        Stage::Motion if !moves => UnobservableCause::CameraAtRest,
+        Stage::Odometry if !moves => UnobservableCause::RobotAtRest,
+        _ if views < LEAST_VIEWS => UnobservableCause::FewViews { views, needed: LEAST_VIEWS },
+        _ => UnobservableCause::NotSeparable,
     }
 }
 

@@ -6,13 +6,10 @@ use nalgebra::{DVector, Vector6};
 use reality_sim_sensor::Model;
 
 use crate::{
-    inference::model_error::ModelError,
     linear_model::linearization::{MeasureError, linearise},
     linear_model::system::{FittedResiduals, LinearizedFrame, weigh},
     measurement::quantity::{Channel, Quantity},
     recording::Recording,
-    report::data::Unexplained,
-    report::text::has_moved,
     thresholds::Thresholds,
     workflow::selection::SelectedModel,
 };
@@ -26,7 +23,7 @@ pub(crate) struct HeldOutResiduals {
     refitted: Vec<Vec<f64>>,
 }
 
-/// Sizes of one channel's residuals, root mean square.
+/// Sizes of one channel's residuals, root mean square, in the channel's unit.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ChannelGap {
     /// With the model as it was given.
@@ -35,8 +32,6 @@ pub struct ChannelGap {
     pub after: f64,
     /// What noise alone makes, from neighbouring measurements in one picture, or neighbouring steps of the odometry.
     pub floor: f64,
-    /// Of the three.
-    pub unit: String,
 }
 
 impl ChannelGap {
@@ -44,6 +39,11 @@ impl ChannelGap {
     pub fn has_moved(&self) -> bool {
         has_moved(self.before, self.after)
     }
+}
+
+/// Whether a gap is another one than before, not the same up to where lines were found anew.
+pub(crate) fn has_moved(before: f64, after: f64) -> bool {
+    (before - after).abs() > MOVED * before
 }
 
 impl HeldOutResiduals {
@@ -104,11 +104,11 @@ pub(crate) fn gaps(
             }
         }
     }
-    sums.into_iter().map(|(channel, sums)| (channel, sums.gap(channel))).collect()
+    sums.into_iter().map(|(channel, sums)| (channel, sums.gap())).collect()
 }
 
-/// What is left is this many times as large as its floor where something is at work in it.
-const RESTLESS: f64 = 1.8;
+/// A gap that differs by less than this part is the same.
+const MOVED: f64 = 0.02;
 
 /// Sums of squares of a channel.
 #[derive(Debug, Clone, Copy, Default)]
@@ -124,28 +124,14 @@ struct Squares {
 }
 
 impl Squares {
-    fn gap(&self, channel: Channel) -> ChannelGap {
+    fn gap(&self) -> ChannelGap {
         let mean = |sum: f64| sum / self.count.max(1.0);
         let (before, after) = (mean(self.before).sqrt(), mean(self.after).sqrt());
         // Where nothing has a neighbour, what is left is all that is known of the noise.
         let noise =
             if self.pairs > 0.0 { (self.steps / self.pairs + mean(self.poses)).sqrt() } else { after };
-        ChannelGap { before, after, floor: noise.min(after), unit: channel.unit().to_owned() }
+        ChannelGap { before, after, floor: noise.min(after) }
     }
-}
-
-/// Lines that are off by far more than noise and the poses' errors make, although on the whole in no pattern: each picture
-/// in its own way.
-pub(crate) fn restless(gaps: &BTreeMap<Channel, ChannelGap>, explained: &ModelError) -> Option<Unexplained> {
-    let gap = gaps.get(&Channel::Geometry)?;
-    let off = explained.most_off(Channel::Geometry);
-    (gap.after > RESTLESS * gap.floor.hypot(off)).then(|| Unexplained {
-        channel: Channel::Geometry.name().to_owned(),
-        r#where: "in each picture in its own way: by more than noise and the poses' errors make".to_owned(),
-        size: gap.after,
-        unit: gap.unit.clone(),
-        p_value: None,
-    })
 }
 
 fn pose_variance(gradient: &Vector6<f64>, sigmas: &[f64; 6]) -> f64 {
@@ -156,26 +142,12 @@ fn pose_variance(gradient: &Vector6<f64>, sigmas: &[f64; 6]) -> f64 {
 mod tests {
     use super::*;
 
-    fn restless_at(after: f64, explained: &ModelError) -> Option<Unexplained> {
-        let gap = ChannelGap { before: after, after, floor: 0.5, unit: "px".to_owned() };
-        restless(&BTreeMap::from([(Channel::Geometry, gap)]), explained)
-    }
-
-    #[test]
-    fn what_is_far_above_the_floor_is_told_with_its_size() {
-        let nothing = ModelError::default();
-        assert!(restless_at(0.6, &nothing).is_none());
-        assert_eq!(restless_at(1.4, &nothing).unwrap().size, 1.4);
-        // A model that explains 30 pixels may be off by one.
-        assert!(restless_at(1.4, &ModelError::by(Quantity::LineOffset, 30.0)).is_none());
-    }
-
     #[test]
     fn the_floor_is_the_scatter_of_neighbours_and_what_poses_errors_make() {
         let squares = Squares { before: 40.0, after: 36.0, count: 4.0, poses: 16.0, steps: 10.0, pairs: 2.0 };
-        let gap = squares.gap(Channel::Geometry);
+        let gap = squares.gap();
         assert_eq!((gap.before, gap.after, gap.floor), (10.0_f64.sqrt(), 3.0, 3.0));
-        let quiet = Squares { steps: 2.0, poses: 0.0, ..squares }.gap(Channel::Geometry);
+        let quiet = Squares { steps: 2.0, poses: 0.0, ..squares }.gap();
         assert_eq!(quiet.floor, 1.0);
     }
 }

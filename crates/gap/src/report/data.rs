@@ -1,12 +1,16 @@
-//! What was found, as it is written.
+//! What was found, as enums and numbers. [`super::text`] makes the words of it, [`super::json`] the file.
 
 use std::collections::BTreeMap;
 
 use reality_sim_core::field::FieldDimensions;
-use reality_sim_sensor::effect;
 use serde::{Deserialize, Serialize};
 
-use crate::{inference::held_out::ChannelGap, report::text};
+use crate::{
+    diagnostics::finding::Finding,
+    inference::{detection_limit::UnobservableCause, held_out::ChannelGap},
+    measurement::quantity::Channel,
+    recording::ReferenceSource,
+};
 
 /// The answer in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,48 +41,30 @@ pub struct Estimate {
 }
 
 /// An effect of the extended model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct EffectReport {
-    /// As in `model.toml`.
+    /// Id as in `model.toml`.
     pub id: String,
-    /// In plain words.
-    pub name: String,
-    /// Its size in plain words: "at the corner 42 % of the light is lost (± 1 %)".
-    pub size: String,
-    /// By name.
+    /// Estimates by the names of the parameters.
     pub parameters: BTreeMap<String, Estimate>,
+    /// Correlations of the estimates' errors, −1 to 1, by the names of two parameters: each pair once.
+    #[serde(default)]
+    pub correlations: BTreeMap<String, BTreeMap<String, f64>>,
+    /// Values that the model had before, by the names of the parameters; empty for an effect that it did not have.
+    #[serde(default)]
+    pub given: BTreeMap<String, f64>,
     /// How unlikely it is chance, corrected for the number of effects tested.
     pub p_value: f64,
     /// Gain in log-likelihood on frames that the fit has not seen.
     pub held_out_gain: Estimate,
-    /// Effects that explain these frames as well.
+    /// Ids of effects that explain these frames as well.
     pub confusable_with: Vec<String>,
-    /// What would tell them apart; empty where there are none.
-    pub recording_that_would_decide: Vec<String>,
-    /// On what signature the name rests.
-    pub because: String,
     /// Part of the distance to the noise floor that the effect alone closes, by channel: those in which it closes some.
-    pub closes: BTreeMap<String, f64>,
+    pub closes: BTreeMap<Channel, f64>,
 }
 
-/// Something significant that no effect explains.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Unexplained {
-    /// In which comparison.
-    pub channel: String,
-    /// In words.
-    pub r#where: String,
-    /// In the channel's unit.
-    pub size: f64,
-    /// The channel's.
-    pub unit: String,
-    /// How unlikely it is chance. None for what is counted and not tested: lines that are not there, things in the way.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub p_value: Option<f64>,
-}
-
-/// The whole gap.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// The whole gap, in noise floors.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Gap {
     /// With the model as it was given: root mean square over channels of residuals in units of their noise floor.
     pub before: f64,
@@ -86,43 +72,23 @@ pub struct Gap {
     pub after: f64,
     /// What noise alone makes.
     pub floor: f64,
-    /// Of the three.
-    pub unit: String,
-    /// By channel.
-    pub channels: BTreeMap<String, ChannelGap>,
+    /// The gap of every channel.
+    pub channels: BTreeMap<Channel, ChannelGap>,
 }
 
 /// An effect that was not found, with how large it would have to be.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct NotFoundReport {
-    /// As in `model.toml`.
+    /// Id as in `model.toml`.
     pub id: String,
-    /// In plain words.
-    pub name: String,
-    /// The parameter that the limit is of.
+    /// Name of the parameter that the limit is of.
     pub parameter: String,
-    /// It would have been found at this size.
+    /// Size at which it would have been found.
     pub detection_limit: Limit,
     /// How unlikely what was seen of it is chance, corrected for the number of effects tested.
     pub p_value: f64,
     /// Gain in log-likelihood on frames that the fit has not seen.
     pub held_out_gain: Estimate,
-}
-
-impl NotFoundReport {
-    /// The limit as a person says it: "0.08°", "4.0 ms".
-    pub fn limit_in_words(&self) -> String {
-        let Limit { value, unit } = &self.detection_limit;
-        match effect(&self.id) {
-            Some(effect) => effect.limit_in_words(&self.parameter, *value),
-            None => format!("{} = {} {unit}", self.parameter, text::digits(*value, 2)),
-        }
-    }
-}
-
-/// A size of a channel's residuals, in its unit, as a person says it: "0.13 px²", "7.4 %".
-pub fn size_in_words(channel: &str, size: f64, unit: &str) -> String {
-    text::amount(channel, size, unit, 3)
 }
 
 /// A size with its unit.
@@ -135,16 +101,12 @@ pub struct Limit {
 }
 
 /// An effect that cannot be seen in these frames.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Unobservable {
-    /// As in `model.toml`.
+    /// Id as in `model.toml`.
     pub id: String,
-    /// In plain words.
-    pub name: String,
-    /// Why.
-    pub reason: String,
-    /// What to record to see it, or what to add to the recording's files.
-    pub recording_that_would_decide: String,
+    /// Why it cannot be seen.
+    pub cause: UnobservableCause,
 }
 
 /// Medians of residuals on a grid, row by row; not a number (`null`) where nothing was measured.
@@ -154,32 +116,30 @@ pub struct Map {
     pub columns: usize,
     /// Cells along y.
     pub rows: usize,
-    /// Where the grid lies: left, top, right, bottom; pixels for the picture, metres for the field.
+    /// Extent of the grid: left, top, right, bottom; pixels for the picture, metres for the field.
     pub extent: [f64; 4],
-    /// With the model as it was given.
+    /// Medians with the model as it was given.
     pub before: Vec<Option<f64>>,
-    /// With the extended model.
+    /// Medians with the extended model.
     pub after: Vec<Option<f64>>,
 }
 
 /// Sizes of a channel's residuals frame by frame: 1.4826 times the median of their absolute values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Course {
-    /// Times, seconds.
+    /// Times of the frames, seconds.
     pub time_s: Vec<f64>,
     /// Whether a frame was kept for judging.
     pub judged: Vec<bool>,
-    /// With the model as it was given.
+    /// Sizes with the model as it was given.
     pub before: Vec<Option<f64>>,
-    /// With the extended model.
+    /// Sizes with the extended model.
     pub after: Vec<Option<f64>>,
 }
 
-/// Where a channel's residuals are.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Where a channel's residuals are, in the channel's unit.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Maps {
-    /// The channel's unit.
-    pub unit: String,
     /// In the picture.
     pub picture: Map,
     /// On the field, x along the field, y to the left.
@@ -189,52 +149,52 @@ pub struct Maps {
 }
 
 /// The reference poses.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct PosesReport {
-    /// `measured` or `tagged`.
-    pub source: crate::recording::ReferenceSource,
+    /// What the poses come from.
+    pub source: ReferenceSource,
     /// Scatter of rotations about the axes to the right, down and forward of the heading, radians.
     pub rotation_sigma_rad: [f64; 3],
     /// Scatter of positions in the world, metres.
     pub position_sigma_m: [f64; 3],
-    /// What these poses cannot show, in words; empty for measured ones.
-    pub absorbed: String,
 }
 
-/// All of it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Everything that was found in a recording.
+///
+/// It is written as `report.json`, the words beside the numbers, by its [`serde::Serialize`], and read again by
+/// [`Report::read`].
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Report {
-    /// The recording's name.
+    /// Name of the recording.
     pub recording: String,
-    /// Frames that were compared, and those of them that no fit has seen.
+    /// Number of frames that were compared.
     pub frames: usize,
-    /// Of them, those that no fit has seen.
+    /// Number of those that no fit has seen.
     pub judged_frames: usize,
-    /// Frames without a whole picture, by their files.
+    /// Files of the frames without a whole picture.
     pub left_out: Vec<String>,
-    /// In one word.
+    /// The answer in one word.
     pub verdict: Verdict,
-    /// In one sentence.
-    pub summary: String,
-    /// Those found, the surest first.
+    /// Effects that were found, the surest first.
     pub effects: Vec<EffectReport>,
-    /// Those that the model had before, refitted.
+    /// Effects that the model had before, refitted.
     pub in_model: Vec<EffectReport>,
     /// What no effect explains.
-    pub unexplained: Vec<Unexplained>,
-    /// On frames that no fit has seen.
+    #[serde(deserialize_with = "super::json::findings")]
+    pub unexplained: Vec<Finding>,
+    /// The gap on frames that no fit has seen.
     pub gap: Gap,
-    /// Effects not found.
+    /// Effects that were not found.
     pub not_found: Vec<NotFoundReport>,
     /// Effects that cannot be seen.
     pub unobservable: Vec<Unobservable>,
     /// The reference poses.
     pub poses: PosesReport,
     /// Where residuals are, by channel.
-    pub maps: BTreeMap<String, Maps>,
-    /// Index of the frame in the pictures of the report, in the recording.
+    pub maps: BTreeMap<Channel, Maps>,
+    /// Index in the recording of the frame in the pictures of the report.
     pub shown_frame: usize,
-    /// What chose the judged frames.
+    /// Seed that chose the frames kept for judging.
     pub seed: u64,
     /// The field that was recorded.
     pub field: FieldDimensions,

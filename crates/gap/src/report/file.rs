@@ -5,7 +5,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::report::data::{Map, Maps, Report};
+use crate::{
+    measurement::quantity::Channel,
+    report::data::{Map, Maps, Report},
+};
 
 /// A report takes less than this, bytes: larger files are something else.
 const LARGEST_BYTES: u64 = 64 << 20;
@@ -24,68 +27,88 @@ pub struct ReportError {
     pub fault: ReportFault,
 }
 
-/// What is wrong with a report. Every message says what to do.
+/// What is wrong with a report.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ReportFault {
     /// There is no such file.
-    #[error("there is no such file: give a folder that `reality-sim gap` wrote")]
+    #[error("there is no such file")]
     Missing,
     /// A folder, pipe or device.
-    #[error("is not a regular file: give a folder that `reality-sim gap` wrote")]
+    #[error("is not a regular file")]
     NotAFile,
     /// More bytes than a report has.
-    #[error(
-        "is larger than {LARGEST_BYTES} bytes: it cannot be a report, give a folder that `reality-sim gap` wrote"
-    )]
+    #[error("is larger than {LARGEST_BYTES} bytes: it cannot be a report")]
     TooLarge,
     /// The operating system does not give the bytes.
     #[error("cannot be read ({0}): check the permissions and the disk")]
-    Unreadable(io::Error),
+    Unreadable(#[source] io::Error),
+    /// Not UTF-8.
+    #[error("is not a report (it is no text)")]
+    NotText,
     /// Not JSON, or not what a report holds.
-    #[error("is not a report ({0}): write it again with `reality-sim gap`")]
-    Malformed(String),
+    #[error("is not a report ({})", without_place(.0))]
+    Malformed(#[source] serde_json::Error),
     /// A map or a course whose numbers do not fit together.
-    #[error("{0}: write the report again with `reality-sim gap`")]
-    Contradiction(String),
+    #[error("the maps of {}: {contradiction}", .channel.name())]
+    Contradiction {
+        /// Channel of the maps.
+        channel: Channel,
+        /// What does not fit.
+        contradiction: Contradiction,
+    },
+}
+
+/// Numbers of a channel's maps that do not fit together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Contradiction {
+    /// Not as many values as cells.
+    #[error("not as many values as cells")]
+    Cells,
+    /// An extent without an area.
+    #[error("an extent without an area")]
+    Extent,
+    /// Not as many values as times.
+    #[error("not as many values as times")]
+    Times,
+}
+
+/// The parser's message without the line and the column.
+fn without_place(error: &serde_json::Error) -> String {
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    error.to_string().replace(&place, "")
 }
 
 impl Report {
-    /// Reads `report.json` in a folder that `reality-sim gap` wrote. Maps have as many values as cells and an extent with
-    /// an area, courses as many as times. The error names the file, the fault and the remedy.
+    /// Reads `report.json`, the report as its [`serde::Serialize`] writes it, in a folder. Maps then have as many values as
+    /// cells and an extent with an area, courses as many as times. The error names the file and the fault.
     pub fn read(folder: &Path) -> Result<Self, ReportError> {
         let path = folder.join(FILE);
         let fail = |line, fault| ReportError { path: path.clone(), line, fault };
         let text = text(&path).map_err(|fault| fail(None, fault))?;
-        let report: Self = serde_json::from_str(&text).map_err(|error| {
-            let place = format!(" at line {} column {}", error.line(), error.column());
-            let message = error.to_string().replace(&place, "");
-            fail((error.line() > 0).then(|| error.line()), ReportFault::Malformed(message))
-        })?;
-        match report.contradiction() {
-            Some(contradiction) => Err(fail(None, ReportFault::Contradiction(contradiction))),
-            None => Ok(report),
-        }
+        let report: Self = serde_json::from_str(&text)
+            .map_err(|error| fail((error.line() > 0).then(|| error.line()), ReportFault::Malformed(error)))?;
+        report.contradiction().map_or(Ok(()), |fault| Err(fail(None, fault)))?;
+        Ok(report)
     }
 
-    fn contradiction(&self) -> Option<String> {
-        self.maps.iter().find_map(|(channel, maps)| {
-            let fault = maps.contradiction()?;
-            Some(format!("the maps of {channel}: {fault}"))
+    fn contradiction(&self) -> Option<ReportFault> {
+        self.maps.iter().find_map(|(&channel, maps)| {
+            Some(ReportFault::Contradiction { channel, contradiction: maps.contradiction()? })
         })
     }
 }
 
 impl Maps {
-    fn contradiction(&self) -> Option<&'static str> {
+    fn contradiction(&self) -> Option<Contradiction> {
         let course = &self.time;
         let frames = course.time_s.len();
         let lengths = [course.judged.len(), course.before.len(), course.after.len()];
         match () {
-            () if !(self.picture.has_all_cells() && self.field.has_all_cells()) => {
-                Some("not as many values as cells")
-            }
-            () if !(self.picture.has_area() && self.field.has_area()) => Some("an extent without an area"),
-            () if lengths.iter().any(|length| *length != frames) => Some("not as many values as times"),
+            () if !(self.picture.has_all_cells() && self.field.has_all_cells()) => Some(Contradiction::Cells),
+            () if !(self.picture.has_area() && self.field.has_area()) => Some(Contradiction::Extent),
+            () if lengths.iter().any(|length| *length != frames) => Some(Contradiction::Times),
             () => None,
         }
     }
@@ -114,7 +137,7 @@ fn text(path: &Path) -> Result<String, ReportFault> {
         () if metadata.len() > LARGEST_BYTES => Err(ReportFault::TooLarge),
         () => {
             let bytes = fs::read(path).map_err(ReportFault::Unreadable)?;
-            String::from_utf8(bytes).map_err(|_| ReportFault::Malformed("it is no text".to_owned()))
+            String::from_utf8(bytes).map_err(|_| ReportFault::NotText)
         }
     }
 }

@@ -26,7 +26,7 @@ pub(crate) fn maps(
     found: &SelectedModel,
     before: &HeldOutResiduals,
     after: &HeldOutResiduals,
-) -> BTreeMap<String, Maps> {
+) -> BTreeMap<Channel, Maps> {
     let camera = &recording.sequence.setup.camera;
     let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
     let half = recording.sequence.field.carpet_half_extent_m();
@@ -57,9 +57,8 @@ pub(crate) fn maps(
         let extent = [0.0, 0.0, size.x, size.y];
         let field_extent = [-half.x, half.y, half.x, -half.y];
         maps.insert(
-            channel.name().to_owned(),
+            channel,
             Maps {
-                unit: channel.unit().to_owned(),
                 picture: map(PICTURE, extent, &in_picture),
                 field: map(field_rows, field_extent, &on_field),
                 time: course(recording, found, &before, &after),

@@ -3,12 +3,18 @@
 pub(crate) mod data;
 mod file;
 pub mod html;
+mod json;
 pub(crate) mod maps;
 pub(crate) mod pictures;
-pub(crate) mod text;
+pub mod text;
 
 pub use self::{
     data::*,
-    file::{ReportError, ReportFault},
+    file::{Contradiction, ReportError, ReportFault},
     pictures::{Pictures, PicturesError},
+};
+pub use crate::{
+    diagnostics::finding::{FieldLine, Finding, Movement, NominalValue, OdometryComponent, PatternCell},
+    inference::detection_limit::{MissingInput, UnobservableCause},
+    measurement::quantity::{Channel, ColorChannel},
 };

@@ -1,51 +1,49 @@
 //! The gap of each comparison: before, after, and what noise alone makes.
 
 use eframe::egui::{Button, Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
-use reality_sim_gap::{ChannelGap, report::Gap};
-
-use super::{
-    side::Side,
-    table::Table,
-    words::{number, unit_after},
+use reality_sim_gap::{
+    Channel, ChannelGap,
+    report::{
+        Gap,
+        text::{amount, channel_meaning, channel_title},
+    },
 };
+
+use super::{side::Side, table::Table};
 
 /// Narrower tables, points, have no room for bars.
 const ROOM_FOR_BARS: f32 = 380.0;
 
 /// Draws them; a click on a name shows where its residuals are.
-pub fn ui(ui: &mut Ui, gap: &Gap, chosen: &mut String) {
+pub fn ui(ui: &mut Ui, gap: &Gap, chosen: &mut Option<Channel>) {
     let wide: &[_] = &[("channel", 0.24), ("before", 0.15), ("after", 0.15), ("floor", 0.24), ("", 0.22)];
     let narrow: &[_] = &[("channel", 0.34), ("before", 0.2), ("after", 0.2), ("floor", 0.26)];
     let table = Table(if ui.available_width() > ROOM_FOR_BARS { wide } else { narrow });
     table.heads_ui(ui);
-    for (name, channel) in &gap.channels {
+    for (&channel, gap) in &gap.channels {
+        let size = |size| amount(channel, size, channel.unit(), 3);
         table.row_ui(ui, |ui, column| match column {
             0 => {
-                let row =
-                    ui.add(Button::selectable(chosen == name, name).truncate()).on_hover_text(meaning(name));
-                if row.clicked() {
-                    chosen.clone_from(name);
+                let is_chosen = *chosen == Some(channel);
+                let button = Button::selectable(is_chosen, channel_title(channel)).truncate();
+                if ui.add(button).on_hover_text(channel_meaning(channel)).clicked() {
+                    *chosen = Some(channel);
                 }
             }
-            1 => drop(ui.label(number(channel.before))),
-            2 => drop(ui.label(number(channel.after))),
-            3 => drop(ui.label(format!("{}{}", number(channel.floor), unit_after(&channel.unit)))),
-            _ => bars_ui(ui, channel),
+            1 => drop(ui.label(size(gap.before))),
+            2 => drop(ui.label(size(gap.after))),
+            3 => drop(ui.label(size(gap.floor))),
+            _ => bars_ui(ui, channel, gap),
         });
     }
 }
 
 /// Before above after, and the floor as a line across both.
-fn bars_ui(ui: &mut Ui, channel: &ChannelGap) {
-    let ChannelGap { before, after, floor, unit } = channel;
+fn bars_ui(ui: &mut Ui, channel: Channel, gap: &ChannelGap) {
+    let ChannelGap { before, after, floor } = gap;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
-    let text = format!(
-        "before {}, after {}, noise alone {}{}",
-        number(*before),
-        number(*after),
-        number(*floor),
-        unit_after(unit)
-    );
+    let size = |size| amount(channel, size, channel.unit(), 3);
+    let text = format!("before {}, after {}, noise alone {}", size(*before), size(*after), size(*floor));
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
     let longest = before.max(*after).max(*floor).max(f64::MIN_POSITIVE);
     let width = |size: f64| rect.width() * (size / longest).clamp(0.0, 1.0) as f32;
@@ -57,17 +55,4 @@ fn bars_ui(ui: &mut Ui, channel: &ChannelGap) {
     let stroke = Stroke::new(1.5, ui.visuals().strong_text_color());
     ui.painter().vline(rect.left() + width(*floor), rect.y_range(), stroke);
     response.on_hover_text(format!("{text}\norange: before · green: after · line: what noise alone makes"));
-}
-
-/// What a channel compares.
-pub fn meaning(channel: &str) -> &'static str {
-    match channel {
-        "geometry" => "Offset of white lines along their normal",
-        "photometry" => "Natural logarithm of lines' and carpet's brightness, for each colour",
-        "sharpness" => "Variance of the blur across a line",
-        "color" => "Offset of red and blue against the other colours along a line's normal",
-        "noise" => "Natural logarithm of the variance on plain carpet",
-        "motion" => "Increments of the odometry",
-        _ => "",
-    }
 }

@@ -2,19 +2,25 @@
 
 use eframe::egui::{Ui, Vec2};
 use egui_plot::{HoverPosition, Line, Plot, PlotPoints, Points};
-use reality_sim_gap::report::Course;
+use reality_sim_gap::{
+    Channel,
+    report::{
+        Course,
+        text::{channel_scale, digits},
+    },
+};
 
-use super::{side::Side, table::words, title::title_ui, words::number};
+use super::{side::Side, table::words, title::title_ui};
 
 /// Draws both curves; frames that no fit has seen have dots.
-pub fn ui(ui: &mut Ui, course: &Course, unit: &str, room: Vec2) {
+pub fn ui(ui: &mut Ui, course: &Course, channel: Channel, room: Vec2) {
     title_ui(
         ui,
         "Over time: without (orange), with (green)",
         "Size of each frame's residuals, robust against robots in the way. Dots: judged frames, which no fit has seen",
     );
     let Some(first_s) = course.time_s.first().copied() else { return words(ui, room, "no frames") };
-    let unit = unit.to_owned();
+    let (factor, unit) = channel_scale(channel);
     let plot = Plot::new("gap course")
         .width(room.x)
         .height(room.y)
@@ -24,10 +30,10 @@ pub fn ui(ui: &mut Ui, course: &Course, unit: &str, room: Vec2) {
         .allow_scroll(false)
         .allow_boxed_zoom(false)
         .y_axis_min_width(28.0)
-        .x_axis_formatter(|mark, _| format!("{} s", number(mark.value)))
+        .x_axis_formatter(|mark, _| format!("{} s", digits(mark.value, 3)))
         .label_formatter(move |hover: &HoverPosition<'_>| match hover {
             HoverPosition::NearDataPoint { plot_name, position, .. } => {
-                Some(format!("{plot_name}\n{:.2} s: {}{unit}", position.x, number(position.y)))
+                Some(format!("{plot_name}\n{:.2} s: {} {unit}", position.x, digits(position.y, 3)))
             }
             HoverPosition::Elsewhere { .. } => None,
         });
@@ -36,12 +42,12 @@ pub fn ui(ui: &mut Ui, course: &Course, unit: &str, room: Vec2) {
             // Where both are the same, the wider one below is still seen.
             let width = *side.of(&[3.5, 1.5]);
             for run in runs(course, side) {
-                let line = Line::new(side.name(), PlotPoints::from(points(course, &run, first_s)));
+                let line = Line::new(side.name(), PlotPoints::from(points(course, &run, first_s, factor)));
                 plot.line(line.color(side.color()).width(width).allow_band(false));
             }
             let judged: Vec<_> = runs(course, side).concat();
             let judged: Vec<_> = judged.into_iter().filter(|(frame, _)| course.judged[*frame]).collect();
-            let dots = Points::new(side.name(), PlotPoints::from(points(course, &judged, first_s)));
+            let dots = Points::new(side.name(), PlotPoints::from(points(course, &judged, first_s, factor)));
             plot.points(dots.color(side.color()).radius(*side.of(&[4.0, 3.0])));
         }
     });
@@ -61,9 +67,9 @@ fn runs(course: &Course, side: Side) -> Vec<Vec<(usize, f64)>> {
     .collect()
 }
 
-/// Times from the first frame on.
-fn points(course: &Course, values: &[(usize, f64)], first_s: f64) -> Vec<[f64; 2]> {
-    values.iter().map(|(frame, value)| [course.time_s[*frame] - first_s, *value]).collect()
+/// Times from the first frame on, and values times a factor.
+fn points(course: &Course, values: &[(usize, f64)], first_s: f64, factor: f64) -> Vec<[f64; 2]> {
+    values.iter().map(|(frame, value)| [course.time_s[*frame] - first_s, factor * value]).collect()
 }
 
 #[cfg(test)]
@@ -81,6 +87,6 @@ mod tests {
         };
         assert_eq!(runs(&course, Side::Without), [vec![(1, 1.0), (2, 2.0)], vec![(5, 5.0)]]);
         assert!(runs(&course, Side::With).is_empty());
-        assert_eq!(points(&course, &[(5, 5.0)], 10.0), [[5.0, 5.0]]);
+        assert_eq!(points(&course, &[(5, 5.0)], 10.0, 100.0), [[5.0, 500.0]]);
     }
 }

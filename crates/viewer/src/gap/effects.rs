@@ -1,12 +1,15 @@
 //! The effects that were found, one a row, and all that is known of the one that was chosen.
 
 use eframe::egui::{Button, Label, ProgressBar, RichText, Ui};
-use reality_sim_gap::report::EffectReport;
-
-use super::{
-    table::Table,
-    words::{estimate, p_value},
+use reality_sim_gap::report::{
+    EffectReport,
+    text::{
+        channel_title, deciding_recordings, effect_because, effect_name, effect_size, estimate, percent,
+        probability,
+    },
 };
+
+use super::table::Table;
 
 /// Draws them; a click chooses one.
 pub fn ui(ui: &mut Ui, name: &str, effects: &[EffectReport], chosen: &mut Option<String>) {
@@ -20,7 +23,7 @@ pub fn ui(ui: &mut Ui, name: &str, effects: &[EffectReport], chosen: &mut Option
             table.row_ui(ui, |ui, column| match column {
                 0 => name_ui(ui, effect, chosen),
                 1 => {
-                    ui.label(p_value(effect.p_value)).on_hover_text(
+                    ui.label(probability(effect.p_value)).on_hover_text(
                         "How unlikely it is chance, corrected for the number of effects tested",
                     );
                 }
@@ -38,7 +41,7 @@ pub fn ui(ui: &mut Ui, name: &str, effects: &[EffectReport], chosen: &mut Option
 
 fn name_ui(ui: &mut Ui, effect: &EffectReport, chosen: &mut Option<String>) {
     let is_chosen = chosen.as_ref() == Some(&effect.id);
-    let button = Button::selectable(is_chosen, RichText::new(&effect.name).strong()).wrap();
+    let button = Button::selectable(is_chosen, RichText::new(effect_name(effect)).strong()).wrap();
     if ui.add(button).on_hover_text(format!("{}: what it does, and why it was named", effect.id)).clicked() {
         *chosen = Some(effect.id.clone());
     }
@@ -48,8 +51,8 @@ fn name_ui(ui: &mut Ui, effect: &EffectReport, chosen: &mut Option<String>) {
 fn details_ui(ui: &mut Ui, effect: &EffectReport) {
     ui.group(|ui| {
         ui.set_width(ui.available_width());
-        ui.add(Label::new(RichText::new(&effect.size).strong()).wrap());
-        ui.add(Label::new(format!("Because {}.", effect.because.trim_end_matches('.'))).wrap());
+        ui.add(Label::new(RichText::new(effect_size(effect)).strong()).wrap());
+        ui.add(Label::new(format!("Because {}.", effect_because(effect))).wrap());
         for (name, value) in &effect.parameters {
             ui.add(Label::new(format!("{name} = {}", estimate(value))).wrap());
         }
@@ -60,7 +63,7 @@ fn details_ui(ui: &mut Ui, effect: &EffectReport) {
             let others = effect.confusable_with.join(", ");
             ui.add(Label::new(format!("These frames cannot tell it from: {others}")).wrap());
         }
-        for recording in &effect.recording_that_would_decide {
+        for recording in deciding_recordings(effect) {
             ui.add(Label::new(format!("To decide, record: {recording}")).wrap());
         }
     });
@@ -73,7 +76,7 @@ fn closes_ui(ui: &mut Ui, effect: &EffectReport) {
     }
     ui.weak("Of the distance to the noise floor it alone closes:");
     for (channel, share) in &effect.closes {
-        let text = format!("{channel} {:.0} %", 100.0 * share);
+        let text = format!("{} {}", channel_title(*channel), percent(*share));
         ui.add(ProgressBar::new(share.clamp(0.0, 1.0) as f32).desired_height(16.0).text(text));
     }
 }

@@ -3,7 +3,10 @@
 use eframe::egui::{self, Color32, Label, RichText, Ui};
 use reality_sim_gap::{
     ReferenceSource,
-    report::{Report, Verdict},
+    report::{
+        Report, Verdict,
+        text::{GAP_UNIT, absorbed, summary, verdict_meaning, verdict_word},
+    },
 };
 
 /// Shows it.
@@ -11,7 +14,7 @@ pub fn ui(ui: &mut Ui, report: &Report) {
     ui.add_space(2.0);
     ui.horizontal_wrapped(|ui| {
         verdict_ui(ui, report.verdict);
-        ui.add(Label::new(RichText::new(&report.summary).size(15.0)).wrap());
+        ui.add(Label::new(RichText::new(summary(report)).size(15.0)).wrap());
     });
     ui.horizontal_wrapped(|ui| {
         ui.weak(facts(report));
@@ -19,49 +22,34 @@ pub fn ui(ui: &mut Ui, report: &Report) {
             ui.weak(format!("· {} without a whole picture", report.left_out.len()))
                 .on_hover_text(report.left_out.join("\n"));
         }
-        if !report.poses.absorbed.is_empty() {
-            ui.weak(format!("· {}", report.poses.absorbed));
+        let absorbed = absorbed(report.poses.source);
+        if !absorbed.is_empty() {
+            ui.weak(format!("· {absorbed}"));
         }
     });
 }
 
 fn verdict_ui(ui: &mut Ui, verdict: Verdict) {
-    let (name, meaning, color) = words(verdict);
+    let name = verdict_word(verdict);
     egui::Frame::new()
-        .fill(color)
+        .fill(color(verdict))
         .corner_radius(4.0)
         .inner_margin(egui::Margin::symmetric(8, 2))
         .show(ui, |ui| {
             ui.add(Label::new(RichText::new(name).strong().size(16.0).color(Color32::WHITE)).extend());
         })
         .response
-        .on_hover_text(meaning);
+        .on_hover_text(verdict_meaning(verdict));
 }
 
-/// Its name, what it means, and a colour on which white is read.
-fn words(verdict: Verdict) -> (&'static str, &'static str, Color32) {
+/// A colour on which white is read.
+fn color(verdict: Verdict) -> Color32 {
     match verdict {
-        Verdict::None => (
-            "nothing missing",
-            "Nothing is missing that these frames would show",
-            Color32::from_rgb(45, 115, 75),
-        ),
-        Verdict::Named => {
-            ("named", "Effects were named, and nothing significant is left", Color32::from_rgb(25, 95, 170))
-        }
-        Verdict::Confusable => (
-            "confusable",
-            "An effect was found that these frames cannot tell from others",
-            Color32::from_rgb(135, 75, 150),
-        ),
-        Verdict::Unknown => (
-            "unknown",
-            "Something significant is left that is in no effect's shape",
-            Color32::from_rgb(170, 50, 45),
-        ),
-        Verdict::Inconclusive => {
-            ("inconclusive", "These frames cannot tell", Color32::from_rgb(105, 105, 105))
-        }
+        Verdict::None => Color32::from_rgb(45, 115, 75),
+        Verdict::Named => Color32::from_rgb(25, 95, 170),
+        Verdict::Confusable => Color32::from_rgb(135, 75, 150),
+        Verdict::Unknown => Color32::from_rgb(170, 50, 45),
+        Verdict::Inconclusive => Color32::from_rgb(105, 105, 105),
     }
 }
 
@@ -77,7 +65,7 @@ fn facts(report: &Report) -> String {
         report.judged_frames,
         report.gap.before,
         report.gap.after,
-        report.gap.unit,
+        GAP_UNIT,
         report.gap.floor,
     )
 }

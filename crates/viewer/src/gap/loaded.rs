@@ -4,12 +4,9 @@ use std::{fs::File, io::BufReader, path::Path, sync::Arc};
 
 use eframe::egui::ColorImage;
 use image::{ImageReader, RgbImage};
-use reality_sim_core::{
-    field::{FieldDimensions, preset_names},
-    preprocess::LUMA_WEIGHTS,
-};
+use reality_sim_core::preprocess::LUMA_WEIGHTS;
 use reality_sim_gap::{
-    ChannelGap,
+    Channel, ChannelGap,
     report::{EffectReport, Report},
 };
 
@@ -18,8 +15,9 @@ use crate::picture_view::color_image;
 
 /// Graphics devices take pictures of this side, pixels.
 const LARGEST_SIDE: u32 = 8192;
-/// Two lengths are the same, metres.
-const SAME_M: f64 = 1e-6;
+
+/// Where a report comes from.
+const REMEDY: &str = "give a folder that `reality-sim gap` wrote, or write it again";
 
 /// Everything that is shown of a report.
 pub struct Loaded {
@@ -32,8 +30,6 @@ pub struct Loaded {
     pub differences: [Option<Arc<ColorImage>>; 2],
     /// Those colours, for brightness in grey levels of 255; where there is a difference.
     pub difference_ramp: Option<Ramp>,
-    /// The league's field whose carpet is as large as the report's, where there is just one.
-    pub field: Option<FieldDimensions>,
     /// What is missing, in words.
     pub problems: Vec<String>,
 }
@@ -41,7 +37,7 @@ pub struct Loaded {
 impl Loaded {
     /// Reads a report's folder. Without pictures the rest is there; without a report nothing is.
     pub fn read(folder: &Path) -> Result<Self, String> {
-        let report = Report::read(folder).map_err(|error| error.to_string())?;
+        let report = Report::read(folder).map_err(|error| format!("{error}: {REMEDY}"))?;
         let mut problems = Vec::new();
         let mut read = |name: &str| {
             let picture = picture(&folder.join("pictures").join(name));
@@ -60,7 +56,6 @@ impl Loaded {
         let ramp = Ramp::of(differences.iter().flatten().flatten().copied());
         let colored = |values: Vec<f64>| Some(colored(measured.as_ref()?, &values, ramp?));
         Ok(Self {
-            field: field(&report),
             measured: measured.as_ref().map(color_image),
             simulated: simulated.each_ref().map(|picture| picture.as_ref().map(color_image)),
             differences: differences.map(|values| colored(values?)),
@@ -76,13 +71,10 @@ impl Loaded {
     }
 
     /// The channel with a map whose gap is the largest against its floor.
-    pub fn widest_channel(&self) -> Option<&str> {
+    pub fn widest_channel(&self) -> Option<Channel> {
         let width = |gap: &ChannelGap| gap.before / gap.floor.max(f64::MIN_POSITIVE);
-        let widths = self
-            .report
-            .maps
-            .keys()
-            .map(|channel| (channel.as_str(), self.report.gap.channels.get(channel).map_or(0.0, width)));
+        let of = |channel: &Channel| self.report.gap.channels.get(channel).map_or(0.0, width);
+        let widths = self.report.maps.keys().map(|channel| (*channel, of(channel)));
         widths.max_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(channel, _)| channel)
     }
 }
@@ -138,17 +130,4 @@ fn difference(measured: &RgbImage, simulated: &RgbImage) -> Vec<f64> {
 fn colored(picture: &RgbImage, values: &[f64], ramp: Ramp) -> Arc<ColorImage> {
     let size = [picture.width() as usize, picture.height() as usize];
     Arc::new(ColorImage::new(size, values.iter().map(|value| ramp.color(*value)).collect()))
-}
-
-/// The only league field whose carpet has the extent of the report's maps.
-fn field(report: &Report) -> Option<FieldDimensions> {
-    let [left, top, right, bottom] = report.maps.values().next()?.field.extent;
-    let is_it = |field: &FieldDimensions| {
-        let half = field.carpet_half_extent_m();
-        let differences = [left + half.x, top - half.y, right - half.x, bottom + half.y];
-        differences.iter().all(|difference| difference.abs() < SAME_M)
-    };
-    let mut fields = preset_names().filter_map(FieldDimensions::preset).filter(is_it);
-    let field = fields.next()?;
-    fields.next().is_none().then_some(field)
 }

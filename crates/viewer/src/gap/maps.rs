@@ -1,19 +1,14 @@
 //! Where residuals sit: in the picture, and on the field from above.
 
-use eframe::egui::{Color32, Rect, Response, Stroke, StrokeKind, Ui, Vec2};
+use eframe::egui::{Color32, Rect, Response, Ui, Vec2};
 use glam::DVec2;
-use reality_sim_gap::report::{Map, Maps};
-
-use super::{
-    loaded::Loaded,
-    ramp::Ramp,
-    side::Side,
-    table::words,
-    title::title_ui,
-    words::{number, unit_after},
+use reality_sim_gap::{
+    Channel,
+    report::{Map, Maps, text::amount},
 };
+
+use super::{loaded::Loaded, ramp::Ramp, side::Side, table::words, title::title_ui};
 use crate::{
-    colors,
     field_view::FieldView,
     picture_view::{PictureCanvas, Uploaded},
 };
@@ -28,6 +23,7 @@ const LINES: u8 = 125;
 /// What is shown of a channel's maps.
 #[derive(Clone, Copy)]
 pub struct Shown<'a> {
+    pub channel: Channel,
     pub maps: &'a Maps,
     pub side: Side,
     /// Colours of the values; none where there are too few.
@@ -53,7 +49,7 @@ pub struct MapViews {
 impl MapViews {
     /// Residuals over the picture's shape.
     pub fn picture_ui(&mut self, ui: &mut Ui, loaded: &Loaded, shown: Shown<'_>) {
-        let Shown { maps, side, room, .. } = shown;
+        let Shown { channel, maps, side, room, .. } = shown;
         title_ui(ui, &format!("In the picture, {}", side.name()), "Medians of measured minus simulated");
         let map = &maps.picture;
         let Some(ramp) = shown.ramp_of(map) else { return nowhere(ui, room) };
@@ -72,20 +68,17 @@ impl MapViews {
             let rect = Rect::from_two_pos(at(cell.corners[0]), at(cell.corners[1]));
             canvas.painter.rect_filled(rect, 0.0, ramp.color(cell.value).gamma_multiply(COVER));
         }
-        hover(&canvas.response, map, side, &maps.unit, |cell| Rect::from_two_pos(at(cell[0]), at(cell[1])));
+        hover(&canvas.response, map, side, channel, |cell| Rect::from_two_pos(at(cell[0]), at(cell[1])));
     }
 
     /// Residuals over the field from above.
     pub fn field_ui(&mut self, ui: &mut Ui, loaded: &Loaded, shown: Shown<'_>) {
-        let Shown { maps, side, room, .. } = shown;
-        let lines = match &loaded.field {
-            Some(field) => {
-                format!("The lines are those of the field “{}”, whose carpet is as large", field.name)
-            }
-            None => "The report's field is as large as no league's: its lines are not drawn".to_owned(),
-        };
-        let more =
-            format!("Medians of measured minus simulated. {lines}. Wheel: zoom · secondary button: move");
+        let Shown { channel, maps, side, room, .. } = shown;
+        let field = &loaded.report.field;
+        let more = format!(
+            "Medians of measured minus simulated, with the lines of the field “{}”. Wheel: zoom · secondary button: move",
+            field.name
+        );
         title_ui(ui, &format!("On the field, {}", side.name()), &more);
         let map = &maps.field;
         let Some(ramp) = shown.ramp_of(map) else { return nowhere(ui, room) };
@@ -97,15 +90,9 @@ impl MapViews {
             let rect = Rect::from_two_pos(canvas.at(cell.corners[0]), canvas.at(cell.corners[1]));
             canvas.painter.rect_filled(rect, 0.0, ramp.color(cell.value).gamma_multiply(COVER));
         }
-        match &loaded.field {
-            Some(field) => canvas.draw_lines(field, Color32::from_gray(LINES)),
-            None => {
-                let carpet = Rect::from_two_pos(canvas.at(-half), canvas.at(half));
-                canvas.painter.rect_stroke(carpet, 0.0, Stroke::new(1.0, colors::LINE), StrokeKind::Inside);
-            }
-        }
+        canvas.draw_lines(field, Color32::from_gray(LINES));
         canvas.draw_scale();
-        hover(&canvas.response, map, side, &maps.unit, |cell| {
+        hover(&canvas.response, map, side, channel, |cell| {
             Rect::from_two_pos(canvas.at(cell[0]), canvas.at(cell[1]))
         });
     }
@@ -134,11 +121,17 @@ fn cells(map: &Map, side: Side) -> impl Iterator<Item = Cell> {
 }
 
 /// The value below the pointer.
-fn hover(response: &Response, map: &Map, side: Side, unit: &str, on_screen: impl Fn([DVec2; 2]) -> Rect) {
+fn hover(
+    response: &Response,
+    map: &Map,
+    side: Side,
+    channel: Channel,
+    on_screen: impl Fn([DVec2; 2]) -> Rect,
+) {
     let Some(pointer) = response.hover_pos() else { return };
     let below = cells(map, side).find(|cell| on_screen(cell.corners).contains(pointer));
     if let Some(Cell { value, .. }) = below {
-        response.clone().on_hover_text_at_pointer(format!("{}{}", number(value), unit_after(unit)));
+        response.clone().on_hover_text_at_pointer(amount(channel, value, channel.unit(), 3));
     }
 }
 

@@ -17,7 +17,6 @@ mod side;
 mod table;
 mod title;
 mod views;
-mod words;
 
 use eframe::egui::{self, Ui};
 
@@ -46,9 +45,10 @@ impl GapPanel {
 
     /// Shows the panel.
     pub fn ui(&mut self, ui: &mut Ui, settings: &mut GapSettings) {
-        if !self.loaded.report.maps.contains_key(&settings.channel) {
-            settings.channel = self.loaded.widest_channel().unwrap_or_default().to_owned();
-        }
+        settings.channel = settings
+            .channel
+            .filter(|channel| self.loaded.report.maps.contains_key(channel))
+            .or_else(|| self.loaded.widest_channel());
         for action in shortcuts::pressed(ui, Place::Gap) {
             self.act(action, settings);
         }
@@ -64,27 +64,27 @@ impl GapPanel {
     }
 
     fn act(&mut self, action: Action, settings: &mut GapSettings) {
-        let channels = || self.loaded.report.maps.keys().map(String::as_str);
-        let effects = || self.loaded.effects().map(|effect| effect.id.as_str());
         match action {
             Action::OtherModel => settings.side = settings.side.other(),
             Action::Difference => settings.is_difference = !settings.is_difference,
-            Action::ChannelBefore => settings.channel = neighbour(channels(), &settings.channel, false),
-            Action::ChannelAfter => settings.channel = neighbour(channels(), &settings.channel, true),
+            Action::ChannelBefore | Action::ChannelAfter => {
+                let channels = self.loaded.report.maps.keys().copied();
+                settings.channel = neighbour(channels, settings.channel, action == Action::ChannelAfter);
+            }
             Action::EffectAbove | Action::EffectBelow => {
-                let is_below = action == Action::EffectBelow;
-                let next = self.effect.as_deref().map(|effect| neighbour(effects(), effect, is_below));
-                self.effect = next;
+                let effects = self.loaded.effects().map(|effect| effect.id.clone());
+                self.effect = neighbour(effects, self.effect.take(), action == Action::EffectBelow);
             }
             _ => {}
         }
     }
 }
 
-/// The name after or before one in a list that has it; at the ends, the name itself.
-fn neighbour<'a>(names: impl Iterator<Item = &'a str>, name: &str, is_after: bool) -> String {
-    let names: Vec<&str> = names.collect();
-    let place = names.iter().position(|other| *other == name).unwrap_or(0);
+/// What is after or before one in a list that has it; at the ends, that one.
+fn neighbour<T: PartialEq>(all: impl Iterator<Item = T>, one: Option<T>, is_after: bool) -> Option<T> {
+    let one = one?;
+    let mut all: Vec<T> = all.collect();
+    let place = all.iter().position(|other| *other == one).unwrap_or(0);
     let wanted = if is_after { place + 1 } else { place.saturating_sub(1) };
-    names.get(wanted).map_or(name, |found| found).to_owned()
+    if wanted < all.len() { Some(all.swap_remove(wanted)) } else { Some(one) }
 }

@@ -2,9 +2,9 @@
 
 use eframe::egui::{Color32, Ui, Vec2};
 
-use super::{
-    loaded::Loaded, settings::GapSettings, side::Side, table::words, title::title_ui, words::number,
-};
+use reality_sim_gap::report::text::digits;
+
+use super::{loaded::Loaded, settings::GapSettings, side::Side, table::words, title::title_ui};
 use crate::picture_view::{PictureCanvas, Uploaded};
 
 /// The pictures on the graphics device.
@@ -28,7 +28,7 @@ impl Pictures {
 
     fn difference_ui(&mut self, ui: &mut Ui, loaded: &Loaded, side: Side, room: Vec2) {
         let limit =
-            loaded.difference_ramp.map_or_else(String::new, |ramp| format!(", ±{}", number(ramp.limit())));
+            loaded.difference_ramp.map_or_else(String::new, |ramp| format!(", ±{}", digits(ramp.limit(), 3)));
         title_ui(
             ui,
             &format!("Difference {}{limit}", side.name()),

@@ -1,8 +1,10 @@
 //! Colours for numbers with a sign: blue below zero, white at it, red above, told apart with any kind of colour vision.
 
 use eframe::egui::{Align2, Color32, FontId, Rect, Role, Sense, Ui, WidgetInfo, lerp, pos2, vec2};
-
-use super::words::number;
+use reality_sim_gap::{
+    Channel,
+    report::text::{amount, channel_scale, digits},
+};
 
 /// From the lowest value to the highest, evenly.
 const STOPS: [[u8; 3]; 5] =
@@ -44,32 +46,24 @@ impl Ramp {
     }
 
     /// The colours with the values that they stand for.
-    pub fn legend_ui(self, ui: &mut Ui, unit: &str, width: f32) {
-        let text = format!("−{0} to {0}{unit}", number(self.limit));
+    pub fn legend_ui(self, ui: &mut Ui, channel: Channel, width: f32) {
+        let number = digits(channel_scale(channel).0 * self.limit, 3);
+        let limit = amount(channel, self.limit, channel.unit(), 3);
+        let text = format!("−{number} to {limit}");
         let (rect, response) = ui.allocate_exact_size(vec2(width, 18.0), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
         let step = rect.width() / STEPS as f32;
-        for number in 0..STEPS {
-            let left = rect.left() + step * number as f32;
-            let value = self.limit * (2.0 * (number as f64 + 0.5) / STEPS as f64 - 1.0);
+        for place in 0..STEPS {
+            let left = rect.left() + step * place as f32;
+            let value = self.limit * (2.0 * (place as f64 + 0.5) / STEPS as f64 - 1.0);
             let strip = Rect::from_min_max(pos2(left, rect.top()), pos2(left + step + 0.5, rect.bottom()));
             ui.painter().rect_filled(strip.intersect(rect), 0.0, self.color(value));
         }
         let font = FontId::proportional(11.0);
         let ends = [
-            (
-                rect.left_center() + vec2(4.0, 0.0),
-                Align2::LEFT_CENTER,
-                format!("−{}", number(self.limit)),
-                Color32::WHITE,
-            ),
+            (rect.left_center() + vec2(4.0, 0.0), Align2::LEFT_CENTER, format!("−{number}"), Color32::WHITE),
             (rect.center(), Align2::CENTER_CENTER, "0".to_owned(), Color32::BLACK),
-            (
-                rect.right_center() - vec2(4.0, 0.0),
-                Align2::RIGHT_CENTER,
-                format!("+{}{unit}", number(self.limit)),
-                Color32::WHITE,
-            ),
+            (rect.right_center() - vec2(4.0, 0.0), Align2::RIGHT_CENTER, format!("+{limit}"), Color32::WHITE),
         ];
         for (place, align, text, color) in ends {
             ui.painter().text(place, align, text, font.clone(), color);

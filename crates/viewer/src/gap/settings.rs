@@ -1,5 +1,6 @@
 //! What is remembered of the panel from one start to the next.
 
+use reality_sim_gap::Channel;
 use serde::{Deserialize, Serialize};
 
 use super::side::Side;
@@ -14,12 +15,12 @@ pub struct GapSettings {
     pub is_difference: bool,
     /// Where the line of the wipe is, 0 to 1 from the left.
     pub wipe_share: f32,
-    /// The comparison whose residuals are shown; where the report has none of this name, the one with the most to see.
-    pub channel: String,
+    /// The comparison whose residuals are shown; where the report does not have it, the one with the most to see.
+    pub channel: Option<Channel>,
 }
 
 impl Default for GapSettings {
     fn default() -> Self {
-        Self { side: Side::default(), is_difference: false, wipe_share: 0.5, channel: String::new() }
+        Self { side: Side::default(), is_difference: false, wipe_share: 0.5, channel: None }
     }
 }

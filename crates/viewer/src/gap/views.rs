@@ -1,9 +1,15 @@
 //! Pictures, maps and course on one page, two beside two.
 
 use eframe::egui::{Align, ComboBox, Layout, Ui, Vec2, vec2};
+use reality_sim_gap::{
+    Channel,
+    report::{
+        Maps,
+        text::{channel_meaning, channel_title},
+    },
+};
 
 use super::{
-    channels::meaning,
     course,
     loaded::Loaded,
     maps::{MapViews, Shown},
@@ -12,7 +18,6 @@ use super::{
     settings::GapSettings,
     side::Side,
     title::TITLE_HEIGHT,
-    words::unit_after,
 };
 use crate::shortcuts::{self, Action};
 
@@ -30,19 +35,18 @@ impl Views {
     /// Draws them.
     pub fn ui(&mut self, ui: &mut Ui, loaded: &Loaded, settings: &mut GapSettings) {
         pictures_choice_ui(ui, loaded, settings);
-        let maps = loaded.report.maps.get(&settings.channel);
-        let ramp = maps.and_then(|maps| {
+        let maps = settings.channel.and_then(|channel| Some((channel, loaded.report.maps.get(&channel)?)));
+        let ramp = maps.and_then(|(_, maps): (Channel, &Maps)| {
             let values = [&maps.picture, &maps.field].map(|map| map.before.iter().chain(&map.after));
             Ramp::of(values.into_iter().flatten().flatten().copied())
         });
-        let unit = maps.map(|maps| unit_after(&maps.unit)).unwrap_or_default();
-        channel_choice_ui(ui, loaded, settings, ramp, &unit);
+        channel_choice_ui(ui, loaded, &mut settings.channel, ramp);
         let gap = ui.spacing().item_spacing;
         let room = ui.available_size();
         let view = vec2(0.5 * (room.x - gap.x), 0.5 * (room.y - gap.y) - TITLE_HEIGHT - gap.y)
             .max(Vec2::splat(60.0));
         let side = settings.side;
-        let shown = maps.map(|maps| Shown { maps, side, ramp, room: view });
+        let shown = maps.map(|(channel, maps)| Shown { channel, maps, side, ramp, room: view });
         row(
             ui,
             view,
@@ -60,7 +64,7 @@ impl Views {
                 None => nothing(ui, ""),
             },
             |ui| match maps {
-                Some(maps) => course::ui(ui, &maps.time, &unit, view),
+                Some((channel, maps)) => course::ui(ui, &maps.time, channel, view),
                 None => nothing(ui, ""),
             },
         );
@@ -111,26 +115,21 @@ fn pictures_choice_ui(ui: &mut Ui, loaded: &Loaded, settings: &mut GapSettings) 
 }
 
 /// Which comparison's residuals, and their colours.
-fn channel_choice_ui(
-    ui: &mut Ui,
-    loaded: &Loaded,
-    settings: &mut GapSettings,
-    ramp: Option<Ramp>,
-    unit: &str,
-) {
+fn channel_choice_ui(ui: &mut Ui, loaded: &Loaded, chosen: &mut Option<Channel>, ramp: Option<Ramp>) {
     ui.horizontal_wrapped(|ui| {
         let label = ui.label("Residuals of");
-        let list = ComboBox::from_id_salt("channel").width(110.0).selected_text(&settings.channel);
-        let meaning_now = meaning(&settings.channel);
+        let now = *chosen;
+        let title = now.map_or("", channel_title);
+        let list = ComboBox::from_id_salt("channel").width(110.0).selected_text(title);
         let list = list.show_ui(ui, |ui| {
-            for channel in loaded.report.maps.keys() {
-                ui.selectable_value(&mut settings.channel, channel.clone(), channel)
-                    .on_hover_text(meaning(channel));
+            for &channel in loaded.report.maps.keys() {
+                ui.selectable_value(chosen, Some(channel), channel_title(channel))
+                    .on_hover_text(channel_meaning(channel));
             }
         });
-        list.response.labelled_by(label.id).on_hover_text(meaning_now);
-        match ramp {
-            Some(ramp) => ramp.legend_ui(ui, unit, LEGEND),
+        list.response.labelled_by(label.id).on_hover_text(now.map_or("", channel_meaning));
+        match now.zip(ramp) {
+            Some((channel, ramp)) => ramp.legend_ui(ui, channel, LEGEND),
             None => drop(ui.weak("too few measurements in any place for a map")),
         }
     });

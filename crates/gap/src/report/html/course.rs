@@ -4,8 +4,9 @@ use std::fmt::Write;
 
 use super::text::escape;
 use crate::{
+    measurement::quantity::Channel,
     report::data::Course,
-    report::text::{in_channel, rounded},
+    report::text::{channel_scale, channel_title, rounded},
 };
 
 /// The drawing's width and height.
@@ -33,8 +34,8 @@ impl Scale {
 }
 
 /// The curves before and after, with the frames that no fit has seen, and the noise floor where it is known.
-pub(super) fn drawing(course: &Course, channel: &str, unit: &str, floor: Option<f64>) -> String {
-    let (factor, unit) = in_channel(channel, unit);
+pub(super) fn drawing(course: &Course, channel: Channel, floor: Option<f64>) -> String {
+    let (factor, unit) = channel_scale(channel);
     let scaled = |values: &[Option<f64>]| -> Vec<(f64, f64, bool)> {
         let judged = course.judged.iter().copied().chain(std::iter::repeat(false));
         let points = course.time_s.iter().zip(values).zip(judged);
@@ -48,7 +49,7 @@ pub(super) fn drawing(course: &Course, channel: &str, unit: &str, floor: Option<
     let Some(scale) = scale(&before, &after, floor) else {
         return "<p class=\"quiet\">Nothing was measured over time.</p>\n".to_owned();
     };
-    let label = format!("{channel} over time, before and after");
+    let label = format!("{} over time, before and after", channel.name());
     format!(
         "<figure><svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">{}{}{}{}{}</svg>\
          <figcaption>{}</figcaption></figure>\n",
@@ -71,11 +72,11 @@ const KEY: &str = "<path class=\"before\" d=\"M60 193H85\"/><text x=\"90\" y=\"1
                    <circle class=\"judged\" cx=\"345\" cy=\"193\" r=\"2.5\"/>\
                    <text x=\"353\" y=\"197\">frame kept for judging</text>";
 
-fn caption(channel: &str, unit: &str) -> String {
+fn caption(channel: Channel, unit: &str) -> String {
     let unit = if unit.is_empty() { String::new() } else { format!(", {unit}") };
     escape(&format!(
         "{} over time: usual size of each frame's residuals (1.48 times their median){unit}",
-        super::text::channel_title(channel)
+        channel_title(channel)
     ))
 }
 
@@ -167,7 +168,7 @@ mod tests {
             before: vec![Some(1.0), Some(2.0), None, Some(1.5)],
             after: vec![Some(1.0); 3],
         };
-        let svg = drawing(&course, "geometry", "px", None);
+        let svg = drawing(&course, Channel::Geometry, None);
         let path = svg.split("class=\"before\" d=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap();
         assert_eq!(path.matches('M').count(), 2);
         assert_eq!(svg.matches("judged-before").count(), 2);
@@ -176,6 +177,6 @@ mod tests {
     #[test]
     fn a_course_without_frames_says_so() {
         let course = Course { time_s: Vec::new(), judged: Vec::new(), before: Vec::new(), after: Vec::new() };
-        assert!(drawing(&course, "geometry", "px", Some(1.0)).contains("Nothing was measured"));
+        assert!(drawing(&course, Channel::Geometry, Some(1.0)).contains("Nothing was measured"));
     }
 }

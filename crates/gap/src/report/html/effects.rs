@@ -2,10 +2,15 @@
 
 use reality_sim_sensor::effect as library_effect;
 
-use super::text::{capital, cell, channel_title, effect_cell, escape, number, table};
+use super::text::{capital, cell, effect_cell, escape, number, table};
 use crate::{
-    report::data::{EffectReport, Estimate, Limit, NotFoundReport, Report, Unexplained, Unobservable},
-    report::text::{amount, digits, percent, probability, with_sigma},
+    diagnostics::finding::Finding,
+    report::data::{EffectReport, Estimate, Limit, NotFoundReport, Report, Unobservable},
+    report::text::{
+        channel_title, deciding_recordings, digits, effect_because, effect_name, effect_size, estimate,
+        finding_place, finding_size, library_name, limit, percent, probability, unobservable_reason,
+        unobservable_remedy, with_sigma,
+    },
 };
 
 /// More are folded.
@@ -35,28 +40,26 @@ fn effect(effect: &EffectReport) -> String {
     let closes: Vec<String> = effect
         .closes
         .iter()
-        .map(|(channel, part)| format!("<span class=\"one\">{} {}</span>", escape(channel), percent(*part)))
+        .map(|(channel, part)| format!("<span class=\"one\">{} {}</span>", channel.name(), percent(*part)))
         .collect();
     format!(
         "<tr class=\"head\">{}{}<td>{}</td>{}{}<td>{}</td></tr><tr class=\"more\"><td colspan=\"6\"><span class=\"quiet\">Because \
          {}.{}</span></td></tr>",
-        effect_cell(&effect.name, &effect.id),
-        cell(&capital(&effect.size)),
+        effect_cell(effect_name(effect), &effect.id),
+        cell(&capital(&effect_size(effect))),
         parameters(effect),
         number(&probability(effect.p_value)),
         number(&gain(&effect.held_out_gain)),
         if closes.is_empty() { "–".to_owned() } else { closes.join("<br/>") },
-        escape(&effect.because),
+        escape(effect_because(effect)),
         rivals(effect)
     )
 }
 
 /// Folded where they are many.
 fn parameters(effect: &EffectReport) -> String {
-    let text = |(name, estimate): (&String, &Estimate)| {
-        let unit = estimate.unit.as_deref().filter(|unit| *unit != "1").unwrap_or("");
-        let number = with_sigma(estimate.value, estimate.sigma);
-        let number = escape(format!("{number} {unit}").trim_end());
+    let text = |(name, value): (&String, &Estimate)| {
+        let number = escape(&estimate(value));
         format!("<span class=\"one\"><code>{}</code> {number}</span>", escape(name))
     };
     let list = effect.parameters.iter().map(text).collect::<Vec<String>>().join("<br/>");
@@ -74,7 +77,7 @@ fn rivals(effect: &EffectReport) -> String {
     }
     let rivals: Vec<String> =
         effect.confusable_with.iter().map(|id| format!("<code>{}</code>", escape(id))).collect();
-    let recordings = effect.recording_that_would_decide.join("; or ");
+    let recordings = deciding_recordings(effect).join("; or ");
     let remedy =
         if recordings.is_empty() { String::new() } else { format!(" To find out, {}.", escape(&recordings)) };
     format!(" These frames cannot tell it from {}.{remedy}", rivals.join(", "))
@@ -89,11 +92,11 @@ fn not_found(effects: &[NotFoundReport]) -> String {
         return String::new();
     }
     let row = |effect: &NotFoundReport| {
-        let words = effect.limit_in_words();
+        let words = limit(effect);
         let recording = library_effect(&effect.id).map_or("", |known| known.recording_that_would_decide());
         format!(
             "<tr>{}{}{}<td class=\"n\">{}{}</td>{}</tr>",
-            effect_cell(&effect.name, &effect.id),
+            effect_cell(library_name(&effect.id), &effect.id),
             number(&probability(effect.p_value)),
             number(&gain(&effect.held_out_gain)),
             escape(&words),
@@ -121,12 +124,11 @@ fn unobservable(effects: &[Unobservable]) -> String {
         return String::new();
     }
     let row = |effect: &Unobservable| {
-        let remedy = capital(&effect.recording_that_would_decide);
         format!(
             "<tr>{}{}{}</tr>",
-            effect_cell(&effect.name, &effect.id),
-            cell(&capital(&effect.reason)),
-            cell(&remedy)
+            effect_cell(library_name(&effect.id), &effect.id),
+            cell(&capital(unobservable_reason(&effect.cause))),
+            cell(&capital(unobservable_remedy(effect)))
         )
     };
     let rows: Vec<String> = effects.iter().map(row).collect();
@@ -137,19 +139,19 @@ fn unobservable(effects: &[Unobservable]) -> String {
 }
 
 /// What no effect explains.
-pub(super) fn unexplained(patterns: &[Unexplained]) -> String {
-    if patterns.is_empty() {
+pub(super) fn unexplained(findings: &[Finding]) -> String {
+    if findings.is_empty() {
         return "<h2>Unexplained</h2>\n<p>Nothing significant is left.</p>\n".to_owned();
     }
-    let row = |pattern: &Unexplained| {
+    let row = |finding: &Finding| {
         format!(
             "<tr>{}{}{}{}</tr>",
-            cell(&channel_title(&pattern.channel)),
-            cell(&pattern.r#where),
-            number(&amount(&pattern.channel, pattern.size, &pattern.unit, 2)),
-            number(&pattern.p_value.map_or_else(String::new, probability))
+            cell(channel_title(finding.channel())),
+            cell(&finding_place(finding)),
+            number(&finding_size(finding)),
+            number(&finding.p_value().map_or_else(String::new, probability))
         )
     };
-    let rows: Vec<String> = patterns.iter().map(row).collect();
+    let rows: Vec<String> = findings.iter().map(row).collect();
     format!("<h2>Unexplained</h2>\n{}", table(&["Channel", "Where", ">Size", ">p"], &rows))
 }

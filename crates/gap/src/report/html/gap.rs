@@ -1,9 +1,10 @@
 //! The gap before and after beside the noise floor, as a table.
 
-use super::text::{cell, channel_title, escape, number, table};
+use super::text::{cell, escape, number, table};
 use crate::{
+    inference::held_out::has_moved,
     report::data::Gap,
-    report::text::{closed, digits, has_moved, in_channel, percent},
+    report::text::{GAP_UNIT, channel_scale, channel_title, closed, digits, percent},
 };
 
 /// Width and height of a bar.
@@ -11,14 +12,9 @@ const BAR: [f64; 2] = [160.0, 12.0];
 
 pub(super) fn section(gap: &Gap) -> String {
     let rows = gap.channels.iter().map(|(channel, part)| {
-        row("", channel, [part.before, part.after, part.floor], in_channel(channel, &part.unit))
+        row("", channel_title(*channel), [part.before, part.after, part.floor], channel_scale(*channel))
     });
-    let total = row(
-        "total",
-        "all channels",
-        [gap.before, gap.after, gap.floor],
-        (1.0, if gap.unit == "1" { "" } else { &gap.unit }),
-    );
+    let total = row("total", "All channels", [gap.before, gap.after, gap.floor], (1.0, GAP_UNIT));
     let rows: Vec<String> = rows.chain([total]).collect();
     format!(
         "<h2>The gap</h2>\n{}<p class=\"quiet\">Root mean squares on frames that no fit has seen. In the bars, grey is \
@@ -28,7 +24,7 @@ pub(super) fn section(gap: &Gap) -> String {
     )
 }
 
-fn row(class: &str, channel: &str, sizes: [f64; 3], (factor, unit): (f64, &str)) -> String {
+fn row(class: &str, title: &str, sizes: [f64; 3], (factor, unit): (f64, &str)) -> String {
     let [before, after, floor] = sizes;
     let part = closed(before, after, floor)
         .filter(|_| has_moved(before, after))
@@ -36,7 +32,7 @@ fn row(class: &str, channel: &str, sizes: [f64; 3], (factor, unit): (f64, &str))
     let numbers: String = sizes.iter().map(|size| number(&digits(factor * size, 3))).collect();
     format!(
         "<tr class=\"{class}\">{}{numbers}{}{}<td>{}</td></tr>",
-        cell(&channel_title(channel)),
+        cell(title),
         cell(unit),
         number(&part),
         bar(before, after, floor)

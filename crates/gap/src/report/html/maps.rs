@@ -6,7 +6,7 @@ use glam::DVec2;
 use reality_sim_core::field::{Curve, FieldDimensions};
 
 use super::text::escape;
-use crate::{report::data::Map, report::text::amount};
+use crate::{measurement::quantity::Channel, report::data::Map, report::text::amount};
 
 /// Width of a map in the drawing's units.
 const WIDTH: f64 = 340.0;
@@ -30,9 +30,7 @@ const COLORS: [[f64; 3]; 5] = [
 /// What a map shows.
 #[derive(Clone, Copy)]
 pub(super) struct Subject<'a> {
-    /// "geometry".
-    pub(super) channel: &'a str,
-    pub(super) unit: &'a str,
+    pub(super) channel: Channel,
     /// "in the picture".
     pub(super) place: &'a str,
     /// Where it is the field, whose lines are drawn.
@@ -45,7 +43,8 @@ pub(super) fn pair(map: &Map, subject: Subject<'_>) -> String {
         return format!("<p class=\"quiet\">Nothing was measured {}.</p>\n", escape(subject.place));
     };
     let figure = |values: &[Option<f64>], when: &str| {
-        let caption = escape(&format!("{} {}, {when}", super::text::capital(subject.channel), subject.place));
+        let caption =
+            escape(&format!("{} {}, {when}", super::text::capital(subject.channel.name()), subject.place));
         format!(
             "<figure>{}<figcaption>{caption}</figcaption></figure>",
             drawing(map, values, limit, subject, &caption)
@@ -157,7 +156,7 @@ fn legend(limit: f64, subject: Subject<'_>) -> String {
 }
 
 fn value_text(value: f64, subject: Subject<'_>) -> String {
-    amount(subject.channel, value, subject.unit, 2)
+    amount(subject.channel, value, subject.channel.unit(), 2)
 }
 
 /// Of a value from −1 to 1.
@@ -190,7 +189,7 @@ mod tests {
             before: vec![None; 2],
             after: vec![Some(f64::NAN)],
         };
-        let subject = Subject { channel: "geometry", unit: "px", place: "in the picture", field: None };
+        let subject = Subject { channel: Channel::Geometry, place: "in the picture", field: None };
         assert!(pair(&map, subject).contains("Nothing was measured in the picture"));
     }
 
@@ -203,7 +202,7 @@ mod tests {
             before: vec![Some(1.0), None, Some(-0.5), None],
             after: vec![Some(0.1), None, Some(f64::NAN), None],
         };
-        let subject = Subject { channel: "geometry", unit: "px", place: "in the picture", field: None };
+        let subject = Subject { channel: Channel::Geometry, place: "in the picture", field: None };
         assert_eq!(pair(&map, subject).matches("<title>").count(), 3);
     }
 
@@ -212,7 +211,7 @@ mod tests {
         let field = FieldDimensions::preset("humanoid-kidsize").unwrap();
         let extent = [-5.0, 4.0, 5.0, -4.0];
         let map = Map { columns: 1, rows: 1, extent, before: vec![Some(1.0)], after: vec![Some(0.0)] };
-        let subject = Subject { channel: "geometry", unit: "px", place: "on the field", field: Some(&field) };
+        let subject = Subject { channel: Channel::Geometry, place: "on the field", field: Some(&field) };
         let svg = drawing(&map, &map.before, 1.0, subject, "");
         let y = 0.5 * field.width_m;
         let left = WIDTH * (-0.5 * field.length_m + 5.0) / 10.0;

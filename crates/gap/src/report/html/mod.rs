@@ -8,15 +8,13 @@ mod notes;
 mod pictures;
 mod text;
 
-use self::{
-    maps::Subject,
-    text::{channel_title, escape},
-};
+use self::{maps::Subject, text::escape};
 use crate::{
     inference::held_out::ChannelGap,
     measurement::quantity::Channel,
-    report::data::{Maps, Report, Verdict},
+    report::data::{Maps, Report},
     report::pictures::Pictures,
+    report::text::{channel_title, summary, verdict_word},
 };
 
 const STYLE: &str = include_str!("style.css");
@@ -42,19 +40,13 @@ pub fn page(report: &Report, pictures: &Pictures) -> String {
 }
 
 fn verdict(report: &Report) -> String {
-    let word = match report.verdict {
-        Verdict::None => "nothing missing",
-        Verdict::Named => "named",
-        Verdict::Confusable => "confusable",
-        Verdict::Unknown => "unknown",
-        Verdict::Inconclusive => "inconclusive",
-    };
     format!(
         "<h1>Simulation against recording: {}</h1>\n<p class=\"verdict\">{}</p>\n<p class=\"quiet\"><span \
-         class=\"word\">{word}</span> {} frames, {} of them kept for judging</p>\n",
+         class=\"word\">{}</span> {} frames, {} of them kept for judging</p>\n",
         escape(&report.recording),
         // No line starts with a percent sign.
-        escape(&report.summary).replace(" %", "&#160;%"),
+        escape(&summary(report)).replace(" %", "&#160;%"),
+        verdict_word(report.verdict),
         report.frames,
         report.judged_frames
     )
@@ -64,23 +56,23 @@ fn verdict(report: &Report) -> String {
 fn channels(report: &Report) -> String {
     let Some(first) = most_closed(report) else { return String::new() };
     let others = report.maps.iter().filter(|(channel, _)| **channel != first);
-    let folded = others.map(|(channel, maps)| {
-        let name = escape(&channel_title(channel));
-        let open = if report.effects.iter().any(|effect| effect.closes.contains_key(channel)) {
+    let folded = others.map(|(&channel, maps)| {
+        let name = escape(channel_title(channel));
+        let open = if report.effects.iter().any(|effect| effect.closes.contains_key(&channel)) {
             " open"
         } else {
             ""
         };
         format!("<details{open}><summary>{name}</summary>\n{}</details>\n", drawings(report, channel, maps))
     });
-    let shown = report.maps.get(first).map(|maps| drawings(report, first, maps)).unwrap_or_default();
-    let title = escape(&channel_title(first));
+    let shown = report.maps.get(&first).map(|maps| drawings(report, first, maps)).unwrap_or_default();
+    let title = escape(channel_title(first));
     format!("<h2>Where and when they differ: {title}</h2>\n{shown}{}", folded.collect::<String>())
 }
 
 /// By the noise floor; of those that are not closed at all the first.
-fn most_closed(report: &Report) -> Option<&'static str> {
-    let closed = |channel: &str| {
+fn most_closed(report: &Report) -> Option<Channel> {
+    let closed = |channel: &Channel| {
         let size = |gap: &ChannelGap| (gap.before - gap.after) / gap.floor.max(f64::MIN_POSITIVE);
         report
             .gap
@@ -90,22 +82,18 @@ fn most_closed(report: &Report) -> Option<&'static str> {
             .filter(|size| size.is_finite())
             .unwrap_or(f64::NEG_INFINITY)
     };
-    let drawn = Channel::ALL.iter().rev().map(|channel| channel.name());
-    drawn.filter(|channel| report.maps.contains_key(*channel)).max_by(|a, b| closed(a).total_cmp(&closed(b)))
+    let drawn = Channel::ALL.into_iter().rev().filter(|channel| report.maps.contains_key(channel));
+    drawn.max_by(|a, b| closed(a).total_cmp(&closed(b)))
 }
 
-fn drawings(report: &Report, channel: &str, maps: &Maps) -> String {
-    let course = course::drawing(
-        &maps.time,
-        channel,
-        &maps.unit,
-        report.gap.channels.get(channel).map(|gap| gap.floor),
-    );
+fn drawings(report: &Report, channel: Channel, maps: &Maps) -> String {
+    let floor = report.gap.channels.get(&channel).map(|gap| gap.floor);
+    let course = course::drawing(&maps.time, channel, floor);
     // Odometry is not measured in a place.
-    if channel == Channel::Motion.name() {
+    if channel == Channel::Motion {
         return course;
     }
-    let subject = Subject { channel, unit: &maps.unit, place: "in the picture", field: None };
+    let subject = Subject { channel, place: "in the picture", field: None };
     let on_field = Subject { place: "on the field", field: Some(&report.field), ..subject };
     format!("{}{}{course}", maps::pair(&maps.picture, subject), maps::pair(&maps.field, on_field))
 }

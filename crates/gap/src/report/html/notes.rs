@@ -2,9 +2,8 @@
 
 use super::text::{cell, table};
 use crate::{
-    recording::ReferenceSource,
-    report::data::{PosesReport, Report},
-    report::text::digits,
+    report::data::Report,
+    report::text::{absorbed, digits, reference_source},
 };
 
 const READING: &str = "<h2>How to read this page</h2>\n<ul>\
@@ -26,7 +25,7 @@ pub(super) fn section(report: &Report) -> String {
         ("Frames compared", report.frames.to_string()),
         ("Frames kept for judging", format!("{}, chosen with seed {}", report.judged_frames, report.seed)),
         ("Frames left out", left_out(&report.left_out)),
-        ("Reference poses", source(&report.poses).to_owned()),
+        ("Reference poses", reference_source(report.poses.source).to_owned()),
         (
             "Scatter of rotations",
             triple(report.poses.rotation_sigma_rad.map(f64::to_degrees), "°", ROTATIONS),
@@ -35,7 +34,7 @@ pub(super) fn section(report: &Report) -> String {
             "Scatter of positions",
             triple(report.poses.position_sigma_m.map(|sigma| 1e3 * sigma), " mm", POSITIONS),
         ),
-        ("What these poses cannot show", report.poses.absorbed.clone()),
+        ("What these poses cannot show", absorbed(report.poses.source).to_owned()),
     ];
     let rows: Vec<String> = rows
         .iter()
@@ -50,13 +49,6 @@ const POSITIONS: &str = "along the world's x, y and z";
 
 fn left_out(files: &[String]) -> String {
     if files.is_empty() { String::new() } else { format!("{}: {}", files.len(), files.join(", ")) }
-}
-
-fn source(poses: &PosesReport) -> &'static str {
-    match poses.source {
-        ReferenceSource::Measured => "measured by something else than the pictures",
-        ReferenceSource::Tagged => "found in the pictures; height, pitch and roll are those of the robot",
-    }
 }
 
 fn triple(values: [f64; 3], unit: &str, axes: &str) -> String {

@@ -36,7 +36,7 @@ pub(super) fn section(pictures: &Pictures, report: &Report) -> String {
             difference(after, "extended model"),
         )
     };
-    let colors = if report.gap.channels.contains_key(Channel::Photometry.name()) {
+    let colors = if report.gap.channels.contains_key(&Channel::Photometry) {
         ""
     } else {
         " Brightness and colours are not: nothing in camera.toml says how bright lines and carpet are."

@@ -1,54 +1,37 @@
 use std::collections::BTreeMap;
 
 use image::{GrayImage, Luma, Rgb, RgbImage};
-use reality_sim_core::field::FieldDimensions;
-use reality_sim_sensor::{Effect, Parameter, library};
+use reality_sim_sensor::library;
 
 use super::*;
 use crate::{
+    diagnostics::finding::{Finding, PatternCell},
+    inference::detection_limit::UnobservableCause,
     recording::ReferenceSource,
     report::data::{
-        Course, EffectReport, Estimate, Gap, Limit, Map, NotFoundReport, PosesReport, Unexplained,
-        Unobservable,
+        Course, EffectReport, Estimate, Gap, Limit, Map, NotFoundReport, PosesReport, Unobservable, Verdict,
     },
+    testing::{self, effect_report},
 };
 
 const HOSTILE: &str = "<script>alert(\"walk\")</script> & 'more'";
 
-fn by_channel<T, const N: usize>(values: [(&str, T); N]) -> BTreeMap<String, T> {
-    values.map(|(channel, value)| (channel.to_owned(), value)).into()
+fn channel([before, after, floor]: [f64; 3]) -> ChannelGap {
+    ChannelGap { before, after, floor }
 }
 
-fn channel([before, after, floor]: [f64; 3], unit: &str) -> ChannelGap {
-    ChannelGap { before, after, floor, unit: unit.to_owned() }
-}
-
-fn found(effect: &dyn Effect) -> EffectReport {
-    let estimate = |parameter: &Parameter| {
-        (
-            parameter.name.to_owned(),
-            Estimate { value: 0.421, sigma: 0.0051, unit: Some(parameter.unit.to_owned()) },
-        )
-    };
+fn found(id: &str) -> EffectReport {
     EffectReport {
-        id: effect.id().to_owned(),
-        name: effect.name().to_owned(),
-        size: "at the corner 42 % of the light is lost (± 1 %)".to_owned(),
-        parameters: effect.parameters().iter().map(estimate).collect(),
-        p_value: 1.3e-41,
-        held_out_gain: Estimate { value: 310.2, sigma: 12.3, unit: None },
         confusable_with: vec!["uneven_illumination".to_owned()],
-        recording_that_would_decide: vec![effect.recording_that_would_decide().to_owned()],
-        because: effect.because().to_owned(),
-        closes: by_channel([("photometry", 0.93)]),
+        closes: [(Channel::Photometry, 0.93)].into(),
+        ..effect_report(id, 0.421)
     }
 }
 
-fn not_found(effect: &dyn Effect) -> NotFoundReport {
-    let parameter = effect.parameters()[0];
+fn not_found(id: &str) -> NotFoundReport {
+    let parameter = reality_sim_sensor::effect(id).unwrap().parameters()[0];
     NotFoundReport {
-        id: effect.id().to_owned(),
-        name: effect.name().to_owned(),
+        id: id.to_owned(),
         parameter: parameter.name.to_owned(),
         detection_limit: Limit { value: 2.0 * parameter.material, unit: parameter.unit.to_owned() },
         p_value: 0.4,
@@ -56,13 +39,8 @@ fn not_found(effect: &dyn Effect) -> NotFoundReport {
     }
 }
 
-fn unobservable(effect: &dyn Effect) -> Unobservable {
-    Unobservable {
-        id: effect.id().to_owned(),
-        name: effect.name().to_owned(),
-        reason: "the camera hardly moves".to_owned(),
-        recording_that_would_decide: effect.recording_that_would_decide().to_owned(),
-    }
+fn unobservable(id: &str) -> Unobservable {
+    Unobservable { id: id.to_owned(), cause: UnobservableCause::CameraAtRest }
 }
 
 /// Darker towards the corners before, nothing after; a hole in the middle.
@@ -76,54 +54,40 @@ fn map(columns: usize, rows: usize, extent: [f64; 4]) -> Map {
     Map { columns, rows, extent, before: values(0.3), after: values(0.03) }
 }
 
-fn maps(unit: &str) -> Maps {
+fn maps() -> Maps {
     let time_s: Vec<f64> = (0..40).map(|frame| 1000.0 + 0.25 * f64::from(frame)).collect();
     let wave = |size: f64| time_s.iter().map(|time_s| Some(size * (2.0 + time_s.sin()))).collect();
     let judged = (0..40).map(|frame| frame % 4 == 0).collect();
     let time = Course { judged, before: wave(0.1), after: wave(0.02), time_s: time_s.clone() };
     let (picture, field) = (map(8, 6, [0.0, 0.0, 640.0, 480.0]), map(8, 6, [-4.0, 3.0, 4.0, -3.0]));
-    Maps { unit: unit.to_owned(), picture, field, time }
+    Maps { picture, field, time }
 }
 
 fn report() -> Report {
-    let all = library();
-    let photometry = channel([0.24, 0.05, 0.04], "1");
-    let geometry = channel([0.31, 0.30, 0.29], "px");
+    let ids: Vec<&str> = library().iter().map(|effect| effect.id()).collect();
+    let channels = [
+        (Channel::Photometry, channel([0.24, 0.05, 0.04])),
+        (Channel::Geometry, channel([0.31, 0.30, 0.29])),
+    ];
+    let strongest = PatternCell::Picture { column: 2, row: 4, grid: [8, 6] };
     Report {
         recording: HOSTILE.to_owned(),
-        frames: 120,
-        judged_frames: 30,
         left_out: vec![HOSTILE.to_owned()],
         verdict: Verdict::Named,
-        summary: format!("The lens darkens towards the corners {HOSTILE}."),
-        effects: vec![found(all[12])],
-        in_model: vec![found(all[13])],
-        unexplained: vec![Unexplained {
-            channel: "sharpness".to_owned(),
-            r#where: "left of the middle, in the lower part".to_owned(),
+        effects: vec![found(ids[12])],
+        in_model: vec![found(ids[13])],
+        unexplained: vec![Finding::Pattern {
+            channel: Channel::Sharpness,
+            strongest,
             size: 0.131,
-            unit: "px2".to_owned(),
-            p_value: Some(2e-5),
+            p_value: 2e-5,
         }],
-        gap: Gap {
-            before: 4.2,
-            after: 1.1,
-            floor: 1.0,
-            unit: "noise floors".to_owned(),
-            channels: by_channel([("photometry", photometry), ("geometry", geometry)]),
-        },
-        not_found: all[..12].iter().map(|effect| not_found(*effect)).collect(),
-        unobservable: all[14..].iter().map(|effect| unobservable(*effect)).collect(),
-        poses: PosesReport {
-            source: ReferenceSource::Tagged,
-            rotation_sigma_rad: [0.002, 0.001, 0.003],
-            position_sigma_m: [0.01, 0.012, 0.003],
-            absorbed: "a mount that is turned about the vertical".to_owned(),
-        },
-        maps: by_channel([("photometry", maps("1")), ("geometry", maps("px"))]),
-        field: FieldDimensions::preset("humanoid-kidsize-2010").unwrap(),
-        shown_frame: 17,
-        seed: 0,
+        gap: Gap { before: 4.2, after: 1.1, floor: 1.0, channels: channels.into() },
+        not_found: ids[..12].iter().map(|id| not_found(id)).collect(),
+        unobservable: ids[14..].iter().map(|id| unobservable(id)).collect(),
+        poses: PosesReport { source: ReferenceSource::Tagged, ..testing::report().poses },
+        maps: [(Channel::Photometry, maps()), (Channel::Geometry, maps())].into(),
+        ..testing::report()
     }
 }
 
@@ -165,21 +129,20 @@ fn hollow() -> Report {
     let empty = Map { columns: 0, rows: 0, extent: [f64::NAN; 4], before: Vec::new(), after: Vec::new() };
     let course =
         Course { time_s: vec![f64::NAN; 3], judged: Vec::new(), before: vec![None; 3], after: Vec::new() };
-    let maps = Maps { unit: "px".to_owned(), picture: empty.clone(), field: empty, time: course };
-    let nothing = channel([f64::NAN; 3], "px");
-    let mut effect = found(library()[12]);
+    let maps = Maps { picture: empty.clone(), field: empty, time: course };
+    let nothing = channel([f64::NAN; 3]);
+    let mut effect = found(library()[12].id());
     effect.p_value = f64::NAN;
     effect.held_out_gain = Estimate { value: f64::NAN, sigma: f64::INFINITY, unit: None };
-    effect.closes = by_channel([("geometry", f64::NAN)]);
+    effect.closes = [(Channel::Geometry, f64::NAN)].into();
     let gap = Gap {
         before: f64::NAN,
         after: f64::NAN,
         floor: f64::NAN,
-        unit: "noise floors".to_owned(),
-        channels: by_channel([("geometry", nothing)]),
+        channels: [(Channel::Geometry, nothing)].into(),
     };
     let (not_found, unobservable) = (Vec::new(), Vec::new());
-    let maps = by_channel([("geometry", maps)]);
+    let maps = [(Channel::Geometry, maps)].into();
     Report { effects: vec![effect], gap, not_found, unobservable, maps, ..report() }
 }
 

@@ -1,7 +1,5 @@
 //! Text in HTML.
 
-use crate::measurement::quantity::Channel;
-
 /// Text that stays text, between tags and in attributes.
 pub(super) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
@@ -23,11 +21,6 @@ pub(super) fn capital(text: &str) -> String {
     let mut letters = text.chars();
     let first: String = letters.next().map(|letter| letter.to_uppercase().collect()).unwrap_or_default();
     first + letters.as_str()
-}
-
-/// A channel as a heading.
-pub(super) fn channel_title(channel: &str) -> String {
-    if channel == Channel::Color.name() { "Colour".to_owned() } else { capital(channel) }
 }
 
 /// A table with a row of headings; those that start with `>` are above numbers. Headings are text, rows are HTML.

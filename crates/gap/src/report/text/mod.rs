@@ -1,13 +1,29 @@
-//! What was found, as a person says it.
+//! What was found, as a person says it: all words of a report are made here, from its numbers.
 
+mod channel;
+mod effect;
+mod finding;
 mod number;
 mod place;
+mod poses;
 mod summary;
+mod unobservable;
+mod verdict;
 
-pub(crate) use reality_sim_sensor::text::{digits, percent, rounded, with_sigma};
+pub(crate) use reality_sim_sensor::text::rounded;
+pub use reality_sim_sensor::text::{digits, percent, with_sigma};
 
-pub(crate) use self::{
-    number::{amount, closed, has_moved, in_channel, probability},
-    place::{field_place, picture_place},
-    summary::{Findings, summary},
+pub(crate) use self::number::closed;
+pub use self::{
+    channel::{channel_meaning, channel_scale, channel_title},
+    effect::{deciding_recordings, effect_because, effect_name, effect_size, estimate, library_name, limit},
+    finding::{finding_place, finding_size},
+    number::{amount, probability},
+    poses::{absorbed, reference_source},
+    summary::summary,
+    unobservable::{unobservable_reason, unobservable_remedy},
+    verdict::{verdict_meaning, verdict_word},
 };
+
+/// Unit of the whole gap.
+pub const GAP_UNIT: &str = "noise floors";

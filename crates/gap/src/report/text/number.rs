@@ -2,13 +2,14 @@
 
 use reality_sim_sensor::text::digits;
 
+use super::channel::scale;
+use crate::measurement::quantity::Channel;
+
 /// Chance is not told apart below this.
 const LEAST_PROBABILITY: f64 = 1e-300;
-/// What differs by less than this part is the same.
-const MOVED: f64 = 0.02;
 
 /// "0.03", "1.2·10⁻⁹".
-pub(crate) fn probability(p_value: f64) -> String {
+pub fn probability(p_value: f64) -> String {
     if !p_value.is_finite() {
         return "–".to_owned();
     }
@@ -40,24 +41,9 @@ pub(crate) fn closed(before: f64, after: f64, floor: f64) -> Option<f64> {
     (before > floor && part.is_finite()).then_some(part)
 }
 
-/// Whether a gap is another one than before, not the same up to where lines were found anew.
-pub(crate) fn has_moved(before: f64, after: f64) -> bool {
-    (before - after).abs() > MOVED * before
-}
-
-/// The factor and the unit in which residuals of a channel are shown: logarithms as percent.
-pub(crate) fn in_channel<'a>(channel: &str, unit: &'a str) -> (f64, &'a str) {
-    match (channel, unit) {
-        ("photometry" | "noise" | "sharpness", "1") => (100.0, "%"),
-        (_, "px2") => (1.0, "px²"),
-        (_, "1") => (1.0, ""),
-        _ => (1.0, unit),
-    }
-}
-
-/// A size of a channel's residuals with so many significant digits: "0.13 px²", "7.4 %".
-pub(crate) fn amount(channel: &str, size: f64, unit: &str, significant: i32) -> String {
-    let (factor, unit) = in_channel(channel, unit);
+/// Returns a size that is found in a channel and counted in a unit, with so many significant digits: "0.13 px²", "7.4 %".
+pub fn amount(channel: Channel, size: f64, unit: &str, significant: i32) -> String {
+    let (factor, unit) = scale(channel, unit);
     format!("{} {unit}", digits(factor * size, significant)).trim_end().to_owned()
 }
 

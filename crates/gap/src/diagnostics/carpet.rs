@@ -1,0 +1,72 @@
+//! Carpet, and what hides it.
+
+use std::collections::BTreeMap;
+
+use crate::{
+    diagnostics::detector::FrameResiduals,
+    measurement::quantity::{ColorChannel, Quantity},
+    measurement::scalar::Measurement,
+};
+
+/// The quantity that tells carpet from what hides it.
+const GREEN: Quantity = Quantity::CarpetLevel(ColorChannel::Green);
+/// Carpet is hidden where it is so many standard deviations off.
+const OUTLYING: f64 = 5.0;
+
+/// Returns the blocks of carpet of a frame, each with the residual of its green.
+pub(super) fn blocks<'a>(frame: &'a FrameResiduals<'_>) -> impl Iterator<Item = (&'a Measurement, f64)> {
+    let measured = frame.measurements.iter().zip(frame.values.iter().copied());
+    measured.filter(|(row, value)| row.quantity == GREEN && value.is_finite())
+}
+
+/// Returns the standard deviation of a block's residual; infinite where none was measured.
+pub(super) fn sigma(sigmas: &BTreeMap<Quantity, f64>) -> f64 {
+    sigmas.get(&GREEN).copied().unwrap_or(f64::INFINITY)
+}
+
+/// Whether a block shows something else than carpet.
+pub(super) fn is_hidden(residual: f64, sigma: f64) -> bool {
+    residual.abs() > OUTLYING * sigma
+}
+
+#[cfg(test)]
+pub(super) mod pictures {
+    //! Pictures of carpet for the tests of detectors.
+
+    use glam::DVec2;
+
+    use super::*;
+    use crate::testing::carpet_measurement;
+
+    /// Standard deviation of a block's residual.
+    pub(in super::super) const SIGMA: f64 = 0.05;
+    const SIZE: [u32; 2] = [320, 240];
+
+    /// Pictures of carpet with this residual at a picture's number and a place in fractions of its size.
+    pub(in super::super) fn with_pictures<T>(
+        residual: impl Fn(u32, DVec2) -> f64,
+        judge: impl Fn(&[FrameResiduals<'_>]) -> T,
+    ) -> T {
+        let size = DVec2::new(f64::from(SIZE[0]), f64::from(SIZE[1]));
+        let pixels: Vec<DVec2> =
+            (0..1200).map(|i| 8.0 * DVec2::new(f64::from(i % 40), f64::from(i / 40))).collect();
+        let rows: Vec<Measurement> =
+            pixels.iter().map(|&pixel| carpet_measurement(pixel, pixel / 100.0)).collect();
+        // A little texture, another in every block and picture.
+        let texture =
+            |frame: u32, index: usize| 0.01 * (((index * 31 + frame as usize * 17) % 7) as f64 - 3.0) / 3.0;
+        let frames: Vec<FrameResiduals<'_>> = (0..24)
+            .map(|frame| FrameResiduals {
+                measurements: &rows,
+                values: (0..)
+                    .zip(&pixels)
+                    .map(|(index, pixel)| residual(frame, *pixel / size) + texture(frame, index))
+                    .collect(),
+                time_s: f64::from(frame),
+                camera: DVec2::ZERO,
+                size: SIZE,
+            })
+            .collect();
+        judge(&frames)
+    }
+}

@@ -1,0 +1,88 @@
+//! The verdict, from what was found.
+
+use crate::{
+    diagnostics::finding::Finding,
+    report::data::{EffectReport, Unobservable, Verdict},
+};
+
+/// Returns the answer in one word: what is left unexplained outweighs what was named, and a name that might be another one
+/// outweighs one that is sure.
+pub(crate) fn verdict(
+    effects: &[EffectReport],
+    unexplained: &[Finding],
+    unobservable: &[Unobservable],
+) -> Verdict {
+    if !unexplained.is_empty() {
+        Verdict::Unknown
+    } else if effects.iter().any(|effect| !effect.confusable_with.is_empty()) {
+        Verdict::Confusable
+    } else if !effects.is_empty() {
+        Verdict::Named
+    } else if unobservable.iter().any(|effect| effect.cause.is_of_the_recording()) {
+        Verdict::Inconclusive
+    } else {
+        Verdict::None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        inference::detection_limit::{MissingInput, UnobservableCause},
+        testing::effect_report,
+    };
+
+    const HIDDEN: Finding = Finding::Occluders { share: 0.2 };
+
+    fn sure() -> EffectReport {
+        effect_report("vignetting", 0.4)
+    }
+
+    fn confusable() -> EffectReport {
+        EffectReport { confusable_with: vec!["uneven_illumination".to_owned()], ..sure() }
+    }
+
+    fn unseen(cause: UnobservableCause) -> Unobservable {
+        Unobservable { id: "rolling_shutter".to_owned(), cause }
+    }
+
+    #[test]
+    fn what_is_unexplained_makes_it_unknown_whatever_was_named() {
+        for effects in [vec![], vec![sure()], vec![confusable()]] {
+            assert_eq!(verdict(&effects, &[HIDDEN], &[]), Verdict::Unknown);
+        }
+    }
+
+    #[test]
+    fn one_name_that_might_be_another_makes_all_confusable() {
+        assert_eq!(verdict(&[sure(), confusable()], &[], &[]), Verdict::Confusable);
+    }
+
+    #[test]
+    fn names_that_are_sure_are_named_although_other_effects_cannot_be_seen() {
+        let unseen = unseen(UnobservableCause::CameraAtRest);
+        assert_eq!(verdict(&[sure()], &[], &[unseen]), Verdict::Named);
+    }
+
+    #[test]
+    fn where_nothing_is_named_every_cause_but_a_missing_input_makes_it_inconclusive() {
+        let causes = [
+            UnobservableCause::CameraAtRest,
+            UnobservableCause::RobotAtRest,
+            UnobservableCause::FewViews { views: 3, needed: 8 },
+            UnobservableCause::NotSeparable,
+        ];
+        for cause in causes {
+            assert_eq!(verdict(&[], &[], &[unseen(cause)]), Verdict::Inconclusive, "{cause:?}");
+        }
+        let missing = UnobservableCause::MissingInput { input: MissingInput::Noise };
+        assert_eq!(verdict(&[], &[], &[unseen(missing)]), Verdict::None);
+        assert_eq!(verdict(&[], &[], &[unseen(missing), unseen(causes[0])]), Verdict::Inconclusive);
+    }
+
+    #[test]
+    fn where_nothing_is_found_and_all_can_be_seen_nothing_is_missing() {
+        assert_eq!(verdict(&[], &[], &[]), Verdict::None);
+    }
+}
