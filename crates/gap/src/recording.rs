@@ -5,17 +5,12 @@ use std::{ops::Range, path::PathBuf};
 use image::RgbImage;
 use rayon::prelude::*;
 use reality_sim_core::{
-    pose::{CameraPose, Pose2},
+    pose::{CameraPose, Motion2, Pose2},
     sequence::{Sequence, SequenceError, decode_image},
 };
 use reality_sim_sensor::{Trajectory, TrajectoryError};
 
-use crate::{
-    linear_model::prediction::NominalReflectance,
-    linear_model::residual::Step,
-    linear_model::system::ReferenceKind,
-    thresholds::{RecordingThresholds, Thresholds},
-};
+use crate::thresholds::{RecordingThresholds, Thresholds};
 
 const THRESHOLDS: RecordingThresholds = Thresholds::DEFAULT.recording;
 
@@ -71,13 +66,37 @@ pub enum ReferenceSource {
     Tagged,
 }
 
+/// Which numbers of the reference poses were measured by something else than the pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ReferenceKind {
+    /// All six.
+    Whole,
+    /// Height, pitch and roll; position and heading come from the pictures themselves.
+    Attitude,
+}
+
+/// Linear values of the field's surfaces as the nominal camera records them, 1 at full scale.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct NominalReflectance {
+    pub(crate) line_linear_rgb: [f64; 3],
+    pub(crate) carpet_linear_rgb: [f64; 3],
+}
+
+/// Odometry from a frame to the next one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OdometryStep {
+    /// Time of the next frame, seconds.
+    pub(crate) until_s: f64,
+    pub(crate) odometry: Motion2,
+}
+
 /// One frame to compare.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Frame {
     /// Index in the sequence.
     pub(crate) index: usize,
     pub(crate) time_s: f64,
-    pub(crate) step: Option<Step>,
+    pub(crate) step: Option<OdometryStep>,
 }
 
 /// The frames of a sequence that are compared.
@@ -219,9 +238,9 @@ fn scene(sequence: &Sequence) -> Option<NominalReflectance> {
 }
 
 /// The odometry from a frame to the next one.
-fn step(sequence: &Sequence, index: usize) -> Option<Step> {
+fn step(sequence: &Sequence, index: usize) -> Option<OdometryStep> {
     let (from, to) = (&sequence.frames[index], sequence.frames.get(index + 1)?);
     let (before, after): (Pose2, Pose2) = (from.odometry?, to.odometry?);
     (to.timestamp_s - from.timestamp_s <= THRESHOLDS.longest_step_s)
-        .then_some(Step { until_s: to.timestamp_s, odometry: before.motion_to(after) })
+        .then_some(OdometryStep { until_s: to.timestamp_s, odometry: before.motion_to(after) })
 }

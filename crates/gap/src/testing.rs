@@ -11,7 +11,7 @@ use crate::{
     linear_model::normal_equations::NormalEquations,
     linear_model::system::LinearSystem,
     measurement::quantity::{ColorChannel, Quantity},
-    measurement::scalar::Measurement,
+    measurement::scalar::{Measurement, Subject},
     recording::ReferenceSource,
     report::data::{EffectReport, Estimate, Gap, PosesReport, Report, Verdict},
 };
@@ -32,6 +32,7 @@ impl Noise {
 /// A measurement of a quantity, seen from straight above.
 pub(crate) fn measurement(quantity: Quantity) -> Measurement {
     Measurement {
+        subject: Subject::OdometryStep,
         quantity,
         measured: 0.0,
         sigma: 0.0,

@@ -1,5 +1,7 @@
 //! Bands of brightness that roll over the picture, as lamps that flicker make them with a rolling shutter.
 
+use reality_sim_core::statistics::median;
+
 use crate::{
     diagnostics::{
         carpet,
@@ -8,7 +10,6 @@ use crate::{
     },
     inference::gain::sum_of,
     inference::hypothesis_test::two_sided,
-    linear_model::system::median,
     measurement::scalar::Measurement,
     thresholds::Thresholds,
 };
@@ -59,7 +60,10 @@ fn band_medians(frame: &FrameResiduals<'_>, place: fn(&Measurement, [u32; 2]) ->
         let band = (place(row, frame.size) * BANDS as f64).clamp(0.0, BANDS as f64 - 1.0);
         values[band as usize].push(value);
     }
-    values.iter_mut().map(|values| (values.len() >= LEAST_BLOCKS).then(|| median(values))).collect()
+    values
+        .iter_mut()
+        .map(|values| (values.len() >= LEAST_BLOCKS).then(|| median(values.iter().copied())))
+        .collect()
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {

@@ -7,7 +7,7 @@ use reality_sim_core::field::{Curve, FieldDimensions};
 use crate::{
     diagnostics::detector::{Detector, FitResiduals},
     diagnostics::finding::{FieldLine, Finding},
-    measurement::frame::{FrameMeasurements, Line},
+    measurement::{frame::FrameMeasurements, lines::Line},
 };
 
 /// A line is missing where less than this part of its pieces is found, as against all lines.
@@ -122,7 +122,7 @@ mod tests {
     use reality_sim_core::field::preset_names;
 
     use super::*;
-    use crate::{measurement::frame::ExpectedLine, measurement::line_profile::Profile};
+    use crate::{measurement::line_profile::Profile, measurement::lines::ExpectedLine};
 
     const HALF_WIDTH_PX: f64 = 2.0;
 

@@ -1,4 +1,4 @@
-//! A recording measured where a model expects things, and the model linearised there.
+//! A recording measured where a model predicts lines and carpet, and the model's predictions linearised there.
 
 use nalgebra::Vector6;
 use rayon::prelude::*;
@@ -6,22 +6,25 @@ use reality_sim_core::{pose::Motion2, sequence::SequenceError};
 use reality_sim_sensor::{Chain, Changes, Model, ModelError};
 
 use crate::{
-    linear_model::column::ColumnIndex,
-    linear_model::initial_values::{starting_values, with_value},
-    linear_model::nuisance::Nuisance,
-    linear_model::odometry_steps::around,
-    linear_model::parameters::FittedParameter,
-    linear_model::prediction::{Rounding, pose_gradient, reported},
-    linear_model::residual::{Context, expected, measured},
-    linear_model::system::LinearizedFrame,
-    measurement::frame::{FrameCamera, FrameMeasurements, MeasurementConfig, measure_frame},
-    measurement::quantity::Quantity,
-    measurement::scalar::Measurement,
+    linear_model::{
+        column::ColumnIndex,
+        linearized_frame::LinearizedFrame,
+        nuisance::Nuisance,
+        odometry_steps::around,
+        parameters::FittedParameter,
+        perturbed_model::PerturbedModel,
+        pose_gradient::pose_gradient,
+        prediction::{Nominal, Predictor},
+        rounding::Rounding,
+    },
+    measurement::{
+        camera::FrameCamera,
+        frame::{FrameMeasurements, MeasurementConfig, measure_frame},
+        quantity::Quantity,
+        scalar::{Measurement, component},
+    },
     recording::{Frame, Recording},
 };
-
-/// Numbers of a step of the odometry: forward, left, turn.
-const STEP: usize = 3;
 
 /// Why a recording cannot be measured.
 #[derive(Debug, thiserror::Error)]
@@ -45,7 +48,7 @@ pub enum MeasureError {
     },
 }
 
-/// Refuses a model that has the camera on the ground or under it.
+/// Returns an error if the model puts the camera on the ground or under it.
 pub(crate) fn check(recording: &Recording<'_>, model: &Model) -> Result<(), MeasureError> {
     let chain = Chain::new(&recording.sequence.setup, &recording.sequence.field, model)?;
     for frame in &recording.frames {
@@ -57,17 +60,17 @@ pub(crate) fn check(recording: &Recording<'_>, model: &Model) -> Result<(), Meas
     Ok(())
 }
 
-/// Looks at every frame where the model expects things.
+/// Measures every frame where the model predicts lines and carpet; lines up to `search_px` from there.
 pub(crate) fn measure_frames(
     recording: &Recording<'_>,
     model: &Model,
     search_px: f64,
 ) -> Result<Vec<FrameMeasurements>, MeasureError> {
     let chain = Chain::new(&recording.sequence.setup, &recording.sequence.field, model)?;
-    let looking = MeasurementConfig { search_px, gamma: recording.gamma() };
+    let config = MeasurementConfig { search_px, gamma: recording.gamma() };
     let one = |frame: &Frame| -> Result<FrameMeasurements, MeasureError> {
         let (picture, bytes) = recording.picture(frame)?;
-        Ok(measure_frame(&frame_camera(&chain, recording, frame), &picture, &bytes, looking))
+        Ok(measure_frame(&frame_camera(&chain, recording, frame), &picture, &bytes, config))
     };
     recording.frames.par_iter().map(one).collect()
 }
@@ -76,127 +79,151 @@ fn frame_camera<'a>(chain: &'a Chain, recording: &'a Recording<'_>, frame: &Fram
     FrameCamera::new(chain, &recording.trajectory, frame.time_s)
 }
 
-/// Compares what was seen with a model, and finds how the comparison changes with each column; behind them, with each
-/// tolerance.
+/// Returns the residuals of every frame with their Jacobian: the fitted parameters' columns by forward differences, behind
+/// them the nuisance parameters'.
 pub(crate) fn linearise(
     recording: &Recording<'_>,
-    looks: &[FrameMeasurements],
+    measured: &[FrameMeasurements],
     model: &Model,
-    columns: &[FittedParameter],
-    tolerances: &[Nuisance],
+    parameters: &[FittedParameter],
+    nuisances: &[Nuisance],
 ) -> Result<Vec<LinearizedFrame>, MeasureError> {
     let setup = &recording.sequence.setup;
     let photometry = setup.photometry;
-    let linear = Linear {
+    let perturbed = parameters.iter().map(|parameter| PerturbedModel::new(recording, model, parameter));
+    let linearization = Linearization {
         recording,
         chain: Chain::new(setup, &recording.sequence.field, model)?,
-        columns,
-        shifted: columns
-            .iter()
-            .map(|column| Shifted::new(recording, model, column))
-            .collect::<Result<_, _>>()?,
-        tolerances,
-        context: Context {
+        parameters,
+        perturbed: perturbed.collect::<Result<_, _>>()?,
+        nuisances,
+        nominal: Nominal {
             gamma: recording.gamma(),
-            scene: recording.scene.as_ref(),
+            reflectance: recording.scene.as_ref(),
             noise: photometry.is_some_and(|p| p.noise_shot.is_some() || p.noise_read.is_some()),
             sharpness: photometry.is_some_and(|p| p.psf_sigma_px.is_some()),
         },
     };
     let steps = around(recording, &recording.frames.iter().collect::<Vec<_>>());
-    let frames = recording.frames.par_iter().zip(looks).zip(&steps);
-    Ok(frames.map(|((frame, look), about)| linear.frame(frame, look, *about)).collect())
+    let frames = recording.frames.par_iter().zip(measured).zip(&steps);
+    Ok(frames.map(|((frame, measured), motion)| linearization.frame(frame, measured, *motion)).collect())
 }
 
-/// What frames are compared with.
-struct Linear<'a> {
+/// A model and its perturbations, to linearise frames with.
+struct Linearization<'a> {
     recording: &'a Recording<'a>,
     chain: Chain,
-    columns: &'a [FittedParameter],
-    /// For each column.
-    shifted: Vec<Shifted>,
-    tolerances: &'a [Nuisance],
-    context: Context<'a>,
+    parameters: &'a [FittedParameter],
+    /// For each parameter.
+    perturbed: Vec<PerturbedModel>,
+    nuisances: &'a [Nuisance],
+    nominal: Nominal<'a>,
 }
 
-impl Linear<'_> {
-    /// `about` is how the robot moves at about this time.
-    fn frame(&self, frame: &Frame, look: &FrameMeasurements, about: Option<Motion2>) -> LinearizedFrame {
-        let rows = measured(look, frame.step, self.context);
-        let rounding = Rounding::new(&look.noise_steps);
-        let expect = |chain: &Chain| {
-            expected(&frame_camera(chain, self.recording, frame), look, &rounding, frame.step, self.context)
+impl Linearization<'_> {
+    /// `motion` is how the robot moves at about the time of the frame's step of the odometry.
+    fn frame(&self, frame: &Frame, measured: &FrameMeasurements, motion: Option<Motion2>) -> LinearizedFrame {
+        let mut measurements = measured.measurements(self.nominal.gamma);
+        measurements.extend(frame.step.into_iter().flat_map(|step| Measurement::of_odometry(step.odometry)));
+        let rounding = Rounding::new(&measured.noise_steps);
+        let predict = |chain: &Chain| {
+            let camera = frame_camera(chain, self.recording, frame);
+            let step_until_s = frame.step.map(|step| step.until_s);
+            let predictor = Predictor {
+                camera,
+                frame: measured,
+                rounding: &rounding,
+                step_until_s,
+                nominal: self.nominal,
+            };
+            predictor.predict(&measurements)
         };
-        let now = expect(&self.chain);
-        let residuals = rows.iter().zip(&now).map(|(row, now)| row.measured - now).collect();
-        let mut jacobian: Vec<Vec<(ColumnIndex, f64)>> = vec![Vec::new(); rows.len()];
-        let mut put = |column: usize, row: usize, change: f64| {
-            if change.is_finite() && change != 0.0 {
-                jacobian[row].push((ColumnIndex(column), change));
-            }
-        };
-        for (index, (column, shifted)) in self.columns.iter().zip(&self.shifted).enumerate() {
-            let changes = column.effect().about().changes;
-            if changes == Changes::Odometry {
-                let step = about.and_then(|about| self.odometry_change(shifted, frame, about));
-                // Behind all that was seen in the picture.
-                for (part, change) in step.into_iter().flatten().enumerate() {
-                    put(index, rows.len() - STEP + part, change);
-                }
-                continue;
-            }
-            for (row, (then, now)) in expect(&shifted.chain).iter().zip(&now).enumerate() {
-                if changes != Changes::Noise || rows[row].quantity == Quantity::NoiseVariance {
-                    put(index, row, (then - now) / shifted.step);
-                }
-            }
+        let predicted = predict(&self.chain);
+        let mut jacobian = Jacobian::new(measurements.len());
+        for (column, (parameter, perturbed)) in (0..).zip(self.parameters.iter().zip(&self.perturbed)) {
+            let derivatives = if parameter.effect().about().changes == Changes::Odometry {
+                self.odometry_derivatives(perturbed, frame, motion, &measurements)
+            } else {
+                differences(parameter, &measurements, &predicted, &predict(&perturbed.chain), perturbed.step)
+            };
+            jacobian.push(ColumnIndex(column), derivatives);
         }
-        for (index, tolerance) in self.tolerances.iter().enumerate() {
-            for (row, now) in now.iter().enumerate() {
-                put(self.columns.len() + index, row, tolerance.change(&rows[row], *now));
-            }
+        for (column, nuisance) in (self.parameters.len()..).zip(self.nuisances) {
+            let pairs = measurements.iter().zip(&predicted);
+            let derivatives = pairs.map(|(measurement, now)| nuisance.change(measurement, *now));
+            jacobian.push(ColumnIndex(column), derivatives.collect());
         }
-        let pose = self.pose_changes(frame, &rows);
-        LinearizedFrame { measurements: rows, residuals, jacobian, pose }
+        let residuals = measurements
+            .iter()
+            .zip(&predicted)
+            .map(|(measurement, now)| measurement.measured - now)
+            .collect();
+        let pose = self.pose_gradients(frame, &measurements);
+        LinearizedFrame { measurements, residuals, jacobian: jacobian.rows, pose }
     }
 
-    /// Change of the three numbers of a frame's step with a column of the odometry.
-    fn odometry_change(&self, shifted: &Shifted, frame: &Frame, about: Motion2) -> Option<[f64; STEP]> {
-        let duration_s = frame.step?.until_s - frame.time_s;
-        let [now, then] = [&self.chain, &shifted.chain].map(|chain| reported(chain, about, duration_s));
-        Some(std::array::from_fn(|part| (then[part] - now[part]) / shifted.step))
+    /// Derivatives of all measurements in a parameter of the odometry, at the robot's motion around the step.
+    fn odometry_derivatives(
+        &self,
+        perturbed: &PerturbedModel,
+        frame: &Frame,
+        motion: Option<Motion2>,
+        measurements: &[Measurement],
+    ) -> Vec<f64> {
+        let Some((motion, step)) = motion.zip(frame.step) else { return vec![0.0; measurements.len()] };
+        let duration_s = step.until_s - frame.time_s;
+        let [now, then] = [&self.chain, &perturbed.chain].map(|chain| chain.odometry(motion, duration_s));
+        let derivative = |measurement: &Measurement| {
+            let of = |motion: Motion2| component(motion, measurement.quantity);
+            (of(then) - of(now)) / perturbed.step
+        };
+        measurements.iter().map(derivative).collect()
     }
 
     /// See [`LinearizedFrame::pose`].
-    fn pose_changes(&self, frame: &Frame, rows: &[Measurement]) -> Vec<Vector6<f64>> {
-        let here = frame_camera(&self.chain, self.recording, frame);
-        let change = |row: &Measurement| {
-            let is_line = row.quantity == Quantity::LineOffset;
-            let gradient = is_line.then(|| pose_gradient(&here, row.ground, row.normal));
+    fn pose_gradients(&self, frame: &Frame, measurements: &[Measurement]) -> Vec<Vector6<f64>> {
+        let camera = frame_camera(&self.chain, self.recording, frame);
+        let gradient = |measurement: &Measurement| {
+            let is_line = measurement.quantity == Quantity::LineOffset;
+            let gradient = is_line.then(|| pose_gradient(&camera, measurement.ground, measurement.normal));
             gradient.flatten().map_or_else(Vector6::zeros, Vector6::from)
         };
-        rows.iter().map(change).collect()
+        measurements.iter().map(gradient).collect()
     }
 }
 
-/// The model with one parameter changed a little.
-struct Shifted {
-    chain: Chain,
-    /// By how much the column's coordinate changed.
+/// Forward differences of all predictions in a parameter.
+fn differences(
+    parameter: &FittedParameter,
+    measurements: &[Measurement],
+    now: &[f64],
+    then: &[f64],
     step: f64,
+) -> Vec<f64> {
+    let noise_only = parameter.effect().about().changes == Changes::Noise;
+    let difference = |((measurement, now), then): ((&Measurement, &f64), &f64)| {
+        let counts = !noise_only || measurement.quantity == Quantity::NoiseVariance;
+        if counts { (then - now) / step } else { 0.0 }
+    };
+    measurements.iter().zip(now).zip(then).map(difference).collect()
 }
 
-impl Shifted {
-    fn new(recording: &Recording<'_>, model: &Model, column: &FittedParameter) -> Result<Self, ModelError> {
-        let parameter = column.parameter();
-        let values = model
-            .values(column.effect().id())
-            .map_or_else(|| starting_values(column.effect(), recording), <[f64]>::to_vec);
-        let value = values[column.parameter];
-        // Inwards at the end of the range.
-        let step = if value + parameter.step > parameter.range[1] { -parameter.step } else { parameter.step };
-        let shifted = with_value(model, column.effect(), &values, column.parameter, value + step);
-        let chain = Chain::new(&recording.sequence.setup, &recording.sequence.field, &shifted)?;
-        Ok(Self { chain, step: column.coordinate(value + step) - column.coordinate(value) })
+/// Sparse rows of a Jacobian, filled column by column.
+struct Jacobian {
+    rows: Vec<Vec<(ColumnIndex, f64)>>,
+}
+
+impl Jacobian {
+    fn new(rows: usize) -> Self {
+        Self { rows: vec![Vec::new(); rows] }
+    }
+
+    /// Adds a column; derivatives that are zero or not finite are left out.
+    fn push(&mut self, column: ColumnIndex, derivatives: Vec<f64>) {
+        for (row, derivative) in self.rows.iter_mut().zip(derivatives) {
+            if derivative.is_finite() && derivative != 0.0 {
+                row.push((column, derivative));
+            }
+        }
     }
 }

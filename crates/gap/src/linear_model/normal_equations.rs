@@ -1,27 +1,30 @@
-//! Normal equations of some rows, of those columns only that they change with: of hundreds of patches of carpet a picture shows
-//! a few, and a place on the field one.
+//! Normal equations of some measurements, stored for the columns that these depend on: of hundreds of patches of carpet a
+//! picture shows a few, and a place on the field one.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::linear_model::column::ColumnIndex;
 
-/// `A = J̃ᵀ W J` and `g = J̃ᵀ W r` of some rows, see [`crate::linear_model::system`].
+/// Prior precision of a column, in units of its scale.
+pub(crate) const PRIOR: f64 = 1.0;
+
+/// `A = J̃ᵀ W J` and `g = J̃ᵀ W r` of some measurements, see [`crate::linear_model::system`].
 #[derive(Debug, Clone)]
 pub(crate) struct NormalEquations {
-    /// Of all columns those that are here, in order.
+    /// The columns that are stored, in order.
     columns: Vec<ColumnIndex>,
     a: DMatrix<f64>,
     g: DVector<f64>,
 }
 
 impl NormalEquations {
-    /// Of no rows yet. `columns` are in order.
+    /// Normal equations of no measurements yet, for these columns, in order.
     pub(crate) fn zero(columns: Vec<ColumnIndex>) -> Self {
         let count = columns.len();
         Self { columns, a: DMatrix::zeros(count, count), g: DVector::zeros(count) }
     }
 
-    /// Of several sums together.
+    /// The sum of several normal equations.
     pub(crate) fn together<'a>(sums: impl Iterator<Item = &'a Self> + Clone) -> Self {
         let mut columns: Vec<ColumnIndex> = sums.clone().flat_map(|sums| &sums.columns).copied().collect();
         columns.sort_unstable();
@@ -34,16 +37,17 @@ impl NormalEquations {
         all
     }
 
-    /// Where a column is in these sums; it has to be among them.
+    /// Position of a column, which has to be stored, among the stored ones.
     pub(crate) fn place(&self, column: ColumnIndex) -> usize {
         self.columns.partition_point(|&other| other < column)
     }
 
+    /// Whether nothing was added.
     pub(crate) fn is_empty(&self) -> bool {
         self.g.iter().all(|value| *value == 0.0)
     }
 
-    /// Adds a row: at one place `changed` (with the pose's part taken out) against the row's whole change `plain`.
+    /// Adds the part of one measurement that has this derivative `changed` in `J̃` at one position; `plain` is its row of `J`.
     pub(crate) fn add(
         &mut self,
         place: usize,
@@ -58,7 +62,7 @@ impl NormalEquations {
         }
     }
 
-    /// Adds these sums to those of all columns.
+    /// Adds these to dense normal equations of all columns.
     pub(crate) fn add_to(&self, a: &mut DMatrix<f64>, g: &mut DVector<f64>) {
         let places: Vec<usize> = self.columns.iter().map(|column| column.0).collect();
         self.put(&places, a, g);
@@ -73,7 +77,7 @@ impl NormalEquations {
         }
     }
 
-    /// `g − A δ`, for all columns.
+    /// Score `g − A δ` in all columns.
     pub(crate) fn score(&self, delta: &DVector<f64>) -> DVector<f64> {
         let left = &self.g - &self.a * self.of(delta);
         let mut score = DVector::zeros(delta.len());
@@ -83,7 +87,7 @@ impl NormalEquations {
         score
     }
 
-    /// `gᵀ δ − ½ δᵀ A δ`: what moving by this gains, in log-likelihood.
+    /// Gain in log-likelihood by a change of the columns: `gᵀ δ − ½ δᵀ A δ`.
     pub(crate) fn gain(&self, delta: &DVector<f64>) -> f64 {
         let delta = self.of(delta);
         self.g.dot(&delta) - 0.5 * delta.dot(&(&self.a * &delta))
@@ -93,7 +97,7 @@ impl NormalEquations {
         DVector::from_iterator(self.columns.len(), self.columns.iter().map(|column| delta[column.0]))
     }
 
-    /// Of all columns there are.
+    /// Dense normal equations of all columns.
     #[cfg(test)]
     pub(crate) fn whole(a: DMatrix<f64>, g: DVector<f64>) -> Self {
         Self { columns: ColumnIndex::first(g.len()).collect(), a, g }

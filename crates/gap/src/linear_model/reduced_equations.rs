@@ -7,8 +7,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::{
-    linear_model::column::ColumnIndex, linear_model::normal_equations::NormalEquations,
-    linear_model::system::PRIOR,
+    linear_model::column::ColumnIndex,
+    linear_model::normal_equations::{NormalEquations, PRIOR},
 };
 
 /// Where a fit leaves more than this part of what was unknown of a column, it cannot be seen.

@@ -1,399 +1,121 @@
-//! The linearised model as normal equations, frame by frame, with the poses' errors projected out.
+//! The linearised model of a recording as normal equations, frame by frame, with the poses' errors marginalised.
 //!
-//! In a frame, residuals are `r = J δ + P b + ε`: `J` is the change with the effects' parameters, `P` that of the
-//! lines' places with the pose, `b ~ N(0, Λ⁻¹)` the reference pose's error. Marginalising `b` leaves `J̃ᵀ W r = A δ`
-//! with `J̃ = J − P (Pᵀ W P + Λ)⁻¹ Pᵀ W J` and `A = J̃ᵀ W J`: all later fits, tests and comparisons need only the sums
-//! of `A` and `g = J̃ᵀ W r` over some frames, or over some part of the field.
+//! In a frame, residuals are `r = J δ + P b + ε`: `J` is the Jacobian of the predictions in the parameters, `P` that of the
+//! lines' offsets in the pose, and `b ~ N(0, Λ⁻¹)` the reference pose's error. Marginalising `b` leaves `J̃ᵀ W r = A δ`
+//! with `J̃ = J − P (Pᵀ W P + Λ)⁻¹ Pᵀ W J` and `A = J̃ᵀ W J`. All later fits, tests and comparisons need no more than the
+//! sums of `A` and `g = J̃ᵀ W r` over some frames, or over some part of the field.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use nalgebra::{DMatrix, DVector, Matrix6, Vector6};
-use rayon::prelude::*;
+use nalgebra::{DMatrix, DVector};
 
 use crate::{
-    linear_model::column::ColumnIndex,
-    linear_model::normal_equations::NormalEquations,
-    measurement::quantity::{Channel, Quantity},
-    measurement::scalar::Measurement,
+    linear_model::{
+        assembly::{by_cell, by_frame, by_view},
+        normal_equations::NormalEquations,
+        pose_error::pose_sigmas,
+        robust_weights::{all_of, first_residuals, sigmas_by_quantity},
+    },
+    measurement::quantity::Quantity,
+    recording::ReferenceKind,
 };
 
-/// Residuals beyond this many standard deviations count nothing (Tukey's biweight).
-const TUKEY: f64 = 5.0;
-/// Rounds in which weights, standard deviations and the poses' scatter are found.
+pub(crate) use crate::linear_model::{
+    fitted_residuals::FittedResiduals,
+    linearized_frame::LinearizedFrame,
+    normal_equations::PRIOR,
+    robust_weights::{INDEPENDENT, weigh},
+};
+
+/// Iterations of reweighted least squares: weights, standard deviations and poses' errors in turn.
 const ROUNDS: usize = 4;
-/// Numbers of one frame are not independent: they are worth this part of as many that are.
-pub(crate) const INDEPENDENT: f64 = 0.15;
-/// Standard deviations of poses' errors at first: rotations (radians), positions (metres).
-const WIDE: [f64; 2] = [0.01, 0.02];
-/// Those of usual motion capture, which count where the pictures tell little, with this part of a recording's weight.
-const USUAL: [f64; 2] = [0.0025, 0.003];
-const USUAL_WEIGHT: f64 = 0.3;
-/// Poses are never taken to be better than this.
-const NARROW: [f64; 2] = [2e-4, 5e-4];
-/// Side of a cell of the field, metres.
-const CELL_M: f64 = 0.5;
-/// Prior precision of a parameter in units of its range.
-pub(crate) const PRIOR: f64 = 1.0;
 
-/// A frame's rows with their derivatives.
-#[derive(Debug, Clone)]
-pub(crate) struct LinearizedFrame {
-    pub(crate) measurements: Vec<Measurement>,
-    /// Measured minus expected; not a number where there is nothing to compare.
-    pub(crate) residuals: Vec<f64>,
-    /// Change of what is expected with the columns, row by row: the columns that it changes with.
-    pub(crate) jacobian: Vec<Vec<(ColumnIndex, f64)>>,
-    /// Change of a line's offset with the pose, see [`crate::linear_model::prediction::pose_gradient`]; zero for other rows.
-    pub(crate) pose: Vec<Vector6<f64>>,
-}
-
-impl LinearizedFrame {
-    /// Compares nothing of a channel.
-    pub(crate) fn leave_out(&mut self, channel: Channel) {
-        for (row, residual) in self.measurements.iter().zip(&mut self.residuals) {
-            if row.quantity.channel() == channel {
-                *residual = f64::NAN;
-            }
-        }
-    }
-}
-
-/// Whether poses were measured by something else than the pictures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ReferenceKind {
-    /// All six numbers.
-    Whole,
-    /// Place and heading come from the pictures themselves: they are left free.
-    Attitude,
-}
-
-/// The whole system.
+/// Normal equations of a recording.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearSystem {
-    /// Number of columns: the effects' and, behind them, the tolerances'.
+    /// Number of columns: the fitted parameters' and, behind them, the nuisance parameters'.
     pub(crate) size: usize,
     pub(crate) frames: Vec<NormalEquations>,
-    /// The same sums by view: frames in a row from one place show the same errors again and again.
+    /// Normal equations by view: successive frames from one place repeat the same errors, and form one cluster.
     pub(crate) views: Vec<NormalEquations>,
-    /// The same sums by cell of the field.
+    /// Normal equations by cell of the field.
     pub(crate) cells: Vec<NormalEquations>,
-    /// Standard deviations of a row.
+    /// Standard deviations of residuals.
     pub(crate) sigmas: BTreeMap<Quantity, f64>,
-    /// Standard deviations of the poses' errors, see [`crate::linear_model::prediction::pose_gradient`].
+    /// Standard deviations of the poses' errors, in the order of
+    /// [`crate::linear_model::pose_gradient::pose_gradient`].
     pub(crate) pose_sigmas: [f64; 6],
-    /// Weights of all rows, frame by frame: 0 for what is no measurement.
+    /// Weights of all measurements, frame by frame; 0 for outliers and what was not measured.
     pub(crate) weights: Vec<Vec<f64>>,
 }
 
 impl LinearSystem {
+    /// Assembles the normal equations by iteratively reweighted least squares. `views` gives each frame's view.
     pub(crate) fn new(
         frames: &[&LinearizedFrame],
         size: usize,
         reference: ReferenceKind,
         views: &[usize],
     ) -> Self {
-        let first = first_residuals(frames);
-        let mut sigmas = group_sigmas(all_of(frames, first.iter()));
-        let mut weights: Vec<Vec<f64>> =
-            frames.iter().zip(&first).map(|(frame, first)| weigh(frame, first, &sigmas)).collect();
-        let mut pose_sigmas = pose_sigmas(None, reference);
+        let mut estimate = Weighting::new(frames, &first_residuals(frames), pose_sigmas(None, reference));
         for _ in 0..ROUNDS {
-            let (sums, _) = by_frame(frames, &weights, &pose_sigmas);
-            let all = solve(&sums, size);
-            let left: Vec<FittedResiduals> = frames
-                .iter()
-                .zip(&weights)
-                .map(|(frame, weights)| FittedResiduals::new(frame, weights, &all, &pose_sigmas))
-                .collect();
-            sigmas = group_sigmas(all_of(frames, left.iter().map(|left| &left.residuals)));
-            weights = frames
-                .iter()
-                .zip(&left)
-                .map(|(frame, left)| weigh(frame, &left.residuals, &sigmas))
-                .collect();
-            pose_sigmas = self::pose_sigmas(Some(&left), reference);
+            estimate = estimate.improved(frames, size, reference);
         }
-        let (sums, projections) = by_frame(frames, &weights, &pose_sigmas);
+        let Weighting { sigmas, weights, pose_sigmas } = estimate;
+        let (equations, projections) = by_frame(frames, &weights, &pose_sigmas);
         let cells = by_cell(frames, &weights, &projections);
-        let views = by_view(&sums, views);
-        Self { size, frames: sums, views, cells, sigmas, pose_sigmas, weights }
+        let views = by_view(&equations, views);
+        Self { size, frames: equations, views, cells, sigmas, pose_sigmas, weights }
     }
 }
 
-/// What a fit leaves of a frame.
-pub(crate) struct FittedResiduals {
-    pub(crate) residuals: Vec<f64>,
-    /// The pose's error, and how well that is known: its variances.
-    pose: Vector6<f64>,
-    pose_variance: Vector6<f64>,
+/// Standard deviations and weights, found in turn with the fit that they are used in.
+struct Weighting {
+    sigmas: BTreeMap<Quantity, f64>,
+    weights: Vec<Vec<f64>>,
+    pose_sigmas: [f64; 6],
 }
 
-impl FittedResiduals {
-    pub(crate) fn new(
-        frame: &LinearizedFrame,
-        weights: &[f64],
-        delta: &DVector<f64>,
-        pose_sigmas: &[f64; 6],
-    ) -> Self {
-        let change = |row: &Vec<(ColumnIndex, f64)>| {
-            row.iter().map(|(column, value)| value * delta[column.0]).sum::<f64>()
-        };
-        let mut residuals: Vec<f64> = frame
-            .residuals
+impl Weighting {
+    /// Weights by the residuals of each frame.
+    fn new(frames: &[&LinearizedFrame], residuals: &[Vec<f64>], pose_sigmas: [f64; 6]) -> Self {
+        let sigmas = sigmas_by_quantity(all_of(frames, residuals.iter()));
+        let weights =
+            frames.iter().zip(residuals).map(|(frame, residuals)| weigh(frame, residuals, &sigmas)).collect();
+        Self { sigmas, weights, pose_sigmas }
+    }
+
+    /// Weights by the residuals of a fit with these ones.
+    fn improved(&self, frames: &[&LinearizedFrame], size: usize, reference: ReferenceKind) -> Self {
+        let (equations, _) = by_frame(frames, &self.weights, &self.pose_sigmas);
+        let delta = solve(&equations, size);
+        let fits: Vec<FittedResiduals> = frames
             .iter()
-            .zip(&frame.jacobian)
-            .map(|(residual, row)| residual - change(row))
+            .zip(&self.weights)
+            .map(|(frame, weights)| FittedResiduals::new(frame, weights, &delta, &self.pose_sigmas))
             .collect();
-        let (mut normal, mut gradient) = (prior(pose_sigmas), Vector6::zeros());
-        for ((pose, &weight), residual) in frame.pose.iter().zip(weights).zip(&residuals) {
-            if weight > 0.0 {
-                normal.ger(weight, pose, pose, 1.0);
-                gradient += weight * residual * pose;
-            }
-        }
-        // A sum of squares and a prior: positive definite but for rounding.
-        let covariance = normal.cholesky().map_or_else(Matrix6::zeros, |normal| normal.inverse());
-        let pose = covariance * gradient;
-        for (residual, row) in residuals.iter_mut().zip(&frame.pose) {
-            *residual -= row.dot(&pose);
-        }
-        Self { residuals, pose, pose_variance: covariance.diagonal() }
+        let pose_sigmas = pose_sigmas(Some(&fits), reference);
+        let residuals: Vec<Vec<f64>> = fits.into_iter().map(|fit| fit.residuals).collect();
+        Self::new(frames, &residuals, pose_sigmas)
     }
 }
 
-fn prior(sigmas: &[f64; 6]) -> Matrix6<f64> {
-    Matrix6::from_diagonal(&Vector6::from(sigmas.map(|sigma| sigma.powi(-2))))
-}
-
-/// Least squares over all columns, each held by its prior.
-fn solve(sums: &[NormalEquations], size: usize) -> DVector<f64> {
+/// Least squares over all columns, each with its prior `N(0, 1 / PRIOR)`.
+fn solve(equations: &[NormalEquations], size: usize) -> DVector<f64> {
     let (mut a, mut g) = (DMatrix::identity(size, size) * PRIOR, DVector::zeros(size));
-    sums.iter().for_each(|sums| sums.add_to(&mut a, &mut g));
+    equations.iter().for_each(|equations| equations.add_to(&mut a, &mut g));
     a.cholesky().map_or_else(|| DVector::zeros(size), |held| held.solve(&g))
-}
-
-/// Sums of each frame, and the pose's change in it.
-fn by_frame(
-    frames: &[&LinearizedFrame],
-    weights: &[Vec<f64>],
-    pose_sigmas: &[f64; 6],
-) -> (Vec<NormalEquations>, Vec<Projection>) {
-    let of_frame = |(frame, weights): (&&LinearizedFrame, &Vec<f64>)| {
-        let projection = Projection::new(frame, weights, pose_sigmas);
-        let rows: Vec<usize> = (0..frame.measurements.len()).collect();
-        (sums_of(&[Part { frame, weights, projection: &projection, rows }]), projection)
-    };
-    frames.par_iter().zip(weights).map(of_frame).unzip()
-}
-
-fn by_view(frames: &[NormalEquations], views: &[usize]) -> Vec<NormalEquations> {
-    let count = views.iter().max().map_or(0, |last| last + 1);
-    let of_view = |view: usize| {
-        let frames = frames.iter().zip(views).filter(move |(_, of)| **of == view);
-        NormalEquations::together(frames.map(|(frame, _)| frame))
-    };
-    (0..count).map(of_view).filter(|sums| !sums.is_empty()).collect()
-}
-
-/// Frames, by their indices, with some of their rows.
-type RowsOfFrames = Vec<(usize, Vec<usize>)>;
-
-fn by_cell(
-    frames: &[&LinearizedFrame],
-    weights: &[Vec<f64>],
-    projections: &[Projection],
-) -> Vec<NormalEquations> {
-    // In each cell the frames that see it, with their rows.
-    let mut members: BTreeMap<(i32, i32), RowsOfFrames> = BTreeMap::new();
-    for (index, frame) in frames.iter().enumerate() {
-        for (row, _) in frame.measurements.iter().enumerate().filter(|(_, row)| !row.quantity.is_odometry()) {
-            let cell = (frame.measurements[row].ground / CELL_M).floor();
-            let lists = members.entry((cell.x as i32, cell.y as i32)).or_default();
-            match lists.last_mut() {
-                Some((last, rows)) if *last == index => rows.push(row),
-                _ => lists.push((index, vec![row])),
-            }
-        }
-    }
-    let of_cell = |lists: RowsOfFrames| {
-        let part = |(index, rows): (usize, Vec<usize>)| Part {
-            frame: frames[index],
-            weights: &weights[index],
-            projection: &projections[index],
-            rows,
-        };
-        sums_of(&lists.into_iter().map(part).collect::<Vec<_>>())
-    };
-    members.into_values().collect::<Vec<_>>().into_par_iter().map(of_cell).collect()
-}
-
-/// `(Pᵀ W P + Λ)⁻¹ Pᵀ W J`: the pose's change that imitates each column, for those that move lines.
-struct Projection {
-    /// In order.
-    columns: Vec<ColumnIndex>,
-    changes: Vec<Vector6<f64>>,
-}
-
-impl Projection {
-    fn new(frame: &LinearizedFrame, weights: &[f64], pose_sigmas: &[f64; 6]) -> Self {
-        let mut normal = prior(pose_sigmas);
-        let mut cross: BTreeMap<ColumnIndex, Vector6<f64>> = BTreeMap::new();
-        for (row, (pose, &weight)) in frame.pose.iter().zip(weights).enumerate() {
-            if weight > 0.0 && frame.measurements[row].quantity == Quantity::LineOffset {
-                normal.ger(weight, pose, pose, 1.0);
-                for &(column, change) in &frame.jacobian[row] {
-                    *cross.entry(column).or_insert_with(Vector6::zeros) += weight * change * pose;
-                }
-            }
-        }
-        // A sum of squares and a prior: positive definite but for rounding.
-        let normal = normal.cholesky();
-        let solve = |right: Vector6<f64>| match &normal {
-            Some(normal) => normal.solve(&right),
-            None => Vector6::zeros(),
-        };
-        let (columns, changes) = cross.into_iter().map(|(column, cross)| (column, solve(cross))).unzip();
-        Self { columns, changes }
-    }
-}
-
-/// Some rows of a frame.
-struct Part<'a> {
-    frame: &'a LinearizedFrame,
-    weights: &'a [f64],
-    projection: &'a Projection,
-    rows: Vec<usize>,
-}
-
-impl Part<'_> {
-    fn counted(&self) -> impl Iterator<Item = usize> {
-        self.rows.iter().copied().filter(|&row| self.weights[row] > 0.0)
-    }
-
-    fn is_line(&self, row: usize) -> bool {
-        self.frame.measurements[row].quantity == Quantity::LineOffset
-    }
-
-    /// Columns that its rows change with, and those that change with the pose.
-    fn columns(&self) -> BTreeSet<ColumnIndex> {
-        let plain = self.counted().flat_map(|row| &self.frame.jacobian[row]).map(|(column, _)| *column);
-        let lines = self.counted().any(|row| self.is_line(row));
-        let imitated = self.projection.columns.iter().copied().filter(|_| lines);
-        plain.chain(imitated).collect()
-    }
-}
-
-/// `J̃ᵀ W J` and `J̃ᵀ W r` of some rows of some frames.
-fn sums_of(parts: &[Part<'_>]) -> NormalEquations {
-    let columns: BTreeSet<ColumnIndex> = parts.iter().flat_map(Part::columns).collect();
-    let mut sums = NormalEquations::zero(columns.into_iter().collect());
-    for part in parts {
-        for row in part.counted() {
-            let (weight, residual) = (part.weights[row], part.frame.residuals[row]);
-            let plain = part.frame.jacobian[row].iter();
-            let plain: Vec<(usize, f64)> =
-                plain.map(|(column, value)| (sums.place(*column), *value)).collect();
-            for &(place, value) in &plain {
-                sums.add(place, value, &plain, weight, residual);
-            }
-            if part.is_line(row) {
-                for (&column, change) in part.projection.columns.iter().zip(&part.projection.changes) {
-                    let place = sums.place(column);
-                    sums.add(place, -change.dot(&part.frame.pose[row]), &plain, weight, residual);
-                }
-            }
-        }
-    }
-    sums
-}
-
-/// Weights by Tukey's biweight of what a fit leaves.
-pub(crate) fn weigh(
-    frame: &LinearizedFrame,
-    residuals: &[f64],
-    sigmas: &BTreeMap<Quantity, f64>,
-) -> Vec<f64> {
-    let weight = |(row, residual): (&Measurement, &f64)| {
-        let Some(&sigma) = sigmas.get(&row.quantity) else { return 0.0 };
-        let variance = sigma * sigma + row.sigma * row.sigma;
-        let outlying = (residual * residual / (TUKEY * TUKEY * variance)).min(1.0);
-        let independent = if row.quantity.is_odometry() { 1.0 } else { INDEPENDENT };
-        if residual.is_finite() { independent * (1.0 - outlying).powi(2) / variance } else { 0.0 }
-    };
-    frame.measurements.iter().zip(residuals).map(weight).collect()
-}
-
-/// Residuals of all frames with their rows.
-fn all_of<'a>(
-    frames: &'a [&'a LinearizedFrame],
-    residuals: impl Iterator<Item = &'a Vec<f64>>,
-) -> impl Iterator<Item = (&'a Measurement, f64)> {
-    frames
-        .iter()
-        .zip(residuals)
-        .flat_map(|(frame, values)| frame.measurements.iter().zip(values.iter().copied()))
-}
-
-/// Residuals as weights are found by at first: those of the odometry about their medians. An effect that makes all its steps
-/// longer would make them count less than its steps aside, which are little but the reference's errors.
-fn first_residuals(frames: &[&LinearizedFrame]) -> Vec<Vec<f64>> {
-    let mut groups: BTreeMap<Quantity, Vec<f64>> = BTreeMap::new();
-    for (row, value) in all_of(frames, frames.iter().map(|frame| &frame.residuals)) {
-        if row.quantity.is_odometry() && value.is_finite() {
-            groups.entry(row.quantity).or_default().push(value);
-        }
-    }
-    let medians: BTreeMap<Quantity, f64> =
-        groups.into_iter().map(|(group, mut values)| (group, median(&mut values))).collect();
-    let about = |(row, value): (&Measurement, &f64)| value - medians.get(&row.quantity).unwrap_or(&0.0);
-    frames.iter().map(|frame| frame.measurements.iter().zip(&frame.residuals).map(about).collect()).collect()
-}
-
-/// Standard deviations by the median of absolute residuals about zero.
-fn group_sigmas<'a>(rows: impl Iterator<Item = (&'a Measurement, f64)>) -> BTreeMap<Quantity, f64> {
-    let mut groups: BTreeMap<Quantity, Vec<f64>> = BTreeMap::new();
-    for (row, residual) in rows.filter(|(_, residual)| residual.is_finite()) {
-        groups.entry(row.quantity).or_default().push(residual.abs());
-    }
-    groups.into_iter().map(|(group, mut values)| (group, (1.4826 * median(&mut values)).max(1e-6))).collect()
-}
-
-pub(crate) fn median(values: &mut [f64]) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
-/// The scatter of the poses' errors from frame to frame: what changes slowly is no error of the reference. What is not known
-/// of an error adds to it, or errors that are hardly seen would shrink to nothing; what is usual holds it, or they would
-/// stay as wide as they are at first (expectation maximisation with an inverse gamma prior).
-fn pose_sigmas(left: Option<&[FittedResiduals]>, reference: ReferenceKind) -> [f64; 6] {
-    let mut sigmas = [WIDE[0], WIDE[0], WIDE[0], WIDE[1], WIDE[1], WIDE[1]];
-    if let Some(left) = left {
-        for (axis, sigma) in sigmas.iter_mut().enumerate() {
-            let mut steps: Vec<f64> =
-                left.windows(2).map(|pair| (pair[1].pose[axis] - pair[0].pose[axis]).abs()).collect();
-            let mut unknown: Vec<f64> = left.iter().map(|left| left.pose_variance[axis]).collect();
-            let scatter = 1.4826 * median(&mut steps) / std::f64::consts::SQRT_2;
-            let found = scatter * scatter + median(&mut unknown);
-            let usual = USUAL[axis / 3].powi(2);
-            let variance = (found + USUAL_WEIGHT * usual) / (1.0 + USUAL_WEIGHT);
-            *sigma = variance.sqrt().max(NARROW[axis / 3]);
-        }
-    }
-    if reference == ReferenceKind::Attitude {
-        // Yaw, x and y.
-        (sigmas[1], sigmas[3], sigmas[4]) = (0.1, 0.3, 0.3);
-    }
-    sigmas
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector6;
+
     use super::*;
-    use crate::testing::{Noise, measurement};
+    use crate::{
+        linear_model::column::ColumnIndex,
+        testing::{Noise, measurement},
+    };
 
     /// Frames of lines seen from a pose that is wrong by its own amount in each. The first column looks like a turn of the
     /// camera in all of them; the second does not; neither is at work but for `size` of the second.

@@ -1,48 +1,51 @@
-//! What plain carpet looks like: block by block its colour, and the noise on it.
+//! Blocks of plain carpet: their mean colour, and the variance of the noise on them.
 
 use glam::DVec2;
 use image::RgbImage;
 
-use crate::{
-    linear_model::system::median,
-    measurement::line_profile::LUMA,
-    measurement::quantization::{BLOCK, cosines},
+use reality_sim_core::statistics::median;
+
+use crate::measurement::{
+    camera::FrameCamera,
+    luma::LUMA,
+    quantization::{BLOCK, cosines},
+    visibility::Surroundings,
 };
 
-/// Frequencies of noise that are looked at, as the sum of row and column: texture of carpet is in the lower ones, a
-/// JPEG file keeps little of the higher ones.
-pub(crate) const FREQUENCIES: std::ops::RangeInclusive<usize> = 3..=6;
-/// Coefficients that a file rounds to more than this many grey levels tell little of noise.
+/// Frequencies in which noise is measured, as the sum of row and column: lower ones hold the carpet's texture, and of
+/// higher ones a JPEG file keeps little.
+const FREQUENCIES: std::ops::RangeInclusive<usize> = 3..=6;
+/// Largest quantisation step of a coefficient that noise is measured in, grey levels.
 const MAX_STEP: f64 = 12.0;
 
-/// A place is carpet where red and blue against green are those of the carpet within this factor,
+/// A pixel shows carpet where its ratios of red and blue to green are the carpet's within this factor,
 const SAME_HUE: f64 = 1.3;
-/// and green is within this one: the lens darkens corners, lamps are not the same everywhere.
+/// and its green is the carpet's within this one, as lenses vignette and lamps light the field unevenly.
 const SAME_BRIGHTNESS: f64 = 2.0;
-/// Half the side of the square of pixels that is looked at.
+/// Half the side of the square of pixels that is averaged for that.
 const AROUND_PX: i64 = 1;
 
-/// What was measured of a square of plain carpet.
+/// Measurements of a square of plain carpet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CarpetBlock {
-    /// Its centre.
+    /// Centre.
     pub(crate) pixel: DVec2,
-    /// What is seen there, on the ground, metres.
+    /// Point on the ground at the centre, world axes, metres.
     pub(crate) ground: DVec2,
     /// Mean encoded values, 0–1.
     pub(crate) level: [f64; 3],
     /// Sum of squares of the coefficients of [`Spectrum`], grey levels squared.
     pub(crate) energy: f64,
-    /// How many coefficients that are.
+    /// Number of those coefficients.
     pub(crate) coefficients: usize,
 }
 
-/// The coefficients of luma that noise is measured in.
+/// Coefficients of luma's cosine transform in which noise is measured.
 #[derive(Debug, Clone)]
 pub(crate) struct Spectrum {
     cosines: [[f64; BLOCK]; BLOCK],
     chosen: Vec<(usize, usize)>,
-    /// The file's rounding of each chosen one, grey levels.
+    /// The file's quantisation step of each chosen coefficient, grey levels.
     pub(crate) steps: Vec<f64>,
 }
 
@@ -71,8 +74,33 @@ impl Spectrum {
     }
 }
 
+/// Side of a block of carpet, pixels: half as large in small pictures.
+fn block_side(picture: &RgbImage) -> u32 {
+    if picture.width() >= 480 { 2 * BLOCK as u32 } else { BLOCK as u32 }
+}
+
+/// Measures every block of the picture that shows nothing but plain carpet.
+pub(crate) fn measure_carpet(
+    camera: &FrameCamera<'_>,
+    picture: &RgbImage,
+    spectrum: &Spectrum,
+) -> Vec<CarpetBlock> {
+    let side = block_side(picture);
+    let surroundings = Surroundings::new(camera);
+    let mut blocks = Vec::new();
+    for row in 0..picture.height() / side {
+        for column in 0..picture.width() / side {
+            let corner = [column * side, row * side];
+            if let Some(point) = surroundings.plain_carpet(corner, side) {
+                blocks.push(measure_block(picture, spectrum, corner, side, point));
+            }
+        }
+    }
+    blocks
+}
+
 /// Measures the square of `side` pixels (a multiple of 8) from a corner that lies on the file's grid of blocks.
-pub(crate) fn measure(
+fn measure_block(
     picture: &RgbImage,
     spectrum: &Spectrum,
     corner: [u32; 2],
@@ -107,15 +135,13 @@ pub(crate) fn measure(
     }
 }
 
-/// What most of a picture's carpet looks like: medians of encoded values. None where no carpet was measured.
+/// Returns the medians of the blocks' encoded values, which stand for the carpet; `None` without blocks.
 pub(crate) fn usual(blocks: &[CarpetBlock]) -> Option<[f64; 3]> {
-    (!blocks.is_empty()).then(|| {
-        [0, 1, 2]
-            .map(|channel| median(&mut blocks.iter().map(|block| block.level[channel]).collect::<Vec<f64>>()))
-    })
+    (!blocks.is_empty())
+        .then(|| [0, 1, 2].map(|channel| median(blocks.iter().map(|block| block.level[channel]))))
 }
 
-/// Whether a place in the picture looks like the carpet.
+/// Whether the pixels around a point have the carpet's colour.
 pub(crate) fn is_carpet(picture: &RgbImage, pixel: DVec2, usual: [f64; 3]) -> bool {
     let mut sums = [0.0; 3];
     for dv in -AROUND_PX..=AROUND_PX {

@@ -60,10 +60,6 @@ pub enum ColorChannel {
     Blue,
 }
 
-impl ColorChannel {
-    pub(crate) const ALL: [Self; 3] = [Self::Red, Self::Green, Self::Blue];
-}
-
 /// A measured quantity. Measurements of one quantity share a unit and a standard deviation.
 ///
 /// The order of the variants is that in which sums over quantities run.

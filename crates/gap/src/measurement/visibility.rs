@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use reality_sim_core::field::{GoalPost, LineSample, VisibleSample};
 
-use crate::measurement::frame::FrameCamera;
+use crate::measurement::camera::FrameCamera;
 
 /// Blocks of carpet stay this far from lines and the carpet's edge beside what the blur takes, metres.
 const CARPET_MARGIN_M: f64 = 0.03;

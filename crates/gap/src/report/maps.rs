@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
+use reality_sim_core::statistics::median;
+
 use crate::{
     inference::held_out::HeldOutResiduals,
     measurement::quantity::Channel,
@@ -96,9 +98,8 @@ fn means(
         }
     }
     // Medians: a robot in the way is no pattern.
-    let median = |values: &mut Vec<f64>| {
-        (values.len() as f64 >= LEAST_ROWS).then(|| crate::linear_model::system::median(values))
-    };
+    let median =
+        |values: &mut Vec<f64>| (values.len() as f64 >= LEAST_ROWS).then(|| median(values.iter().copied()));
     values.iter_mut().map(median).collect()
 }
 
@@ -114,9 +115,8 @@ fn course(
     let sizes = |rows: &[(usize, Measurement, f64)]| -> Vec<Option<f64>> {
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); count];
         rows.iter().for_each(|(frame, _, residual)| values[*frame].push(residual.abs()));
-        let robust = |values: &mut Vec<f64>| {
-            (!values.is_empty()).then(|| 1.4826 * crate::linear_model::system::median(values))
-        };
+        let robust =
+            |values: &mut Vec<f64>| (!values.is_empty()).then(|| 1.4826 * median(values.iter().copied()));
         values.iter_mut().map(robust).collect()
     };
     Course {

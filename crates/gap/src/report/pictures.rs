@@ -6,7 +6,7 @@ use reality_sim_core::sequence::SequenceError;
 use reality_sim_sensor::{Chain, Model, ModelError, RenderError, Renderer, SceneColors};
 
 use crate::{
-    measurement::frame::FrameCamera, measurement::visibility::Surroundings, recording::Recording,
+    measurement::camera::FrameCamera, measurement::visibility::Surroundings, recording::Recording,
     workflow::analysis::Analysis,
 };
 

@@ -12,8 +12,9 @@ use crate::{
     linear_model::initial_values::{starting_values, with_value},
     linear_model::linearization::MeasureError,
     linear_model::parameters::FittedParameter,
-    measurement::frame::{FrameCamera, expected_lines},
+    measurement::camera::FrameCamera,
     measurement::line_search::search,
+    measurement::lines::expected_lines,
     recording::Recording,
     thresholds::{Thresholds, WorkflowThresholds},
 };

@@ -8,12 +8,13 @@ use super::{
     locus::{Cell, Locus},
     source::Source,
 };
+use reality_sim_core::statistics::median;
+
 use crate::{
     diagnostics::detector::FrameResiduals,
     inference::gain::{Gain, sum_of},
     inference::hypothesis_test::two_sided,
     inference::split::stretch,
-    linear_model::system::median,
     measurement::quantity::{Channel, Quantity},
 };
 
@@ -41,7 +42,7 @@ impl Bin {
     fn of_blocks(values: &mut [f64]) -> Self {
         let rows = values.len() as f64;
         let information = DMat2::from_diagonal(DVec2::new(rows, 0.0));
-        Self { information, score: DVec2::new(rows * median(values), 0.0), rows }
+        Self { information, score: DVec2::new(rows * median(values.iter().copied()), 0.0), rows }
     }
 
     fn mean(&self, shrink: f64) -> DVec2 {

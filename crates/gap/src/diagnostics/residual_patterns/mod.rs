@@ -14,12 +14,13 @@ use self::{
     locus::{Cell, Locus},
     source::SOURCES,
 };
+use reality_sim_core::statistics::median;
+
 use crate::{
     diagnostics::detector::{Detector, FitResiduals, FrameResiduals, LIKELY_CHANCE},
     diagnostics::finding::Finding,
     inference::gain::Gain,
     inference::model_error::ModelError,
-    linear_model::system::median,
     measurement::quantity::{Channel, Quantity},
 };
 
@@ -144,8 +145,8 @@ fn patterns(
 fn middle(frames: &[FrameResiduals<'_>], channel: Channel) -> f64 {
     let rows =
         frames.iter().flat_map(|frame| frame.measurements).filter(|row| row.quantity.channel() == channel);
-    let mut values: Vec<f64> = rows.map(|row| row.measured).filter(|value| value.is_finite()).collect();
-    median(&mut values)
+    let values: Vec<f64> = rows.map(|row| row.measured).filter(|value| value.is_finite()).collect();
+    median(values)
 }
 
 #[cfg(test)]

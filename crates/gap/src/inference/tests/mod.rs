@@ -11,9 +11,10 @@ use crate::{
     linear_model::{
         column::ColumnIndex,
         parameters::FittedParameter,
-        system::{LinearSystem, LinearizedFrame, ReferenceKind},
+        system::{LinearSystem, LinearizedFrame},
     },
     measurement::{quantity::Quantity, scalar::Measurement},
+    recording::ReferenceKind,
     testing::{Noise, measurement},
 };
 

@@ -8,8 +8,8 @@ use reality_sim_sensor::Trajectory;
 
 use super::sequence;
 use crate::{
-    linear_model::{odometry_steps::around, residual::Step},
-    recording::{Frame, Recording, ReferenceSource},
+    linear_model::odometry_steps::around,
+    recording::{Frame, OdometryStep, Recording, ReferenceSource},
 };
 
 /// Seconds from frame to frame.
@@ -35,7 +35,11 @@ fn walk<'a>(sequence: &'a Sequence, steps_m: &[f64], gaps: &[usize]) -> Recordin
             let has_step = index < steps_m.len() && !gaps.contains(&index);
             // What the odometry says plays no part.
             let odometry = Motion2 { forward_m: 99.0, left_m: 99.0, turn_rad: 1.0 };
-            Frame { index, time_s: poses[index].0, step: has_step.then_some(Step { until_s, odometry }) }
+            Frame {
+                index,
+                time_s: poses[index].0,
+                step: has_step.then_some(OdometryStep { until_s, odometry }),
+            }
         })
         .collect();
     let trajectory = Trajectory::new(&poses).unwrap();

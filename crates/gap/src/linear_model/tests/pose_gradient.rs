@@ -9,7 +9,7 @@ use reality_sim_core::{
 use reality_sim_sensor::{Chain, Trajectory};
 
 use super::sequence;
-use crate::{linear_model::prediction::pose_gradient, measurement::frame::FrameCamera};
+use crate::{linear_model::pose_gradient::pose_gradient, measurement::camera::FrameCamera};
 
 /// Half the width of a central difference, radians or metres.
 const STEP: f64 = 1e-5;

@@ -1,0 +1,63 @@
+//! The simulated camera during one frame: where it sees points of the ground, and how fast they move in the picture.
+
+use glam::DVec2;
+use reality_sim_core::{field::Curve, pose::CameraPose};
+use reality_sim_sensor::{Chain, Frame, Trajectory};
+
+/// Half the interval of the central difference that gives a pixel's velocity, seconds.
+const VELOCITY_STEP_S: f64 = 2e-3;
+
+/// The model's camera during one frame.
+#[derive(Debug)]
+pub(crate) struct FrameCamera<'a> {
+    pub(crate) chain: &'a Chain,
+    pub(crate) trajectory: &'a Trajectory,
+    pub(crate) time_s: f64,
+    /// Curves of the field's lines, in the world.
+    pub(crate) curves: Vec<Curve>,
+    /// Pose while the middle row is exposed.
+    pub(crate) pose: CameraPose,
+    frame: Frame<'a>,
+}
+
+impl<'a> FrameCamera<'a> {
+    pub(crate) fn new(chain: &'a Chain, trajectory: &'a Trajectory, time_s: f64) -> Self {
+        Self {
+            chain,
+            trajectory,
+            time_s,
+            curves: chain.field().curves(),
+            pose: chain.pose(trajectory, time_s, 0.5),
+            frame: chain.frame(trajectory, time_s),
+        }
+    }
+
+    /// Pixel at which a colour channel (0 red, 1 green, 2 blue) shows a point of the ground; `None` outside the picture.
+    pub(crate) fn project(&self, ground: DVec2, channel: usize) -> Option<DVec2> {
+        self.frame.project(ground.extend(0.0), channel)
+    }
+}
+
+/// Velocities of points of the ground in the picture, by central differences in time.
+pub(crate) struct PixelVelocity<'a> {
+    /// Cameras a moment before and a moment after; `None` where the trajectory stands still.
+    around: Option<[FrameCamera<'a>; 2]>,
+}
+
+impl<'a> PixelVelocity<'a> {
+    pub(crate) fn new(camera: &FrameCamera<'a>) -> Self {
+        let at = |time_s: f64| FrameCamera::new(camera.chain, camera.trajectory, time_s);
+        let around = (!camera.trajectory.is_still())
+            .then(|| [at(camera.time_s - VELOCITY_STEP_S), at(camera.time_s + VELOCITY_STEP_S)]);
+        Self { around }
+    }
+
+    /// Component along a direction in the picture, pixels a second.
+    pub(crate) fn along_px_s(&self, ground: DVec2, direction: DVec2) -> f64 {
+        let Some([before, after]) = &self.around else { return 0.0 };
+        match (before.project(ground, 1), after.project(ground, 1)) {
+            (Some(before), Some(after)) => direction.dot(after - before) / (2.0 * VELOCITY_STEP_S),
+            _ => 0.0,
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Offsets of the colour channels against luma across a line, and the line's own colour.
+
+use super::samples::Sample;
+use crate::measurement::luma::LUMA;
+
+/// Standard deviation of the blur by chroma stored at half the resolution: averaged in pairs, and interpolated, pixels.
+const CHROMA_PX: f64 = 0.9;
+/// Flank that is left for colours at least, pixels.
+const LEAST_FLANK_PX: f64 = 1.5;
+
+/// Offsets of red and blue against luma, by the centroid of the contrast against the flanks, and each colour's share of
+/// luma's contrast. Averaging moves no centroid, so that chroma stored at half the resolution does not bias it.
+pub(super) fn colors(
+    samples: &[Sample],
+    center: f64,
+    half_width_px: f64,
+    sharp_px: f64,
+) -> Option<(Option<[f64; 2]>, [f64; 3])> {
+    let reach =
+        |side: f64| samples.iter().map(|sample| side * (sample.across_px - center)).fold(0.0, f64::max);
+    let inner = half_width_px + 2.0 * sharp_px.hypot(CHROMA_PX) + 1.0;
+    let inner = inner.min(reach(1.0).min(reach(-1.0)) - LEAST_FLANK_PX);
+    let mut flank = [[0.0; 5]; 2];
+    for sample in samples {
+        let across = sample.across_px - center;
+        if across.abs() > inner {
+            let sums = &mut flank[usize::from(across > 0.0)];
+            add(sums, &with_luma(sample), 1.0);
+            sums[4] += 1.0;
+        }
+    }
+    if flank.iter().any(|sums| sums[4] < 3.0) {
+        return None;
+    }
+    let level = flank.map(|sums| [0, 1, 2, 3].map(|channel| sums[channel] / sums[4]));
+    let (mut mass, mut moment) = ([0.0; 4], [0.0; 4]);
+    let window = inner + 0.5;
+    for sample in samples {
+        let across = sample.across_px - center;
+        if across.abs() <= window {
+            // The flank runs from the one side's level to the other's under the line.
+            let fraction = 0.5 + 0.5 * across / window;
+            for (channel, value) in with_luma(sample).into_iter().enumerate() {
+                let stands_out =
+                    value - level[0][channel] - fraction * (level[1][channel] - level[0][channel]);
+                mass[channel] += stands_out;
+                moment[channel] += stands_out * across;
+            }
+        }
+    }
+    let total: f64 = (0..3).map(|channel| LUMA[channel] * mass[channel]).sum();
+    (total > 0.0).then_some(())?;
+    let share = [0, 1, 2].map(|channel| LUMA[channel] * mass[channel] / total);
+    let middle = |channel: usize| moment[channel] / mass[channel] - moment[3] / mass[3];
+    let clear = (0..3).all(|channel| mass[channel] > 0.3 * total);
+    Some((clear.then(|| [middle(0), middle(2)]), share))
+}
+
+fn with_luma(sample: &Sample) -> [f64; 4] {
+    let [r, g, b] = sample.rgb;
+    [r, g, b, sample.luma]
+}
+
+fn add(sums: &mut [f64; 5], values: &[f64; 4], weight: f64) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum += weight * value;
+    }
+}
+
+/// Mean encoded values within some distance of the middle; `None` where too few pixels are.
+pub(super) fn inner_level(samples: &[Sample], center: f64, within_px: f64) -> Option<[f64; 3]> {
+    (within_px > 0.8).then_some(())?;
+    let inside = samples.iter().filter(|sample| (sample.across_px - center).abs() < within_px);
+    let (mut sum, mut count) = ([0.0; 3], 0.0);
+    for sample in inside {
+        for (sum, value) in sum.iter_mut().zip(sample.rgb) {
+            *sum += value;
+        }
+        count += 1.0;
+    }
+    (count >= 6.0).then(|| sum.map(|sum| sum / count))
+}

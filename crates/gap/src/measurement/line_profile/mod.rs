@@ -1,0 +1,65 @@
+//! A white line's profile in the picture: where its middle is, how sharp its sides are, and where each colour has it.
+//!
+//! All pixels of a short piece of line are taken at their distance from the line's middle: as the line crosses the
+//! grid of pixels at a slant, its side is sampled far finer than by one row of pixels (the slanted edge of ISO 12233).
+//! The profile fitted is a bright bar between two flanks in linear light, blurred by a Gaussian, then encoded.
+
+mod bar_fit;
+mod color_offset;
+mod samples;
+#[cfg(test)]
+mod tests;
+
+use image::RgbImage;
+
+pub(crate) use self::samples::LinePiece;
+use self::{
+    bar_fit::fit_bar,
+    color_offset::{colors, inner_level},
+    samples::samples,
+};
+
+/// A fit is refused where its residuals are more than this part of the line's contrast.
+const MAX_RESIDUAL: f64 = 0.2;
+
+/// Measurements of a piece of line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Profile {
+    /// Offset of its middle from the predicted one along the normal, pixels.
+    pub(crate) offset_px: f64,
+    /// Standard deviation of the offset by the fit alone.
+    pub(crate) offset_sigma_px: f64,
+    /// Variance of the blur along the normal, the pixel's own included, pixels squared.
+    pub(crate) variance_px2: f64,
+    /// Standard deviation of the variance by the fit alone.
+    pub(crate) variance_sigma_px2: f64,
+    /// Offsets of red and of blue against luma along the normal, pixels.
+    pub(crate) color_offset_px: Option<[f64; 2]>,
+    /// Share of each colour in luma's contrast; they add up to 1.
+    pub(crate) contrast_share: [f64; 3],
+    /// Mean encoded values (0–1) of the line's inner part, where it is wide enough to have one.
+    pub(crate) level: Option<[f64; 3]>,
+}
+
+/// Fits the profile of a piece that a coarser search has found `found_px` from the predicted middle along the normal;
+/// `None` where no line fits.
+pub(crate) fn fit(picture: &RgbImage, gamma: f64, piece: &LinePiece, found_px: f64) -> Option<Profile> {
+    let samples = samples(picture, piece, found_px)?;
+    let bar = fit_bar(&samples, gamma, piece, found_px)?;
+    let center = bar.values[0];
+    let levels =
+        [bar.values[2], bar.values[3], bar.values[4]].map(|linear| linear.max(0.0).powf(1.0 / gamma));
+    let contrast = levels[0] - 0.5 * (levels[1] + levels[2]);
+    (contrast > 0.02 && bar.residual < MAX_RESIDUAL * contrast).then_some(())?;
+    let sharp_px = bar.values[1].sqrt();
+    let (color_offset_px, contrast_share) = colors(&samples, center, piece.half_width_px, sharp_px)?;
+    Some(Profile {
+        offset_px: center,
+        offset_sigma_px: bar.sigma[0],
+        variance_px2: bar.values[1],
+        variance_sigma_px2: bar.sigma[1],
+        color_offset_px,
+        contrast_share,
+        level: inner_level(&samples, center, piece.half_width_px - 2.0 * sharp_px - 1.5),
+    })
+}

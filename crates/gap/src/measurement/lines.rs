@@ -1,0 +1,157 @@
+//! White lines in one picture: the pieces that a model predicts, and what is measured of each.
+
+use glam::DVec2;
+use image::RgbImage;
+use reality_sim_core::{
+    field::{Curve, VisibleSample, sample_lines, visible_samples},
+    preprocess::{Texture, luma},
+};
+
+use crate::measurement::{
+    camera::{FrameCamera, PixelVelocity},
+    carpet::{self, CarpetBlock},
+    line_profile::{self, LinePiece, Profile},
+    line_search::{Coarse, search},
+    visibility::Surroundings,
+};
+
+/// Distance between samples along a line on the ground, metres.
+const SPACING_M: f64 = 0.03;
+/// Distance between samples in the picture, pixels.
+const SPACING_PX: f64 = 9.0;
+/// Half widths in the picture of lines that can be measured: thinner ones are too faint, wider ones too near, pixels.
+const HALF_WIDTH_PX: std::ops::RangeInclusive<f64> = 0.5..=30.0;
+/// Least half width in standard deviations of the blur: of thinner lines less contrast is left than carpet has of its own.
+const THINNEST: f64 = 0.25;
+/// Variance of the blur by a pixel's own square aperture of side 1, pixels squared.
+pub(crate) const APERTURE_PX2: f64 = 1.0 / 12.0;
+/// Margin that a profile needs beyond a line's sides and the search, pixels.
+const ROOM_PX: f64 = 8.0;
+
+/// A piece of line that the model predicts in the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ExpectedLine {
+    /// The field's curve it is a piece of.
+    pub(crate) curve: usize,
+    /// Half its width in the picture, pixels.
+    pub(crate) half_width_px: f64,
+    /// Whether something occludes it: its pixels show neither a line nor carpet.
+    pub(crate) is_hidden: bool,
+}
+
+/// A piece of line that was measured.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Line {
+    /// The field's curve it is a piece of.
+    pub(crate) curve: usize,
+    /// Position on the curve as a fraction of its length.
+    pub(crate) fraction: f64,
+    /// Point on the ground, world axes, metres.
+    pub(crate) ground: DVec2,
+    /// Predicted pixel of its middle.
+    pub(crate) pixel: DVec2,
+    /// Unit vector across it in the picture.
+    pub(crate) normal: DVec2,
+    /// Speed of its image along the normal, pixels a second.
+    pub(crate) speed_px_s: f64,
+    pub(crate) profile: Profile,
+    /// Half its width in the picture, pixels.
+    pub(crate) half_width_px: f64,
+    /// Whether it is far enough from the picture's border to count among the expected pieces.
+    pub(crate) is_expected: bool,
+}
+
+/// Returns the pieces of line that the model predicts in the picture with nothing else in their profiles.
+pub(crate) fn expected_lines(camera: &FrameCamera<'_>) -> Vec<VisibleSample> {
+    let field = camera.chain.field();
+    let surroundings = Surroundings::new(camera);
+    let samples = sample_lines(field, SPACING_M);
+    let visible = visible_samples(field, &samples, camera.chain.camera(), camera.pose, SPACING_PX);
+    let alone = visible.into_iter().filter(|visible| {
+        HALF_WIDTH_PX.contains(&visible.half_width_px) && surroundings.stands_alone(visible)
+    });
+    let placed = alone.filter_map(|visible| {
+        Some(VisibleSample { pixel: camera.project(visible.sample.point_in_world, 1)?, ..visible })
+    });
+    placed.collect()
+}
+
+/// Measures the predicted pieces of line within `search_px` of where they are predicted; also returns all predicted pieces
+/// that are clear of the picture's border.
+pub(crate) fn measure_lines(
+    camera: &FrameCamera<'_>,
+    picture: &RgbImage,
+    blocks: &[CarpetBlock],
+    search_px: f64,
+    gamma: f64,
+) -> (Vec<Line>, Vec<ExpectedLine>) {
+    let finder = LineFinder { camera, picture, velocity: PixelVelocity::new(camera), search_px, gamma };
+    let predicted = expected_lines(camera);
+    let lines = search(&Texture::pack(&luma(picture)), &predicted, search_px, |found| finder.line(found));
+    let usual = carpet::usual(blocks);
+    let is_carpet = |pixel: DVec2| usual.is_some_and(|usual| carpet::is_carpet(picture, pixel, usual));
+    let is_found = |visible: &VisibleSample| lines.iter().any(|line| line.pixel == visible.pixel);
+    let piece = |visible: &VisibleSample| ExpectedLine {
+        curve: visible.sample.curve,
+        half_width_px: visible.half_width_px,
+        is_hidden: !is_found(visible) && !is_carpet(visible.pixel),
+    };
+    let expected = predicted.iter().filter(|visible| finder.has_room(visible)).map(piece).collect();
+    (lines, expected)
+}
+
+/// Fits profiles to pieces of line that a coarse search has found.
+struct LineFinder<'a> {
+    camera: &'a FrameCamera<'a>,
+    picture: &'a RgbImage,
+    velocity: PixelVelocity<'a>,
+    search_px: f64,
+    gamma: f64,
+}
+
+impl LineFinder<'_> {
+    /// Whether a profile has room between the piece and the picture's border.
+    fn has_room(&self, visible: &VisibleSample) -> bool {
+        let size = DVec2::new(f64::from(self.picture.width()), f64::from(self.picture.height()));
+        let room = visible.pixel.min(size - 1.0 - visible.pixel).min_element();
+        room > self.search_px + 2.0 * visible.half_width_px + ROOM_PX
+    }
+
+    /// The piece's measurements; `None` where it is too thin for its blur or its profile cannot be fitted.
+    fn line(&self, found: &Coarse) -> Option<Line> {
+        let visible = &found.visible;
+        let ground = visible.sample.point_in_world;
+        let (pixel, normal) = (visible.pixel, visible.normal_in_image);
+        let speed_px_s = self.velocity.along_px_s(ground, normal);
+        let chain = self.camera.chain;
+        let smear_px = chain.exposure_s() * speed_px_s;
+        let expected_px2 = chain.psf_variance_px2(pixel) + APERTURE_PX2 + smear_px * smear_px / 12.0;
+        let variance_px2 = expected_px2 + found.extra_px2;
+        let half_width_px = visible.half_width_px;
+        (half_width_px > THINNEST * variance_px2.sqrt()).then_some(())?;
+        let piece = LinePiece { pixel, normal, half_width_px, variance_px2 };
+        let profile = line_profile::fit(self.picture, self.gamma, &piece, found.offset_px)?;
+        let curve = visible.sample.curve;
+        Some(Line {
+            curve,
+            fraction: fraction(&self.camera.curves[curve], ground),
+            ground,
+            pixel,
+            normal,
+            speed_px_s,
+            profile,
+            half_width_px,
+            is_expected: self.has_room(visible),
+        })
+    }
+}
+
+/// Position of a point on its curve, as a fraction of the curve's length.
+fn fraction(curve: &Curve, point: DVec2) -> f64 {
+    match curve {
+        Curve::Segment { from, to } => (point - *from).dot(*to - *from) / from.distance_squared(*to),
+        Curve::Circle { center, .. } => {
+            (point - *center).to_angle().rem_euclid(std::f64::consts::TAU) / std::f64::consts::TAU
+        }
+    }
+}
