@@ -332,7 +332,7 @@ fn the_effect_that_is_chosen_tells_all_that_is_known_of_it() {
     assert!(shows(&window, &because(vignetting)), "the surest comes first");
     let estimate = text::estimate(&vignetting.parameters["strength"]);
     assert!(shows(&window, &format!("strength = {estimate}")));
-    let numbers = [text::probability(vignetting.p_value), text::estimate(&vignetting.held_out_gain)];
+    let numbers = [text::plain_probability(vignetting.p_value), text::estimate(&vignetting.held_out_gain)];
     assert!(numbers.iter().all(|number| shows(&window, number)));
     assert!(shows(&window, "Nothing else explains these frames as well."));
     click(&mut window, text::effect_name(tone_curve));

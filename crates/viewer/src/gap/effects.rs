@@ -5,7 +5,7 @@ use reality_sim_gap::report::{
     EffectReport,
     text::{
         channel_title, deciding_recordings, effect_because, effect_name, effect_size, estimate, percent,
-        probability,
+        plain_probability,
     },
 };
 
@@ -23,7 +23,7 @@ pub fn ui(ui: &mut Ui, name: &str, effects: &[EffectReport], chosen: &mut Option
             table.row_ui(ui, |ui, column| match column {
                 0 => name_ui(ui, effect, chosen),
                 1 => {
-                    ui.label(probability(effect.p_value)).on_hover_text(
+                    ui.label(plain_probability(effect.p_value)).on_hover_text(
                         "How unlikely it is chance, corrected for the number of effects tested",
                     );
                 }

@@ -6,7 +6,7 @@ use reality_sim_gap::{
     report::{
         Finding, NotFoundReport, Report, Unobservable,
         text::{
-            channel_title, estimate, finding_place, finding_size, library_name, limit, probability,
+            channel_title, estimate, finding_place, finding_size, library_name, limit, plain_probability,
             unobservable_reason, unobservable_remedy,
         },
     },
@@ -49,7 +49,7 @@ fn unexplained_ui(ui: &mut Ui, unexplained: &[Finding]) {
     let table = Table(&[("channel", 0.22), ("where", 0.4), ("size", 0.21), ("p", 0.17)]);
     table.heads_ui(ui);
     for finding in unexplained {
-        let p_value = finding.p_value().map_or_else(String::new, probability);
+        let p_value = finding.p_value().map_or_else(String::new, plain_probability);
         let channel = channel_title(finding.channel());
         table.texts_ui(ui, &[channel, &finding_place(finding), &finding_size(finding), &p_value]);
     }
@@ -71,7 +71,7 @@ fn not_found_ui(ui: &mut Ui, effects: &[NotFoundReport]) {
                 ui.label(limit(effect)).on_hover_text(format!("{} of {}", effect.parameter, effect.id));
             }
             _ => {
-                ui.label(probability(effect.p_value))
+                ui.label(plain_probability(effect.p_value))
                     .on_hover_text(format!("Held-out gain {}", estimate(&effect.held_out_gain)));
             }
         });

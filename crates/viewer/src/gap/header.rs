@@ -9,12 +9,19 @@ use reality_sim_gap::{
     },
 };
 
+/// Largest share of the window's height that the summary has.
+const SUMMARY_SHARE: f32 = 0.16;
+
 /// Shows it.
 pub fn ui(ui: &mut Ui, report: &Report) {
     ui.add_space(2.0);
-    ui.horizontal_wrapped(|ui| {
-        verdict_ui(ui, report.verdict);
-        ui.add(Label::new(RichText::new(summary(report)).size(15.0)).wrap());
+    // A long sentence leaves room for the views.
+    let height = SUMMARY_SHARE * ui.ctx().content_rect().height();
+    egui::ScrollArea::vertical().id_salt("gap summary").max_height(height).show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            verdict_ui(ui, report.verdict);
+            ui.add(Label::new(RichText::new(summary(report)).size(15.0)).wrap());
+        });
     });
     ui.horizontal_wrapped(|ui| {
         ui.weak(facts(report));

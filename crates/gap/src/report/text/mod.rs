@@ -18,7 +18,7 @@ pub use self::{
     channel::{channel_meaning, channel_scale, channel_title},
     effect::{deciding_recordings, effect_because, effect_name, effect_size, estimate, library_name, limit},
     finding::{finding_place, finding_size},
-    number::{amount, probability},
+    number::{amount, plain_probability, probability},
     poses::{absorbed, reference_source},
     summary::summary,
     unobservable::{unobservable_reason, unobservable_remedy},

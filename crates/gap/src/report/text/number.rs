@@ -8,20 +8,32 @@ use crate::measurement::quantity::Channel;
 /// Chance is not told apart below this.
 const LEAST_PROBABILITY: f64 = 1e-300;
 
-/// "0.03", "1.2·10⁻⁹".
+/// Returns how unlikely something is chance: "0.031", "1.2·10⁻⁹".
 pub fn probability(p_value: f64) -> String {
+    let power_of_ten =
+        |exponent: &str| format!("10{}", exponent.chars().map(superscript).collect::<String>());
+    said_probability(p_value, |mantissa, exponent| format!("{mantissa}·{}", power_of_ten(exponent)), "10⁻³⁰⁰")
+}
+
+/// Returns the same for fonts that have no superscript digits: "0.031", "1.2e-9".
+pub fn plain_probability(p_value: f64) -> String {
+    said_probability(p_value, |mantissa, exponent| format!("{mantissa}e{exponent}"), "1e-300")
+}
+
+/// `small` makes the text of a mantissa and an exponent, `least` is that of the least probability.
+fn said_probability(p_value: f64, small: impl Fn(&str, &str) -> String, least: &str) -> String {
     if !p_value.is_finite() {
         return "–".to_owned();
     }
     if p_value < LEAST_PROBABILITY {
-        return "< 10⁻³⁰⁰".to_owned();
+        return format!("< {least}");
     }
     if p_value >= 1e-3 {
         return digits(p_value, 2);
     }
     let text = format!("{p_value:.1e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    format!("{mantissa}·10{}", exponent.chars().map(superscript).collect::<String>())
+    small(mantissa, exponent)
 }
 
 fn superscript(digit: char) -> char {
@@ -64,6 +76,7 @@ mod tests {
         assert_eq!(probability(1.24e-9), "1.2·10⁻⁹");
         assert_eq!(probability(3e-145), "3.0·10⁻¹⁴⁵");
         assert_eq!(probability(0.0), "< 10⁻³⁰⁰");
+        assert_eq!([0.0312, 1.24e-9, 0.0].map(plain_probability), ["0.031", "1.2e-9", "< 1e-300"]);
     }
 
     #[test]
