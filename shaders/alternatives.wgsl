@@ -40,7 +40,7 @@ fn alternatives(@builtin(local_invocation_index) thread: u32) {
                 mine = Place(weights[i], i);
             }
         }
-        // No way out of the loop: all threads must meet at the barriers in it.
+        // No thread leaves the loop early: all threads must reach the barriers in it.
         let best = largest_of_workgroup(thread, mine).index;
         if best < frame.particles {
             found[count] = particles[best];

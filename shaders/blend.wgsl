@@ -1,4 +1,4 @@
-// One picture from several: every pixel from those sources that see its place best. A thread a pixel.
+// One picture from several: every pixel comes from the sources that see its place best. One thread per pixel.
 // Twin: `blend` in crates/core/src/warp/blend.rs.
 
 #import shared/proxy_geometry.wgsl
@@ -6,15 +6,15 @@
 const SOURCES: u32 = 8u;
 const THREADS: u32 = 64u;
 
-/// Which lenses the sources have, set when the pipeline is made: a branch on a value read would cost both sides where a
-/// driver runs on a processor.
+/// Lenses of the sources, set when the pipeline is made: where a driver runs on a processor, a branch on a value that is
+/// read costs both sides.
 override lenses: u32 = MIXED;
 
 const PERSPECTIVE: u32 = 0u;
 const RADIAL: u32 = 1u;
 const MIXED: u32 = 2u;
 
-/// The picture that is wanted.
+/// Picture to be drawn.
 struct Scene {
     eye: Placement,
     proxy: ProxyGeometry,
@@ -22,7 +22,7 @@ struct Scene {
     height: u32,
     /// Number of sources.
     sources: u32,
-    /// `BlendWeights` from here on.
+    /// Members of `BlendWeights` from here on.
     angle_on_ground: f32,
     angle_above: f32,
     resolution: f32,
@@ -34,32 +34,32 @@ struct Scene {
     padding_2: u32,
 }
 
-/// A picture that was recorded, and from where.
+/// Recorded picture and its pose.
 struct Source {
     camera: Camera,
     placement: Placement,
-    /// Of red, green and blue.
+    /// Gain of red, green and blue.
     gain: vec4<f32>,
     /// Columns and rows.
     size: vec2<u32>,
-    /// Where it lies in the texture.
+    /// Layer of the texture that holds the picture.
     layer: u32,
     padding: u32,
 }
 
 @group(0) @binding(0) var<uniform> scene: Scene;
 @group(0) @binding(1) var<uniform> sources: array<Source, SOURCES>;
-/// `RayTable`: sixteen pixels of a row a block, 0 where a pixel sees nothing.
+/// `RayTable`: blocks of sixteen pixels of a row, 0 where a pixel sees nothing.
 @group(0) @binding(2) var<storage, read> rays: array<f32>;
-/// A word a pixel: red in the lowest byte, then green and blue.
+/// One word per pixel: red in the lowest byte, then green and blue.
 @group(0) @binding(3) var pictures: texture_2d_array<u32>;
-/// Colour and source in a word, then the trust.
+/// One word with colour and source, then one with the trust.
 @group(0) @binding(4) var<storage, read_write> warped: array<vec2<u32>>;
 
 const NOWHERE: u32 = 255u;
 const LANES: u32 = 16u;
 
-/// What a source says of a pixel.
+/// Colour and weight that a source gives to a pixel.
 struct Opinion {
     color: vec3<f32>,
     weight: f32,
@@ -78,7 +78,7 @@ fn texel(place: vec2<u32>, layer: u32) -> vec3<f32> {
     return vec3<f32>(vec3<u32>(word & 255u, (word >> 8u) & 255u, (word >> 16u) & 255u));
 }
 
-/// Bilinear colours (0–255). A picture of one column or row has no second one.
+/// Bilinear colours (0–255). A picture with only one column or row has no neighbour to interpolate with.
 fn sample(number: u32, place: vec2<f32>) -> vec3<f32> {
     let size = sources[number].size;
     let layer = sources[number].layer;
@@ -96,13 +96,13 @@ fn sample(number: u32, place: vec2<f32>) -> vec3<f32> {
     return select(vec3<f32>(0.0), top + f.y * (bottom - top), all(size >= vec2<u32>(2u)));
 }
 
-/// The weight of a source that sees the point, before it is compared with the others.
+/// Weight of a source that sees the point, before it is compared with the others.
 fn source_weight(number: u32, point: ProxyPoint, pixel: Pixel) -> f32 {
     let position = sources[number].placement.position.xyz;
     let cosine = dot(point.direction, point.place - position) * pixel.nearness;
     let ground = point.on_ground;
-    // Pixels for a length on the surface, the target's over the source's: squared, falls with the distance squared, and
-    // on the ground once more for the flat view.
+    // Ratio of pixels per length on the surface, the target's to the source's: squared, it falls with the square of the
+    // distance, and on the ground once more for the oblique view.
     let nearer = 1.0 / (point.distance * pixel.nearness);
     let flatter = nearer * scene.eye.position.z / position.z;
     let density = nearer * nearer * (1.0 + ground * (flatter - 1.0));
@@ -125,7 +125,7 @@ fn opinion_of(number: u32, point: ProxyPoint) -> Opinion {
     return Opinion(color, source_weight(number, point, pixel));
 }
 
-/// The weighted mean colour, and the sum of the weights.
+/// Weighted mean colour, and the sum of the weights.
 fn weighted_mean() -> vec4<f32> {
     var sum = vec4<f32>(0.0);
     for (var number = 0u; number < scene.sources; number++) {
@@ -135,7 +135,7 @@ fn weighted_mean() -> vec4<f32> {
     return vec4<f32>(sum.xyz / (1e-12 + sum.w), sum.w);
 }
 
-/// The mean colour with less weight for those far from it, and the sum of the weights; they are left as they were used.
+/// Mean colour with less weight for outliers, and the sum of the weights; the weights keep their reduced values.
 fn agreed(before: vec4<f32>) -> vec4<f32> {
     if scene.sources < 3u {
         return before;
@@ -156,7 +156,7 @@ fn agreed(before: vec4<f32>) -> vec4<f32> {
     return mean;
 }
 
-/// What is known of a point: its colour and source in a word, then the trust.
+/// Result for a point: its colour and source in one word, then the trust.
 fn mixed(point: ProxyPoint) -> vec2<u32> {
     var best = 0.0;
     for (var number = 0u; number < scene.sources; number++) {

@@ -23,7 +23,7 @@ fn blur_rows(
     let column = 4u * (index - row);
     let radius = picture.blur_radius;
     var sum = vec4<f32>(0.0);
-    // Every value read counts for each of the four pixels, with the weight of its distance from it.
+    // Every value that is read counts for each of the four pixels, with the weight of its distance from that pixel.
     for (var i = 0u; i < 2u * radius + 4u; i++) {
         let source = min(max(column + i, radius) - radius, picture.width - 1u);
         let value = f32(byte_of(grey[row + source / 4u], source));

@@ -35,7 +35,7 @@ fn contrast_along_lines(
     let index = group.y * settings.groups_along_x + group.x;
     var sum = vec2<f32>(0.0);
     if index < settings.poses {
-        // Read once: the compiler cannot know that nothing changes them on the way.
+        // Read once: the compiler cannot know that the value does not change in between.
         let lens = camera;
         let pose = poses[index];
         let count = settings.samples;

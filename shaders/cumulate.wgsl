@@ -1,4 +1,4 @@
-// Prefix sums of what every particle gets for certain and of its share of what is drawn. Twin: `Resampling::cumulate`
+// Prefix sums of every particle's certain copies and of its share of the drawn ones. Twin: `Resampling::cumulate`
 // in crates/core/src/filter/resample.rs.
 
 #import shared/filter.wgsl
@@ -6,14 +6,14 @@
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<storage, read> probabilities: array<u32>;
-/// Copies for certain, and the share of what is drawn, each particle's own included.
+/// Certain copies, and the share of the drawn ones, each particle's own included.
 @group(0) @binding(2) var<storage, read_write> shares: array<vec2<u32>>;
 
 fn share_of(probability: u32) -> vec2<u32> {
     if frame.resampling != RESIDUAL {
         return vec2<u32>(0u, probability);
     }
-    // Expected copies, 31 bits after the point.
+    // Expected number of copies with 31 fractional bits.
     let expected = wide_product(frame.particles, probability);
     return vec2<u32>((expected.x << 1u) | (expected.y >> 31u), (expected.y & 0x7fffffffu) >> frame.rest_shift);
 }
@@ -28,7 +28,7 @@ fn cumulate(@builtin(local_invocation_index) thread: u32) {
         sum += share_of(probabilities[i]);
     }
     runs[thread] = sum;
-    // Hillis and Steele, "Data parallel algorithms", 1986: all sums of runs up to each.
+    // Inclusive scan (Hillis and Steele, "Data parallel algorithms", 1986).
     for (var step = 1u; step < ALL_THREADS; step *= 2u) {
         workgroupBarrier();
         var before = vec2<u32>(0u);

@@ -1,4 +1,4 @@
-// Spreads the survivors of the iteration before; the first iteration only gives them their attitude. Twin:
+// Diffuses the survivors of the previous iteration; the first iteration only sets their attitude. Twin:
 // `ParticleFilter::diffuse` in crates/core/src/filter/particle_filter.rs.
 
 #import shared/filter.wgsl

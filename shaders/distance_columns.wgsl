@@ -1,4 +1,4 @@
-// Smallest distance over the column, from the distances along the rows, eight grey levels a pixel. Twin:
+// Smallest distance over the column, from the distances along the rows, eight grey levels per pixel. Twin:
 // `distance_columns` in crates/core/src/preprocess/distance.rs.
 
 #import shared/picture.wgsl

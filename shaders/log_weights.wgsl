@@ -1,4 +1,4 @@
-// From the sums along a particle's lines to its log-weight, what joints and IMU say included. Twin:
+// Log-weight of a particle from the sums along its lines, joints and IMU included. Twin:
 // `ParticleFilter::log_weights` in crates/core/src/filter/particle_filter.rs.
 
 #import shared/filter.wgsl

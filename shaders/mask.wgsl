@@ -4,7 +4,7 @@
 #import shared/picture.wgsl
 
 @group(0) @binding(0) var<uniform> picture: Picture;
-/// A bit for each cell of two by two pixels, row after row: whether it lies inside.
+/// One bit for each cell of two by two pixels, row after row: whether the cell lies inside.
 @group(0) @binding(1) var<storage, read> inside: array<u32>;
 @group(0) @binding(2) var<storage, read_write> image: array<u32>;
 

@@ -1,5 +1,5 @@
-// A texel for every pixel: its own value and those of its right, lower and lower right neighbours, so that a bilinear
-// look-up costs one load. Twin: `Texture::pack` in crates/core/src/preprocess/texture.rs.
+// One texel per pixel: its own value and those of its right, lower and lower right neighbours, so that a bilinear look-up
+// costs one load. Twin: `Texture::pack` in crates/core/src/preprocess/texture.rs.
 
 #import shared/picture.wgsl
 
@@ -7,7 +7,7 @@
 @group(0) @binding(1) var<storage, read> image: array<u32>;
 @group(0) @binding(2) var texels: texture_storage_2d<r32uint, write>;
 
-/// Five pixels of a row from a word's first one on; beyond the last column its value is repeated.
+/// Five pixels of a row, from the first one of a word on; beyond the last column its value is repeated.
 fn five_of(row: u32, column: u32) -> array<u32, 5> {
     let first = row * picture.row_words;
     var values: array<u32, 5>;
@@ -33,7 +33,7 @@ fn pack(
     let here = five_of(row, column);
     let below = five_of(min(row + 1u, picture.height - 1u), column);
     for (var i = 0u; i < 4u; i++) {
-        // What lies beyond the texture is not written.
+        // Pixels beyond the texture are not written.
         let texel = word_of(vec4<u32>(here[i], here[i + 1u], below[i], below[i + 1u]));
         textureStore(texels, vec2<u32>(4u * column + i, row), vec4<u32>(texel, 0u, 0u, 0u));
     }

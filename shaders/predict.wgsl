@@ -1,4 +1,4 @@
-// Carries the particles to the next picture. Twin: `ParticleFilter::predict` in
+// Moves the particles to the next picture. Twin: `ParticleFilter::predict` in
 // crates/core/src/filter/particle_filter.rs.
 
 #import shared/filter.wgsl

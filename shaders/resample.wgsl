@@ -1,4 +1,4 @@
-// Every slot finds its ancestor on its own. Twin: `Resampling::resample` in crates/core/src/filter/resample.rs.
+// Every slot finds its own ancestor. Twin: `Resampling::resample` in crates/core/src/filter/resample.rs.
 
 #import shared/filter.wgsl
 #import shared/angles.wgsl
@@ -10,7 +10,7 @@
 @group(0) @binding(3) var<storage, read> particles: array<Particle>;
 @group(0) @binding(4) var<storage, read_write> survivors: array<Particle>;
 
-/// The first particle whose share, with those before it, exceeds a value: of the copies for certain, or of what is drawn.
+/// First particle whose cumulative share exceeds a value: the share of the certain copies, or of the drawn ones.
 fn ancestor_of(value: u32, is_drawn: bool) -> u32 {
     var low = 0u;
     var high = frame.particles - 1u;
@@ -41,10 +41,10 @@ fn fraction(numerator: u32, denominator: u32) -> u32 {
     return quotient;
 }
 
-/// Where in [0, 1), as a fraction of 2³², one of the draws looks.
+/// Position of a draw in [0, 1), as a fraction of 2³².
 fn place_of(draw: u32, drawn: u32) -> u32 {
     let resample = stream(RESAMPLE, iteration.number);
-    // 24 bits, as `unit` takes them.
+    // The position has 24 random bits, as in `unit`.
     if frame.resampling == SYSTEMATIC || frame.resampling == STRATIFIED {
         let random = words(resample, select(draw, 0u, frame.resampling == SYSTEMATIC), 0u).x & 0xffffff00u;
         return fraction(draw, drawn) + random / drawn;

@@ -1,4 +1,4 @@
-// The estimate, how far the particles spread around it, and how many of them count. Twin:
+// Estimate, spread of the particles around it, and effective sample size. Twin:
 // `ParticleFilter::summarise` in crates/core/src/filter/particle_filter.rs.
 
 #import shared/filter.wgsl
@@ -28,7 +28,7 @@ fn counts(particle: Particle, centre: Particle) -> bool {
 fn summarise(@builtin(local_invocation_index) thread: u32) {
     let run = run_of(thread, frame.particles);
     let best = outcome.best;
-    // Sums relative to the best particle: small numbers keep their digits.
+    // Sums are taken relative to the best particle: small numbers keep their digits.
     var place = vec4<f32>(0.0);
     var attitude = vec4<f32>(0.0);
     var squares = 0.0;

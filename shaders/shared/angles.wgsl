@@ -1,13 +1,13 @@
-// Angles to single precision: WGSL promises no more than 2⁻¹¹ of its own sine and cosine, half a millirad.
+// Angles in single precision: WGSL guarantees its own sine and cosine only to 2⁻¹¹, half a milliradian.
 
 const PI: f32 = 3.14159265358979;
 const TAU: f32 = 6.28318530717959;
 
-/// Sine and cosine of an angle within a few turns of zero: the quarter turns are taken off in two parts (Cody and Waite,
+/// Sine and cosine of an angle within a few turns of zero: quarter turns are subtracted in two parts (Cody and Waite,
 /// 1980), then both Taylor series run to the limit of single precision.
 fn sin_cos(angle_rad: f32) -> vec2<f32> {
     let quarters = round(angle_rad * (2.0 / PI));
-    // 1.5703125 has eight bits: its product with a small whole number is exact.
+    // 1.5703125 has eight significant bits: its product with a small whole number is exact.
     let rest = (angle_rad - quarters * 1.5703125) - quarters * 0.00048382679490;
     let square = rest * rest;
     let sine = rest + rest * square
@@ -19,7 +19,7 @@ fn sin_cos(angle_rad: f32) -> vec2<f32> {
     return select(turned, -turned, quadrant >= 2);
 }
 
-/// An angle wrapped to [−π, π].
+/// Angle wrapped to [−π, π].
 fn wrap_angle(angle_rad: f32) -> f32 {
     return angle_rad - TAU * round(angle_rad / TAU);
 }

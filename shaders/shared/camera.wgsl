@@ -1,4 +1,4 @@
-// Points in a camera's axes through the lens to pixels: the same steps, in the same order, as `project_lanes` in
+// Projection of points in the camera frame to pixels: the same steps, in the same order, as `project_lanes` in
 // crates/core/src/camera/kernel.rs.
 
 /// `KernelCamera`, laid out for a uniform buffer.
@@ -9,11 +9,11 @@ struct Camera {
     centre_px: vec2<f32>,
     /// Largest valid column and row.
     largest_px: vec2<f32>,
-    /// Cosine of the largest valid angle.
+    /// Cosine of the largest valid angle from the optical axis.
     min_cos: f32,
-    /// 1 where the lens is the radial one, 0 where it is the perspective one.
+    /// 1 for a radial lens, 0 for a perspective one.
     is_radial: u32,
-    /// Centre and squared radius of the image circle; a negative radius where the lens fills the picture.
+    /// Centre and squared radius of the image circle; the radius is negative where the lens fills the picture.
     circle: vec4<f32>,
     /// Radial: eleven coefficients, scale, offset. Perspective: k1, k2, p1, p2, k3.
     lens_parameters: array<vec4<f32>, 4>,
@@ -21,24 +21,24 @@ struct Camera {
 
 struct Pixel {
     place: vec2<f32>,
-    /// One over the distance from the camera, per metre.
+    /// Inverse of the distance from the camera, 1/m.
     nearness: f32,
     seen: bool,
 }
 
-/// `is_radial` is the camera's, or a constant: a branch on a value read costs both sides where a driver runs on a
-/// processor.
+/// Projects a point. `is_radial` is the camera's, or a constant: where a driver runs on a processor, a branch on a value
+/// that is read costs both sides.
 fn project_point(camera: Camera, is_radial: bool, p: vec3<f32>) -> Pixel {
     let nearness = 1.0 / sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
     let cosine = p.z * nearness;
-    // Written out: an index that is no constant makes a load of every step.
+    // Written out: indexing by a variable would load the array in every step.
     let c0 = camera.lens_parameters[0];
     let c1 = camera.lens_parameters[1];
     let c2 = camera.lens_parameters[2];
     var place: vec2<f32>;
     if is_radial {
         let t = cosine * c2.w + camera.lens_parameters[3].x;
-        // Estrin's scheme: short chains of operations that wait for each other.
+        // Estrin's scheme: short chains of dependent operations.
         let t2 = t * t;
         let t4 = t2 * t2;
         let low = (c0.x + c0.y * t) + (c0.z + c0.w * t) * t2;

@@ -1,4 +1,4 @@
-// Colour pictures: red, green and blue bytes without gaps, so that three words are four pixels.
+// Colour pictures: red, green and blue bytes without gaps, so that three words hold four pixels.
 
 struct FourColors {
     a: vec3<u32>,

@@ -1,4 +1,4 @@
-// What the kernels of the particle filter share.
+// Declarations that the kernels of the particle filter share.
 
 /// A pose of the camera: `CameraPose` in single precision.
 struct Particle {
@@ -12,18 +12,18 @@ struct Particle {
     padding_1: f32,
 }
 
-/// What one update is told.
+/// Inputs of one update.
 struct Frame {
     seed: vec2<u32>,
     number: u32,
     particles: u32,
-    /// RESIDUAL and so on.
+    /// Resampling scheme: RESIDUAL and so on.
     resampling: u32,
-    /// BEST and so on.
+    /// Estimator: BEST and so on.
     estimator: u32,
-    /// Remainders of the residual scheme are shifted right by this, so that their sum fits a word.
+    /// Bits by which remainders of the residual scheme are shifted right, so that their sum fits into one word.
     rest_shift: u32,
-    /// Since the previous picture, in the camera's frame.
+    /// Motion since the previous picture, in the camera's frame.
     forward_m: f32,
     left_m: f32,
     turn_rad: f32,
@@ -31,14 +31,14 @@ struct Frame {
     predict_sigma_rad: f32,
     diffuse_sigma_m: f32,
     diffuse_sigma_rad: f32,
-    /// By joints and IMU.
+    /// Mount pose from joints and IMU.
     height_m: f32,
     pitch_rad: f32,
     roll_rad: f32,
-    /// What these are worth; 0 where the particles take them as they are.
+    /// Standard deviations of the mount pose; 0 where the particles take it as it is.
     height_sigma_m: f32,
     angle_sigma_rad: f32,
-    /// Factors of the two sums along a pose's lines that add up to its log-weight.
+    /// Factors of the two sums along a pose's lines; the products add up to its log-weight.
     per_value: f32,
     per_seen: f32,
     padding_0: u32,
@@ -46,10 +46,10 @@ struct Frame {
     padding_2: u32,
 }
 
-/// One of the T rounds of weighing and resampling.
+/// One of the T rounds of weighting and resampling.
 struct Iteration {
     number: u32,
-    /// Of the diffusion.
+    /// Scale of the diffusion.
     scale: f32,
     padding_0: u32,
     padding_1: u32,
@@ -57,9 +57,9 @@ struct Iteration {
 
 const ALTERNATIVES: u32 = 6u;
 
-/// What comes of an update.
+/// Results of an update.
 struct Outcome {
-    /// The best particle of all iterations.
+    /// Best particle of all iterations.
     best: Particle,
     estimate: Particle,
     alternatives: array<Particle, 6>,
@@ -78,17 +78,17 @@ const SYSTEMATIC: u32 = 1u;
 const STRATIFIED: u32 = 2u;
 const MULTINOMIAL: u32 = 3u;
 
-/// Threads of kernels that handle one particle a thread.
+/// Threads of kernels that handle one particle per thread.
 const THREADS: u32 = 64u;
-/// Threads of kernels that look at all particles, one workgroup of them: each takes a run of neighbours.
+/// Threads of kernels that process all particles in one workgroup: each takes a run of neighbours.
 const ALL_THREADS: u32 = 256u;
 
-/// Probabilities are whole numbers of this: sums of them do not depend on their order.
+/// Probability 1 as a whole number: sums of whole numbers do not depend on their order.
 const ONE: f32 = 2147483648.0;
 
 const LOWEST: f32 = -3.4e38;
 
-/// The run of particles of a thread: first and end.
+/// Run of particles that a thread handles: first and end.
 fn run_of(thread: u32, particles: u32) -> vec2<u32> {
     let length = (particles + ALL_THREADS - 1u) / ALL_THREADS;
     return min(vec2<u32>(thread, thread + 1u) * length, vec2<u32>(particles));

@@ -1,10 +1,10 @@
-// Ground points through a pose and the lens to pixels: the same steps, in the same order, as `project_block` in
+// Projection of ground points to pixels: the same steps, in the same order, as `project_block` in
 // crates/core/src/observation/kernel.rs.
 
 #import shared/camera.wgsl
 #import shared/pose.wgsl
 
-/// Set when the pipeline is made: whether the lens is the radial one, or else the perspective one.
+/// Whether the lens is radial or perspective, set when the pipeline is made.
 override is_radial: bool = true;
 
 fn project(camera: Camera, pose: CameraFromGround, ground: vec2<f32>) -> Pixel {

@@ -1,4 +1,4 @@
-// The largest value over a workgroup, and where it is: the first of equals.
+// Largest value in a workgroup and its index: the first among equals.
 
 struct Place {
     value: f32,
@@ -14,7 +14,7 @@ fn larger(a: Place, b: Place) -> Place {
     return a;
 }
 
-/// The largest of all threads' places, in every thread.
+/// Largest of all threads' values with its index, returned to every thread.
 fn largest_of_workgroup(thread: u32, place: Place) -> Place {
     // The threads may still be reading the result of an earlier call.
     workgroupBarrier();

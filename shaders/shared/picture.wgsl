@@ -1,6 +1,6 @@
-// Grey pictures in storage buffers: four pixels a word, the first in the lowest byte; every row begins with a new word.
+// Grey pictures in storage buffers: four pixels per word, the first in the lowest byte; every row begins with a new word.
 
-/// Of every picture of a camera.
+/// Size and settings shared by all pictures of a camera.
 struct Picture {
     width: u32,
     height: u32,
@@ -10,16 +10,16 @@ struct Picture {
     mask_columns: u32,
     /// Radius of the blur, pixels.
     blur_radius: u32,
-    /// Distances are cut here, grey levels.
+    /// Cap of the distances, grey levels.
     nearness_cap: u32,
     padding_0: u32,
     padding_1: u32,
 }
 
-/// Threads of a workgroup: each handles a word.
+/// Threads per workgroup: each handles one word.
 const PICTURE_THREADS: u32 = 64u;
 
-/// A thread's number, of as many as there are words; the groups of large pictures lie in two dimensions.
+/// Number of a thread, as many as there are words; the groups of large pictures are arranged in two dimensions.
 fn thread_number(group: vec3<u32>, groups: vec3<u32>, thread: u32) -> u32 {
     return (group.y * groups.x + group.x) * PICTURE_THREADS + thread;
 }

@@ -1,4 +1,4 @@
-/// `CameraFromGround`: camera = linear · ground + offset, a row an axis; w of the first row is the height.
+/// `CameraFromGround`: camera = linear · ground + offset, one row per axis; w of the first row is the height.
 struct CameraFromGround {
     x: vec4<f32>,
     y: vec4<f32>,

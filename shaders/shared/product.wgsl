@@ -1,4 +1,4 @@
-/// High and low word of a product.
+/// High and low word of the product.
 fn wide_product(a: u32, b: u32) -> vec2<u32> {
     let a0 = a & 0xffffu;
     let a1 = a >> 16u;

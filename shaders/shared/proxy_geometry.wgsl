@@ -1,9 +1,9 @@
-// What a pixel looks at, and who else sees that place: the same steps, in the same order, as `proxy_points`, `see` and
+// Point that a pixel sees, and which other cameras see it: the same steps, in the same order, as `proxy_points`, `see` and
 // `unhidden` in crates/core/src/warp/kernel.rs.
 
 #import shared/camera.wgsl
 
-/// A pose: `camera = (right, down, forward) · (world − position)`. The fourth numbers are 0.
+/// Pose as `camera = (right, down, forward) · (world − position)`. The fourth components are 0.
 struct Placement {
     right: vec4<f32>,
     down: vec4<f32>,
@@ -11,7 +11,7 @@ struct Placement {
     position: vec4<f32>,
 }
 
-/// An upright rectangle across the x axis, metres.
+/// Upright rectangle perpendicular to the x axis, metres.
 struct Billboard {
     x: f32,
     half_width: f32,
@@ -23,7 +23,7 @@ struct Billboard {
     padding_2: u32,
 }
 
-/// A box around the field with the goals in it.
+/// Box around the field, with the goals in it.
 struct ProxyGeometry {
     low: vec4<f32>,
     high: vec4<f32>,
@@ -33,31 +33,31 @@ struct ProxyGeometry {
 const BILLBOARDS: u32 = 4u;
 
 struct ProxyPoint {
-    /// World axes, metres.
+    /// Position in the world, metres.
     place: vec3<f32>,
     /// Unit direction from the camera, world axes.
     direction: vec3<f32>,
-    /// From the camera, metres.
+    /// Distance from the camera, metres.
     distance: f32,
     /// 1 on the ground, else 0.
     on_ground: f32,
 }
 
-/// Farther than every proxy geometry, metres.
+/// Distance beyond any proxy geometry, metres.
 const FAR_M: f32 = 1e30;
 
-/// Whether a place in the plane of a billboard that is wider on all sides by so much, above the ground, lies on it.
+/// Whether a point in the plane of a billboard, above the ground, lies on the billboard enlarged by `wider` on all sides.
 fn holds(billboard: Billboard, wider: f32, across: f32, up: f32) -> bool {
     let is_opening = abs(across) < billboard.opening_half_width - wider && up < billboard.opening_top - wider;
     return abs(across) <= billboard.half_width + wider && up <= billboard.top + wider && !is_opening;
 }
 
-/// Follows a ray from a camera inside the proxy geometry.
+/// Traces a ray from a camera inside the proxy geometry.
 fn proxy_point(eye: Placement, ray: vec3<f32>) -> ProxyPoint {
     let position = eye.position.xyz;
     let direction = eye.right.xyz * ray.x + eye.down.xyz * ray.y + eye.forward.xyz * ray.z;
     let end = select(scene.proxy.high.xyz, scene.proxy.low.xyz, direction < vec3<f32>(0.0)) - position;
-    // What runs along a wall never meets it: no division by 0.
+    // A ray parallel to a wall never meets it: this avoids a division by 0.
     let is_across = abs(direction) > vec3<f32>(1e-12);
     let to_wall = select(vec3<f32>(FAR_M), end / direction, is_across);
     var distance = min(to_wall.x, to_wall.y);
@@ -75,7 +75,7 @@ fn proxy_point(eye: Placement, ray: vec3<f32>) -> ProxyPoint {
     return ProxyPoint(position + distance * direction, direction, distance, on_ground);
 }
 
-/// Where another camera sees the point.
+/// Pixel at which another camera sees the point.
 fn see(camera: Camera, is_radial: bool, placement: Placement, point: ProxyPoint) -> Pixel {
     let offset = point.place - placement.position.xyz;
     let in_camera = vec3<f32>(
@@ -86,14 +86,14 @@ fn see(camera: Camera, is_radial: bool, placement: Placement, point: ProxyPoint)
     return project_point(camera, is_radial, in_camera);
 }
 
-/// A point on the billboard itself is not hidden by it, as a share of the way to it.
+/// Fraction of the way to a point beyond which a billboard does not hide it: points on the billboard itself stay visible.
 const ON_SCREEN: f32 = 0.999;
-/// Of a usual post. Seen from the side, a round one hides more than the flat one that stands for it; by how much, grows with
-/// one over the cosine.
+/// Radius of a typical post. Seen from the side, a round post hides more than the flat one that stands for it; the excess
+/// grows with one over the cosine.
 const POST_RADIUS_M: f32 = 0.05;
-/// Below 1: pixels and compression spread a post's colour beyond its edge.
+/// Factor below 1: pixels and compression spread a post's colour beyond its edge.
 const SHARP_EDGE: f32 = 0.6;
-/// Nearly along the billboard it would hide everything.
+/// Limit of one over the cosine: seen nearly edge-on, a billboard would hide everything.
 const MOST_OBLIQUE: f32 = 4.0;
 
 /// Whether no goal stands between a camera and the point.

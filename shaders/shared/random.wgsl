@@ -29,13 +29,14 @@ fn words(stream: Stream, particle: u32, block: u32) -> vec4<u32> {
     return counter;
 }
 
-/// 24 bits in [0, 1).
+/// Number in [0, 1) from 24 bits.
 fn unit(word: u32) -> f32 {
     return f32(word >> 8u) * (1.0 / 16777216.0);
 }
 
 fn box_muller(a: u32, b: u32) -> vec2<f32> {
-    // 1 − unit lies in (0, 1]; a logarithm that is a little above 0 at 1 must not become the root of a negative number.
+    // 1 − unit lies in (0, 1]; near 1 the logarithm may be slightly above 0, and the root needs a number that is not
+    // negative.
     let radius = sqrt(max(-2.0 * log(1.0 - unit(a)), 0.0));
     let direction = sin_cos(TAU * unit(b));
     return radius * direction.yx;

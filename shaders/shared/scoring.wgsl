@@ -1,4 +1,4 @@
-// What the scoring kernels share: their inputs, and the sum over a workgroup. One workgroup scores one pose.
+// Inputs that the scoring kernels share, and the sum over a workgroup. One workgroup scores one pose.
 
 const THREADS: u32 = 32u;
 
@@ -8,9 +8,9 @@ struct Settings {
     samples: u32,
     /// Number of poses.
     poses: u32,
-    /// Workgroups along x: a dispatch of more poses than that uses y as well.
+    /// Workgroups along x: a dispatch of more poses uses y as well.
     groups_along_x: u32,
-    /// One over the picture's line contrast.
+    /// Inverse of the picture's line contrast.
     per_contrast: f32,
     dark_level: f32,
     min_width_px: f32,
@@ -26,7 +26,7 @@ struct Settings {
 @group(0) @binding(4) var<storage, read> poses: array<CameraFromGround>;
 @group(0) @binding(5) var<storage, read_write> sums: array<vec2<f32>>;
 
-/// Samples in a row of their texture.
+/// Samples per row of their texture.
 const SAMPLES_IN_ROW: u32 = 1024u;
 
 fn line_sample(index: u32) -> vec4<f32> {
@@ -35,7 +35,7 @@ fn line_sample(index: u32) -> vec4<f32> {
 
 var<workgroup> partial_sums: array<vec2<f32>, THREADS>;
 
-/// The sum of all threads' values, in the first thread.
+/// Sum of all threads' values, returned to the first thread.
 fn sum_of_workgroup(thread: u32, value: vec2<f32>) -> vec2<f32> {
     partial_sums[thread] = value;
     for (var half = THREADS / 2u; half > 0u; half /= 2u) {

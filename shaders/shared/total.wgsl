@@ -1,8 +1,8 @@
-// The sum over a workgroup.
+// Sum over a workgroup.
 
 var<workgroup> totals: array<vec4<f32>, ALL_THREADS>;
 
-/// The sum of all threads' values, in every thread.
+/// Sum of all threads' values, returned to every thread.
 fn total_of_workgroup(thread: u32, value: vec4<f32>) -> vec4<f32> {
     // The threads may still be reading the result of an earlier call.
     workgroupBarrier();

@@ -13,14 +13,14 @@ use reality_sim_core::{
 
 use crate::{GpuContext, GpuError, GpuFilter, GpuScorer, GpuWarper};
 
-/// Scores, filters and draws on one device.
+/// Backend that scores, filters and draws on one graphics device.
 #[derive(Debug, Clone)]
 pub struct GpuBackend {
     context: Arc<GpuContext>,
 }
 
 impl GpuBackend {
-    /// On a device that was opened before.
+    /// Makes a backend of a device that is already open.
     pub fn new(context: Arc<GpuContext>) -> Self {
         Self { context }
     }

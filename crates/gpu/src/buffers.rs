@@ -1,10 +1,10 @@
-//! Buffers on the device, if it allows their size.
+//! Buffers on the device, refused where they exceed its limits.
 
 use wgpu::BufferUsages as Usage;
 
 use crate::{GpuContext, GpuError};
 
-/// What a kernel reads and writes; the CPU can write it and have it copied back.
+/// Creates a buffer that kernels read and write; the CPU can write to it and copy it back.
 pub(crate) fn storage(
     context: &GpuContext,
     what: &'static str,
@@ -13,12 +13,12 @@ pub(crate) fn storage(
     buffer(context, what, bytes, Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC)
 }
 
-/// A small structure that kernels read.
+/// Creates a buffer for a small structure that kernels read.
 pub(crate) fn uniform<T>(context: &GpuContext, what: &'static str) -> Result<wgpu::Buffer, GpuError> {
     buffer(context, what, size_of::<T>(), Usage::UNIFORM | Usage::COPY_DST)
 }
 
-/// Where results are copied to be read.
+/// Creates a buffer into which results are copied for the CPU to read.
 pub(crate) fn readback(
     context: &GpuContext,
     what: &'static str,
@@ -27,7 +27,7 @@ pub(crate) fn readback(
     buffer(context, what, bytes, Usage::MAP_READ | Usage::COPY_DST)
 }
 
-/// A buffer with these values.
+/// Creates a storage buffer with these values.
 pub(crate) fn storage_of<T: bytemuck::Pod>(
     context: &GpuContext,
     what: &'static str,
@@ -38,7 +38,7 @@ pub(crate) fn storage_of<T: bytemuck::Pod>(
     Ok(buffer)
 }
 
-/// A small structure with this value.
+/// Creates a uniform buffer with this value.
 pub(crate) fn uniform_of<T: bytemuck::Pod>(
     context: &GpuContext,
     what: &'static str,
@@ -49,7 +49,7 @@ pub(crate) fn uniform_of<T: bytemuck::Pod>(
     Ok(buffer)
 }
 
-/// Overwrites the front of a buffer before the work submitted next.
+/// Overwrites the start of a buffer before the work that is submitted next.
 pub(crate) fn write<T: bytemuck::Pod>(context: &GpuContext, buffer: &wgpu::Buffer, values: &[T]) {
     context.queue.write_buffer(buffer, 0, bytemuck::cast_slice(values));
 }
@@ -62,7 +62,7 @@ fn buffer(
 ) -> Result<wgpu::Buffer, GpuError> {
     let limits = context.device.limits();
     let limit = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
-    // Copies are of whole words, and an empty buffer cannot be bound.
+    // Copies are made of whole words, and an empty buffer cannot be bound.
     let size = (bytes as u64).next_multiple_of(4).max(16);
     if size > limit {
         return Err(GpuError::TooLarge { what, bytes: size, limit });

@@ -1,30 +1,30 @@
-//! One graphics device: chosen, opened, and watched for errors.
+//! Choice of a graphics device, and its errors.
 
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
 use crate::GpuError;
 
-/// Errors kept of one device: the first few tell the cause.
+/// Number of errors kept for one device: the first few reveal the cause.
 const KEPT_ERRORS: usize = 4;
 
-/// An adapter for people to choose from.
+/// Summary of an adapter, for people to choose from.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct AdapterSummary {
-    /// Its name.
+    /// Name of the adapter.
     pub name: String,
-    /// Vulkan, Metal or DX12.
+    /// Graphics interface: Vulkan, Metal or DX12.
     pub backend: String,
-    /// Discrete, integrated, virtual or on the processor.
+    /// Kind of device: discrete, integrated, virtual or running on the processor.
     pub kind: String,
-    /// The driver's name and version.
+    /// Name and version of the driver.
     pub driver: String,
-    /// Whether it is a driver that runs on the processor.
+    /// Whether the driver runs on the processor.
     pub is_processor: bool,
-    /// Largest buffer, bytes.
+    /// Size of the largest buffer, bytes.
     pub max_buffer_bytes: u64,
-    /// Largest part of a buffer that a kernel can see, bytes.
+    /// Size of the largest part of a buffer that a kernel can access, bytes.
     pub max_storage_buffer_bytes: u64,
-    /// Workgroups along one dimension.
+    /// Largest number of workgroups along one dimension.
     pub max_workgroups: u32,
 }
 
@@ -37,7 +37,7 @@ pub struct GpuContext {
     errors: Arc<Mutex<Vec<String>>>,
 }
 
-/// All adapters, the best first: cards, then what is built into the processor, then drivers that run on the processor.
+/// Lists all adapters, the best first: discrete cards, then integrated ones, then drivers that run on the processor.
 pub fn adapters() -> Vec<AdapterSummary> {
     found().iter().map(summary).collect()
 }
@@ -78,7 +78,7 @@ fn summary(adapter: &wgpu::Adapter) -> AdapterSummary {
 }
 
 impl GpuContext {
-    /// Opens the best adapter, or the best of those whose name contains `name` (upper or lower case).
+    /// Opens the best adapter, or the best one whose name contains `name` (case is ignored).
     pub fn new(name: Option<&str>) -> Result<Self, GpuError> {
         let adapters = found();
         if adapters.is_empty() {
@@ -124,18 +124,18 @@ impl GpuContext {
         Ok(Self { device, queue, adapter: summary, errors })
     }
 
-    /// The adapter in use.
+    /// Returns the adapter in use.
     pub fn adapter(&self) -> &AdapterSummary {
         &self.adapter
     }
 
-    /// What has gone wrong on the device so far, as one error.
+    /// Returns an error with everything that has failed on the device so far.
     pub fn status(&self) -> Result<(), GpuError> {
         let errors = self.errors.lock().unwrap_or_else(PoisonError::into_inner);
         if errors.is_empty() { Ok(()) } else { Err(GpuError::Failed { reason: errors.join("; ") }) }
     }
 
-    /// Submits what is encoded, as one piece of work.
+    /// Submits the encoded commands as one piece of work.
     pub(crate) fn submit(&self, encode: impl FnOnce(&mut wgpu::CommandEncoder)) {
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encode(&mut encoder);
@@ -155,7 +155,7 @@ impl GpuContext {
         let (sender, receiver) = mpsc::channel();
         let slice = buffer.slice(..bytes);
         slice.map_async(wgpu::MapMode::Read, move |result| {
-            // The receiver waits below; it is gone only when waiting has failed.
+            // The receiver waits below; it is gone only if waiting has failed.
             let _ = sender.send(result);
         });
         self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| failed(error.to_string()))?;
@@ -173,7 +173,7 @@ impl GpuContext {
     }
 }
 
-/// Keeps the first few errors, each once.
+/// Keeps the first few errors, each of them once.
 fn keep(errors: &Mutex<Vec<String>>, message: String) {
     let mut errors = errors.lock().unwrap_or_else(PoisonError::into_inner);
     if errors.len() < KEPT_ERRORS && !errors.contains(&message) {

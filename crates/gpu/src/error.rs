@@ -1,40 +1,40 @@
-//! What can go wrong on a graphics card, and what to do about it.
+//! Errors of a graphics device, each with its remedy.
 
-/// A GPU that cannot be used, or no longer.
+/// Reason why a graphics device cannot be used, or can no longer be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// There is no adapter at all.
+    /// No adapter was found.
     #[error(
         "no graphics adapter was found: install a Vulkan driver (on Debian and Ubuntu the package mesa-vulkan-drivers has one that runs on the processor), or use the CPU"
     )]
     NoAdapter,
-    /// There are adapters, but none of that name.
+    /// No adapter has this name.
     #[error("no graphics adapter is called {wanted}: there is {found}")]
     NoSuchAdapter {
-        /// The name asked for.
+        /// Name that was asked for.
         wanted: String,
-        /// The names of those there are.
+        /// Names of the adapters that exist.
         found: String,
     },
-    /// The adapter gives no device.
+    /// The adapter did not open a device.
     #[error("{adapter}: gives no device ({reason}): update its driver, or use the CPU")]
     NoDevice {
-        /// The adapter's name.
+        /// Name of the adapter.
         adapter: String,
-        /// What the driver said.
+        /// Message of the driver.
         reason: String,
     },
-    /// Something is larger than the device allows.
+    /// Something exceeds a limit of the device.
     #[error(
         "{what} takes {bytes} bytes and the device allows {limit}: use fewer particles, smaller pictures, or the CPU"
     )]
     TooLarge {
-        /// What was to be stored.
+        /// Name of what was to be stored.
         what: &'static str,
-        /// Its size.
+        /// Its size, bytes.
         bytes: u64,
-        /// The device's limit.
+        /// Limit of the device, bytes.
         limit: u64,
     },
     /// A picture has more columns or rows than the device allows.
@@ -42,33 +42,33 @@ pub enum GpuError {
         "a picture has {width} x {height} pixels and the device allows {limit} each way: scale it down, or use the CPU"
     )]
     TooManyPixels {
-        /// Columns.
+        /// Number of columns.
         width: u32,
-        /// Rows.
+        /// Number of rows.
         height: u32,
-        /// The device's limit.
+        /// Largest number of columns or rows that the device allows.
         limit: u32,
     },
-    /// A picture that has not a word for every pixel.
+    /// A picture does not have one word for every pixel.
     #[error("a picture of {width} x {height} pixels has {words} words: give it one for every pixel")]
     NotAPicture {
-        /// Columns.
+        /// Number of columns.
         width: u32,
-        /// Rows.
+        /// Number of rows.
         height: u32,
-        /// Its words.
+        /// Number of words.
         words: usize,
     },
-    /// What only the CPU does.
+    /// Only the CPU can do this.
     #[error("{what} is not computed on the graphics device: use the CPU")]
     CpuOnly {
-        /// What was asked for.
+        /// Name of what was asked for.
         what: &'static str,
     },
-    /// The device has no clock of its own.
+    /// The device has no timestamp counter.
     #[error("{adapter}: has no time stamps: measure whole updates, or use another adapter")]
     CannotTime {
-        /// The adapter's name.
+        /// Name of the adapter.
         adapter: String,
     },
     /// The device failed while it worked.
@@ -76,7 +76,7 @@ pub enum GpuError {
         "the graphics device failed ({reason}): use the CPU, or fewer particles where its memory was full"
     )]
     Failed {
-        /// The first things it said, each once.
+        /// The first errors that the device reported, each once.
         reason: String,
     },
 }

@@ -1,4 +1,4 @@
-//! The particle filter on the GPU: a whole frame is one submission and one read-back; the particles stay there.
+//! The particle filter on the GPU: a frame takes one submission and one read-back; the particles stay on the device.
 
 use std::sync::Arc;
 
@@ -26,12 +26,12 @@ use crate::{
     timing::timed_steps,
 };
 
-/// Threads of a workgroup of the kernels that handle one particle a thread.
+/// Threads per workgroup of the kernels that handle one particle per thread.
 const THREADS: u32 = 64;
-/// Below every log-weight.
+/// Value below every log-weight.
 const LOWEST: f32 = -3.4e38;
 
-/// The particle filter by compute shaders, see [`reality_sim_core::filter::ParticleFilter`].
+/// Particle filter in compute shaders, see [`reality_sim_core::filter::ParticleFilter`].
 #[derive(Debug)]
 pub struct GpuFilter {
     context: Arc<GpuContext>,
@@ -40,9 +40,9 @@ pub struct GpuFilter {
     scoring: LineScoring,
     buffers: Buffers,
     kernels: Kernels,
-    /// The picture loaded last still has to be prepared on the device.
+    /// Whether the picture loaded last still has to be prepared on the device.
     picture_waits: bool,
-    /// The particles still have to be carried to the picture loaded last.
+    /// Motion by which the particles still have to be moved to the picture loaded last, if any.
     motion_waits: Option<Option<Motion2>>,
     next: Option<Arc<RgbImage>>,
     frame: u32,
@@ -53,7 +53,7 @@ pub struct GpuFilter {
 #[derive(Debug)]
 struct Buffers {
     frame: wgpu::Buffer,
-    /// What an update begins with and leaves behind.
+    /// Particles that an update starts from and leaves behind.
     survivors: wgpu::Buffer,
     outcome: wgpu::Buffer,
     outcome_readback: wgpu::Buffer,
@@ -79,7 +79,7 @@ struct IterationKernels {
 }
 
 impl GpuFilter {
-    /// A filter without particles.
+    /// Creates a filter without particles.
     pub fn new(
         context: Arc<GpuContext>,
         camera: &Camera,
@@ -111,7 +111,7 @@ impl GpuFilter {
         })
     }
 
-    /// What the kernels are told of an update.
+    /// Returns what the kernels need to know about an update.
     fn frame_layout(&self, mount: MountPose, sigma: PlanarSigma) -> FrameLayout {
         let FilterConfig { seed, particles, noise, .. } = self.config;
         let motion = self.motion_waits.flatten();
@@ -155,7 +155,7 @@ impl GpuFilter {
         }
     }
 
-    /// Tells the kernels what they need to know; gives what there is to run.
+    /// Uploads what the kernels need to know and returns the steps to run.
     fn prepared(&self, mount: MountPose, sigma: PlanarSigma) -> Vec<Step<'_>> {
         let context = &*self.context;
         write(context, &self.buffers.frame, &[self.frame_layout(mount, sigma)]);
@@ -183,8 +183,8 @@ impl GpuFilter {
         Ok(context.read(&self.buffers.outcome_readback, bytes)?[0])
     }
 
-    /// An update of which every kernel is timed on the device: names and seconds, in the order they ran. Slower than
-    /// [`Filter::update`], which lets the device go from one to the next.
+    /// Runs an update and times every kernel on the device: names and seconds, in the order in which they ran. Slower than
+    /// [`Filter::update`], which does not make the device pause between kernels.
     pub fn timed_update(
         &mut self,
         mount: MountPose,
@@ -245,7 +245,7 @@ impl Filter for GpuFilter {
     fn initialize(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) -> Result<(), BackendError> {
         let stream = Stream::new(self.config.seed, Purpose::Initialise, self.frame, self.placements);
         self.placements += 1;
-        // Whatever motion came before, the particles are where they are put now.
+        // Any motion before this moment no longer matters: the particles now have new poses.
         self.motion_waits = None;
         self.write_particles(&placed(&self.config, modes, sigma, stream));
         Ok(self.context.status()?)
@@ -375,8 +375,8 @@ mod tests {
         .fold(0.0, f64::max)
     }
 
-    /// One iteration after a prediction: every kernel of the filter has had its turn, and nothing has been drawn from
-    /// weights that differ in their last digits but the survivors themselves.
+    /// Compares one iteration after a prediction: every kernel of the filter has run by then, and only the survivors
+    /// themselves have been drawn from weights that may differ in their last digits.
     #[test]
     fn one_iteration_is_that_of_the_cpu() {
         let context = test_context();
@@ -436,8 +436,8 @@ mod tests {
         context.status().unwrap();
     }
 
-    /// A particle whose expected copies lie at a whole number may get one more or less; in the residual scheme that moves all
-    /// slots behind it.
+    /// Allows for a particle whose expected number of copies is nearly whole: it may get one more or less, and in the
+    /// residual scheme that shifts all slots behind it.
     fn assert_same_particles(found: &[CameraPose], expected: &[CameraPose], is_residual: bool, about: &str) {
         assert_eq!(found.len(), expected.len());
         let same = |a: CameraPose, b: CameraPose| distance(a, b) < 1e-5;

@@ -1,15 +1,15 @@
-//! One compute shader, ready to run.
+//! A compute shader, ready to run.
 
 use crate::{GpuContext, shader};
 
-/// A compute pipeline; its bindings are numbered from 0 in the order its shader declares them.
+/// Compute pipeline whose bindings are numbered from 0 in the order in which the shader declares them.
 #[derive(Debug)]
 pub(crate) struct Kernel {
     name: &'static str,
     pipeline: wgpu::ComputePipeline,
 }
 
-/// A kernel with the buffers it works on.
+/// Kernel with the buffers that it works on.
 #[derive(Debug)]
 pub(crate) struct BoundKernel {
     pub name: &'static str,
@@ -17,7 +17,7 @@ pub(crate) struct BoundKernel {
     bindings: wgpu::BindGroup,
 }
 
-/// A buffer or a texture that a kernel works on.
+/// Buffer or texture that a kernel works on.
 pub(crate) struct Binding<'a>(wgpu::BindingResource<'a>);
 
 impl<'a> From<&'a wgpu::Buffer> for Binding<'a> {
@@ -33,14 +33,14 @@ impl<'a> From<&'a wgpu::TextureView> for Binding<'a> {
 }
 
 impl Kernel {
-    /// The shader of this name.
+    /// Compiles the shader of this name.
     pub fn new(context: &GpuContext, name: &'static str) -> Self {
         Self::with_constants(context, name, &[])
     }
 
-    /// The same with values for constants that the shader leaves open.
+    /// Compiles the shader of this name with values for the constants that it leaves open.
     pub fn with_constants(context: &GpuContext, name: &'static str, constants: &[(&str, f64)]) -> Self {
-        // A test holds that every kernel has a file of its name, with imports that exist.
+        // A test ensures that every kernel has a file of its name, and that all imports exist.
         let source = shader::source(&format!("{name}.wgsl")).unwrap_or_default();
         let module = context.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),
@@ -62,7 +62,7 @@ impl Kernel {
         self.bind_all(context, &bindings)
     }
 
-    /// As [`Kernel::bind`], with textures among the buffers.
+    /// Binds textures as well as buffers, otherwise like [`Kernel::bind`].
     pub fn bind_all(&self, context: &GpuContext, bindings: &[Binding<'_>]) -> BoundKernel {
         let entries: Vec<wgpu::BindGroupEntry<'_>> = bindings
             .iter()
@@ -78,7 +78,7 @@ impl Kernel {
     }
 }
 
-/// A kernel and its number of workgroups along x and y.
+/// Kernel with its number of workgroups along x and y.
 pub(crate) type Step<'a> = (&'a BoundKernel, [u32; 2]);
 
 impl BoundKernel {
@@ -89,7 +89,7 @@ impl BoundKernel {
     }
 }
 
-/// Runs kernels one after the other; each sees what those before it wrote.
+/// Runs kernels one after the other; each sees what the earlier ones wrote.
 pub(crate) fn run_steps<'a>(encoder: &mut wgpu::CommandEncoder, steps: impl IntoIterator<Item = Step<'a>>) {
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
     for (kernel, groups) in steps {
@@ -97,7 +97,7 @@ pub(crate) fn run_steps<'a>(encoder: &mut wgpu::CommandEncoder, steps: impl Into
     }
 }
 
-/// So many workgroups along x and y: one dimension does not hold more than the device allows.
+/// Arranges this number of workgroups along x and y, since the device limits how many fit along one dimension.
 pub(crate) fn groups(context: &GpuContext, count: u32) -> [u32; 2] {
     groups_within(count, context.device.limits().max_compute_workgroups_per_dimension)
 }

@@ -1,4 +1,4 @@
-//! Recorded pictures on the device: layers of one texture, so that a kernel can choose among them.
+//! Recorded pictures on the device: layers of one texture, from which a kernel can choose.
 
 use std::{convert::Infallible, sync::Arc};
 
@@ -6,20 +6,20 @@ use reality_sim_core::warp::{MAX_SOURCES, Picture};
 
 use crate::{GpuContext, GpuError, recent::Recent};
 
-/// The layers take no more than this where pictures are small enough for it, bytes.
+/// Memory budget of the layers, bytes; exceeded only where pictures are too large for it.
 const BUDGET_BYTES: usize = 64 << 20;
 
-/// Pictures that were uploaded: as many as the budget allows, at least those of one reconstruction.
+/// Uploaded pictures: as many as the budget allows, and at least as many as one reconstruction needs.
 #[derive(Debug)]
 pub(crate) struct Layers {
     view: wgpu::TextureView,
-    /// Columns and rows of the largest picture that has room.
+    /// Columns and rows of the largest picture that fits.
     size: [u32; 2],
     layer_of: Recent<Picture, u32>,
 }
 
 impl Layers {
-    /// Room for pictures of so many columns and rows.
+    /// Allocates layers for pictures with this many columns and rows.
     pub fn new(context: &GpuContext, [width, height]: [u32; 2]) -> Result<Self, GpuError> {
         let limits = context.device.limits();
         let limit = limits.max_texture_dimension_2d;
@@ -48,18 +48,18 @@ impl Layers {
         Ok(Self { view, size, layer_of: Recent::new(layers) })
     }
 
-    /// Columns and rows of the largest picture that has room.
+    /// Returns the columns and rows of the largest picture that fits.
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// All layers, for kernels.
+    /// Returns a view of all layers for kernels.
     pub fn view(&self) -> &wgpu::TextureView {
         &self.view
     }
 
-    /// The layer of a picture; uploads it unless that was done before. It stays where it is while seven others are asked
-    /// for.
+    /// Returns the layer of a picture, which is uploaded unless it is there already. It keeps its layer while up to seven
+    /// others are requested.
     pub fn layer(&mut self, context: &GpuContext, picture: &Arc<Picture>) -> Result<u32, GpuError> {
         let Picture { width, height, ref pixels } = **picture;
         if pixels.len() as u64 != u64::from(width) * u64::from(height) {

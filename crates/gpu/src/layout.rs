@@ -1,4 +1,4 @@
-//! Structures shared with the shaders, laid out as WGSL has them; a test compares every offset with naga's.
+//! Structures shared with the shaders, laid out as in WGSL; a test compares every offset with naga's.
 
 use bytemuck::{Pod, Zeroable};
 use reality_sim_core::{
@@ -189,7 +189,7 @@ pub(crate) struct SourceLayout {
     padding: u32,
 }
 
-/// All sources of a picture.
+/// All sources of one picture.
 pub(crate) type SourcesLayout = [SourceLayout; MAX_SOURCES];
 
 impl From<CameraPose> for ParticleLayout {
@@ -268,7 +268,7 @@ impl SettingsLayout {
     }
 }
 
-/// A fourth number that nobody reads.
+/// Appends an unused fourth number.
 fn padded([x, y, z]: [f32; 3]) -> [f32; 4] {
     [x, y, z, 0.0]
 }
@@ -327,7 +327,7 @@ impl SceneLayout {
 }
 
 impl SourceLayout {
-    /// A source whose picture lies in this layer of the texture.
+    /// Describes a source whose picture is in this layer of the texture.
     pub fn new(source: &Source, layer: u32) -> Self {
         Self {
             camera: CameraLayout::from(source.camera),
@@ -349,7 +349,7 @@ mod tests {
     use super::*;
     use crate::shader::source;
 
-    /// Names and offsets of a struct's members, and its size, as a shader has them.
+    /// Returns the names and offsets of a struct's members, and its size, as a shader declares them.
     fn in_shader(shader: &str, name: &str) -> (Vec<(String, u32)>, u32) {
         let module = naga::front::wgsl::parse_str(&source(shader).unwrap()).unwrap();
         let (_, found) = module.types.iter().find(|(_, kind)| kind.name.as_deref() == Some(name)).unwrap();
@@ -359,7 +359,7 @@ mod tests {
 
     macro_rules! assert_same_layout {
         ($rust:ident in $shader:literal as $name:literal: $($member:ident)+) => {
-            // Without `..`: a member left out of the list does not compile.
+            // The pattern has no `..`, so it does not compile when a member is missing from the list.
             let _ = |$rust { $($member: _),+ }: $rust| ();
             let expected = vec![$((stringify!($member).to_owned(), offset_of!($rust, $member) as u32)),+];
             assert_eq!(in_shader($shader, $name), (expected, size_of::<$rust>() as u32), $name);

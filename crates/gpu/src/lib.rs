@@ -1,19 +1,19 @@
 //! Reality Sim's observation models, particle filter and picture warp on the GPU: the same results as
 //! [`reality_sim_core::backend::CpuBackend`] gives, from compute shaders through wgpu.
 //!
-//! | type | what |
+//! | type | purpose |
 //! |---|---|
 //! | [`adapters`], [`AdapterSummary`] | the graphics adapters of this machine, and what they can do |
 //! | [`GpuContext`] | an open device |
-//! | [`GpuBackend`] | it, as a [`reality_sim_core::backend::Backend`] for all that computes |
-//! | [`GpuScorer`] | weights of poses, given a picture |
-//! | [`GpuFilter`] | the particle filter, one submission a frame |
+//! | [`GpuBackend`] | an open device as a [`reality_sim_core::backend::Backend`] |
+//! | [`GpuScorer`] | log-weights of poses, given a picture |
+//! | [`GpuFilter`] | the particle filter, one submission per frame |
 //! | [`GpuWarper`] | a picture drawn from others |
-//! | [`compare_scores`], [`compare_filters`], [`compare_warps`] | whether a device computes what the CPU does |
-//! | [`GpuError`] | what is missing or failed, and what helps |
+//! | [`compare_scores`], [`compare_filters`], [`compare_warps`] | whether a device computes the same as the CPU |
+//! | [`GpuError`] | what is missing or has failed, and the remedy |
 //!
-//! The shaders lie in `shaders/`, one entry point a file, named as their twins on the CPU. No window is needed. Units and
-//! frames are those of [`reality_sim_core::pose`].
+//! The shaders are in `shaders/`, one entry point per file, named like their twins on the CPU. No window is needed. Units
+//! and frames are those of [`reality_sim_core::pose`].
 //!
 //! ```
 //! use std::sync::Arc;
@@ -67,7 +67,7 @@ pub use self::{
     warp_twins::{WARP_TOLERANCE, WarpComparison, compare_warps},
 };
 
-/// A device for tests: the best adapter there is. Without one a test fails and says what to install.
+/// Opens the best adapter for tests. Without an adapter the test fails and says what to install.
 #[cfg(test)]
 fn test_context() -> std::sync::Arc<GpuContext> {
     std::sync::Arc::new(GpuContext::new(None).unwrap_or_else(|error| panic!("{error}")))

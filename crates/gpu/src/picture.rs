@@ -1,4 +1,4 @@
-//! A picture on the device: uploaded, turned grey, blurred, masked and packed for the scoring kernels.
+//! A picture on the device: uploaded, converted to grey, blurred, masked and packed for the scoring kernels.
 
 use std::sync::Arc;
 
@@ -16,52 +16,52 @@ use crate::{
     layout::PictureLayout,
 };
 
-/// Every row begins with a new word.
+/// Pixels per word; every row begins with a new word.
 const PIXELS_OF_WORD: u32 = 4;
-/// Threads of a workgroup, each with a word.
+/// Threads per workgroup; each handles one word.
 const PICTURE_THREADS: u32 = 64;
 
-/// Takes pictures over and prepares them.
+/// Uploads pictures and prepares them for scoring.
 #[derive(Debug)]
 pub(crate) struct PictureStage {
     sources: Sources,
     inside: wgpu::Buffer,
     texels: wgpu::TextureView,
-    /// What follows the source's own kernel.
+    /// Kernels that run after the source's own one.
     kernels: Vec<BoundKernel>,
     groups: [u32; 2],
 }
 
-/// Where pictures come in.
+/// Buffers into which pictures are uploaded.
 #[derive(Debug)]
 enum Sources {
-    /// Colour pictures in two buffers: the next one is uploaded while this one is computed with.
+    /// Colour pictures in two buffers: the next one is uploaded while the current one is processed.
     Color { slots: [ColorSlot; 2], current: usize },
-    /// Evidence for white lines.
+    /// Evidence for white lines, one value per pixel.
     Evidence(wgpu::Buffer),
 }
 
 #[derive(Debug)]
 struct ColorSlot {
     buffer: wgpu::Buffer,
-    /// Held so that no other picture can lie at its place in memory.
+    /// Kept alive so that no other picture can take its address in memory.
     picture: Option<Arc<RgbImage>>,
     to_grey: BoundKernel,
 }
 
-/// What the kernels of a picture read and write.
+/// Buffers that the kernels of a picture read and write.
 struct Buffers {
-    /// Its size and settings.
+    /// Size and settings of the picture.
     picture: wgpu::Buffer,
     blur_weights: wgpu::Buffer,
-    /// The border's mask.
+    /// Mask of the field's border.
     inside: wgpu::Buffer,
     grey: wgpu::Buffer,
-    /// The picture half done.
+    /// Intermediate result of the two-pass kernels.
     across: wgpu::Buffer,
-    /// The picture that is scored.
+    /// Picture that is scored.
     image: wgpu::Buffer,
-    /// Words of the picture, four pixels each.
+    /// Number of words of the picture, four pixels each.
     words: u32,
 }
 
@@ -99,7 +99,7 @@ impl Buffers {
         })
     }
 
-    /// From evidence for white lines to the distance from them.
+    /// Returns the kernels from evidence for white lines to the distance from them.
     fn distance_kernels(&self, context: &GpuContext) -> (Sources, Vec<BoundKernel>) {
         let Self { picture, grey, across, image, .. } = self;
         let bind = |name, buffers: &[&wgpu::Buffer]| Kernel::new(context, name).bind(context, buffers);
@@ -111,7 +111,7 @@ impl Buffers {
         (Sources::Evidence(grey.clone()), kernels)
     }
 
-    /// From a colour picture to a grey one, blurred or not.
+    /// Returns the kernels from a colour picture to a grey one, blurred or not.
     fn color_kernels(
         &self,
         context: &GpuContext,
@@ -142,7 +142,7 @@ fn bytes_of(words: u32) -> usize {
 }
 
 impl PictureStage {
-    /// Prepares for pictures of a camera, as a model wants them.
+    /// Prepares for pictures of this camera, processed as the model needs them.
     pub fn new(context: &GpuContext, camera: &Camera, model: &LineModel) -> Result<Self, GpuError> {
         let blur_weights = gaussian_kernel(model.config.blur_sigma_px);
         let buffers = Buffers::new(context, camera, model, &blur_weights)?;
@@ -161,12 +161,12 @@ impl PictureStage {
         Ok(Self { sources, inside, texels, kernels, groups })
     }
 
-    /// The packed picture that scoring kernels read.
+    /// Returns the packed picture that the scoring kernels read.
     pub fn texels(&self) -> &wgpu::TextureView {
         &self.texels
     }
 
-    /// Takes over a picture; uploads it unless that was done before.
+    /// Loads a picture; it is uploaded unless that was done before.
     pub fn load(&mut self, context: &GpuContext, picture: &Prepared) {
         write(context, &self.inside, &picture.border.inside_bits());
         match &mut self.sources {
@@ -184,16 +184,16 @@ impl PictureStage {
         }
     }
 
-    /// Uploads the next picture beside the one in use.
+    /// Uploads the next picture while the current one stays in use.
     pub fn upload_next(&mut self, context: &GpuContext, next: &Arc<RgbImage>) {
         if let Sources::Color { slots, current } = &mut self.sources {
             slots[1 - *current].upload(context, next);
-            // What is written waits for a submission: without one the copy would only begin with the next frame's work.
+            // Writes wait for a submission: without one the copy would only begin with the next frame's work.
             context.queue.submit([]);
         }
     }
 
-    /// Prepares the picture loaded last.
+    /// Returns the steps that prepare the picture loaded last.
     pub fn steps(&self) -> impl Iterator<Item = Step<'_>> {
         let to_grey = match &self.sources {
             Sources::Color { slots, current } => Some(&slots[*current].to_grey),
@@ -214,7 +214,7 @@ impl ColorSlot {
     }
 }
 
-/// Four neighbouring pixels a texel.
+/// Creates the texture that holds four neighbouring pixels per texel.
 fn packed_texture(context: &GpuContext, camera: &Camera) -> wgpu::Texture {
     use wgpu::TextureUsages as Usage;
     context.device.create_texture(&wgpu::TextureDescriptor {
@@ -229,7 +229,7 @@ fn packed_texture(context: &GpuContext, camera: &Camera) -> wgpu::Texture {
     })
 }
 
-/// Writes pixels of so many bytes each, every row filled up to whole words of four pixels.
+/// Writes pixels of this many bytes each; every row is padded to whole words of four pixels.
 fn write_rows(context: &GpuContext, buffer: &wgpu::Buffer, bytes: &[u8], width: u32, pixel_bytes: u32) {
     let row = (width * pixel_bytes) as usize;
     let filled = (width.next_multiple_of(PIXELS_OF_WORD) * pixel_bytes) as usize;
@@ -257,7 +257,7 @@ mod tests {
     use super::*;
     use crate::{buffers::readback, kernel::run_steps, test_context};
 
-    /// A bright, noisy carpet with white stripes under a grey sky.
+    /// Draws a bright, noisy carpet with white stripes under a grey sky.
     fn scene(camera: &Camera, seed: u64) -> Arc<RgbImage> {
         let stream = Stream::new(seed, Purpose::Initialise, 0, 0);
         let horizon = camera.height / 3 + seed as u32 * 7;
@@ -273,7 +273,7 @@ mod tests {
 
     fn on_device(context: &GpuContext, stage: &PictureStage) -> Vec<u32> {
         let size = stage.texels.texture().size();
-        // Rows in a buffer begin at multiples of 256 bytes.
+        // Rows in a buffer start at multiples of 256 bytes.
         let stride = (4 * size.width).next_multiple_of(256);
         let bytes = (stride * size.height) as usize;
         let target = readback(context, "the packed picture read back", bytes).unwrap();
@@ -296,7 +296,7 @@ mod tests {
         words.chunks((stride / 4) as usize).flat_map(|row| row[..size.width as usize].to_vec()).collect()
     }
 
-    /// All kernels that prepare a picture, for pictures whose rows are and are not whole words.
+    /// Runs all kernels that prepare a picture, with rows that do and do not fill whole words.
     #[test]
     fn pictures_are_prepared_as_on_the_cpu() {
         let context = test_context();
@@ -329,7 +329,7 @@ mod tests {
                     assert!(!model.is_masked() || image.contains(&0), "something is masked");
                     let expected = Texture::pack(&image);
                     let texels = on_device(&context, &stage);
-                    // The blur's last digit decides between two grey levels where a value lies between them.
+                    // Where a value is halfway between two grey levels, the last digit of the blur decides.
                     let bytes =
                         |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
                     let (found, expected) = (bytes(&texels), bytes(&expected.texels()[..pixels]));

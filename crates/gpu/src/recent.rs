@@ -1,8 +1,9 @@
-//! What is kept on the device as long as it may be asked for again.
+//! Cache of values on the device.
 
 use std::sync::{Arc, Weak};
 
-/// Values made for keys, the last ones used of them. A key is what an [`Arc`] points to; it is not kept alive.
+/// Values by key, of which the most recently used are kept. A key is identified by what an [`Arc`] points to, which is not
+/// kept alive.
 #[derive(Debug)]
 pub(crate) struct Recent<K, V> {
     slots: Vec<Slot<K, V>>,
@@ -12,20 +13,20 @@ pub(crate) struct Recent<K, V> {
 
 #[derive(Debug)]
 struct Slot<K, V> {
-    /// No other key can lie where it points to: a weak reference, too, holds its place in memory.
+    /// No other key can have the same address: even a weak reference keeps the memory allocated.
     key: Weak<K>,
     value: V,
     used: u64,
 }
 
 impl<K, V> Recent<K, V> {
-    /// At most so many values, at least one.
+    /// Creates a cache for at most this many values, at least one.
     pub fn new(capacity: usize) -> Self {
         Self { slots: Vec::new(), capacity: capacity.max(1), clock: 0 }
     }
 
-    /// The value of a key. Where there is none it is made for the slot whose number `make` is told, and what was in that
-    /// slot goes: a value whose key is gone, or else the one not used for longest.
+    /// Returns the value of a key. If there is none, `make` makes it for the slot whose number it gets, and the slot's old
+    /// value is dropped: one whose key is gone, or else the least recently used one.
     pub fn get_or_make<E>(
         &mut self,
         key: &Arc<K>,
@@ -49,7 +50,7 @@ impl<K, V> Recent<K, V> {
         Ok(&mut slot.value)
     }
 
-    /// The slot that is taken next.
+    /// Returns the slot to be overwritten next.
     fn free(&self) -> usize {
         let count = self.slots.len();
         let rank = |&index: &usize| (self.slots[index].key.strong_count() > 0, self.slots[index].used);
@@ -63,7 +64,7 @@ mod tests {
 
     use super::*;
 
-    /// The slot of a key, and whether it was made.
+    /// Returns the slot of a key, and whether its value was made.
     fn slot(recent: &mut Recent<u32, usize>, key: &Arc<u32>) -> (usize, bool) {
         let mut is_made = false;
         let slot = recent.get_or_make(key, |slot| {
@@ -102,7 +103,7 @@ mod tests {
     fn a_key_is_never_taken_for_one_that_is_gone() {
         let mut recent = Recent::new(2);
         for value in 0..100 {
-            // Most allocators would put every key where the one before was.
+            // Most allocators would give every key the address of the previous one.
             assert!(slot(&mut recent, &Arc::new(value)).1);
         }
     }

@@ -20,10 +20,10 @@ use crate::{
     scoring::LineScoring,
 };
 
-/// Poses scored by one dispatch at most: what is uploaded and read back at once stays below a few megabytes.
+/// Largest number of poses per dispatch: it limits each upload and read-back to a few megabytes.
 const POSES_PER_DISPATCH: usize = 1 << 17;
 
-/// Log-weights by compute shaders.
+/// Scorer that computes log-weights in compute shaders.
 #[derive(Debug)]
 pub struct GpuScorer {
     context: Arc<GpuContext>,
@@ -32,7 +32,7 @@ pub struct GpuScorer {
     poses: Mutex<PoseBuffers>,
 }
 
-/// Poses on their way to the device, and their sums on the way back.
+/// Buffers for poses on their way to the device and for their sums on the way back.
 #[derive(Debug)]
 struct PoseBuffers {
     capacity: usize,
@@ -43,7 +43,7 @@ struct PoseBuffers {
 }
 
 impl GpuScorer {
-    /// Prepares the samples of a field's lines for a camera, on the device.
+    /// Prepares the samples of a field's lines on the device, for one camera.
     pub fn new(
         context: Arc<GpuContext>,
         camera: &Camera,
@@ -58,7 +58,7 @@ impl GpuScorer {
         Ok(Self { context, picture, scoring, poses })
     }
 
-    /// The sums that the shader returns for every pose, see [`reality_sim_core::observation::CpuScorer::sums`].
+    /// Returns the shader's sums for every pose, see [`reality_sim_core::observation::CpuScorer::sums`].
     pub fn sums(&self, poses: &[CameraPose]) -> Result<Vec<[f32; 2]>, GpuError> {
         let mut sums = Vec::with_capacity(poses.len());
         for chunk in poses.chunks(POSES_PER_DISPATCH) {

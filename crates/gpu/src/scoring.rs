@@ -1,4 +1,4 @@
-//! The scoring kernels: the sums along the lines of every pose in a buffer.
+//! The scoring kernels: sums along the lines for every pose in a buffer.
 
 use reality_sim_core::{
     camera::Lens,
@@ -13,7 +13,7 @@ use crate::{
     layout::{CameraLayout, SettingsLayout},
 };
 
-/// A camera and the samples of a field's lines on the device.
+/// Camera and samples of a field's lines on the device.
 #[derive(Debug)]
 pub(crate) struct LineScoring {
     model: LineModel,
@@ -26,7 +26,7 @@ pub(crate) struct LineScoring {
 }
 
 impl LineScoring {
-    /// Prepares a model.
+    /// Prepares the kernels of a model.
     pub fn new(context: &GpuContext, model: LineModel) -> Result<Self, GpuError> {
         let kernel = match model.config.kind {
             ObservationKind::Contrast => "contrast_along_lines",
@@ -45,12 +45,12 @@ impl LineScoring {
         })
     }
 
-    /// The model that is scored.
+    /// Returns the model that is scored.
     pub fn model(&self) -> &LineModel {
         &self.model
     }
 
-    /// How bright lines and carpet are in the picture scored next.
+    /// Sets how bright lines and carpet are in the picture that is scored next.
     pub fn set_levels(&mut self, levels: WhiteLevels) {
         self.levels = levels;
     }
@@ -69,7 +69,7 @@ impl LineScoring {
         )
     }
 
-    /// Tells the kernel how many poses come; gives the workgroups it takes.
+    /// Sets the number of poses and returns the workgroups that they need.
     pub fn configure(&self, context: &GpuContext, poses: usize) -> [u32; 2] {
         let groups = groups(context, poses as u32);
         let scale = self.model.contrast_scale(&self.levels);
@@ -80,7 +80,7 @@ impl LineScoring {
     }
 }
 
-/// Line samples as a texture: what runs on a processor reads many places of one faster than of a buffer.
+/// Stores the line samples as a texture: drivers that run on a processor read a texture faster than a buffer.
 fn sample_texture(context: &GpuContext, places: &[[[f32; 2]; 2]]) -> wgpu::TextureView {
     const IN_ROW: usize = 1024;
     let mut values: Vec<[[f32; 2]; 2]> = places.to_vec();

@@ -1,13 +1,14 @@
-//! The shaders' source, from `shaders/`, which leads to the folder of that name at the workspace's top: `#import shared/….wgsl` lines are replaced by the files they name.
+//! Source of the shaders in `shaders/`, a link to the workspace's folder of that name. Lines `#import shared/….wgsl` are
+//! replaced by the files that they name.
 
-/// Names the files in `shaders/`; a test holds the list complete.
+/// Lists the files in `shaders/`; a test ensures that the list is complete.
 macro_rules! files {
     ($($name:literal),+ $(,)?) => {
         &[$(($name, include_str!(concat!("../shaders/", $name)))),+]
     };
 }
 
-/// Every file in `shaders/`, by its path from there.
+/// Every file in `shaders/`, by its path relative to that folder.
 pub(crate) const FILES: &[(&str, &str)] = files![
     "alternatives.wgsl",
     "blend.wgsl",
@@ -46,7 +47,7 @@ pub(crate) const FILES: &[(&str, &str)] = files![
     "whiteness.wgsl",
 ];
 
-/// A shader with its imports, each once; `None` where it or one of them does not exist.
+/// Returns a shader with its imports, each included once; `None` if it or one of them does not exist.
 pub(crate) fn source(path: &str) -> Option<String> {
     let mut source = String::new();
     import(path, &mut Vec::new(), &mut source)?;
@@ -95,7 +96,7 @@ mod tests {
         assert_eq!(listed, files_in(&folder, ""));
     }
 
-    /// Every header names a function of the file it names.
+    /// Checks that every header names a function that exists in the file it names.
     #[test]
     fn every_shader_has_a_twin_on_the_cpu() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -115,7 +116,7 @@ mod tests {
         }
     }
 
-    /// All failures at once, each with its path.
+    /// Reports all failures at once, each with its path.
     #[test]
     fn every_shader_is_valid_and_has_one_entry_point_of_its_own_name() {
         let mut failures = Vec::new();

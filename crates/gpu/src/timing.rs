@@ -1,8 +1,8 @@
-//! How long kernels take on the device, by its own clock.
+//! Running times of kernels, by the device's own clock.
 
 use crate::{GpuContext, GpuError, buffers::readback, kernel::Step};
 
-/// Runs kernels one after the other, each in a pass of its own; seconds of each.
+/// Runs kernels one after the other, each in its own pass, and returns the seconds that each took.
 pub(crate) fn timed_steps(context: &GpuContext, steps: &[Step<'_>]) -> Result<Vec<f64>, GpuError> {
     if !context.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
         return Err(GpuError::CannotTime { adapter: context.adapter().name.clone() });

@@ -1,4 +1,4 @@
-//! Do the shaders compute on this device what their twins compute on the CPU? On seeded scenes, with every lens model.
+//! Comparison of the shaders with their twins on the CPU, on seeded scenes with every lens model.
 
 use std::sync::Arc;
 
@@ -16,27 +16,27 @@ use reality_sim_core::{
 
 use crate::{GpuContext, GpuFilter, GpuScorer};
 
-/// Sums along the lines may differ by this, relative to what they sum up: the order of the additions differs.
+/// Relative difference allowed between sums along the lines, which are added in a different order.
 pub const SCORE_TOLERANCE: f64 = 1e-4;
-/// So many poses may have a sample that falls to the picture's other side at its very edge.
+/// Fraction of poses allowed to have a sample at the picture's edge that only one twin sees.
 pub const EDGE_TOLERANCE: f64 = 0.03;
-/// Poses of a scene.
+/// Number of poses per scene.
 const POSES: u32 = 200;
 
-/// How far a scoring kernel is from its twin.
+/// Difference between a scoring kernel and its twin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScoreComparison {
-    /// The observation model.
+    /// Observation model.
     pub kind: ObservationKind,
-    /// The lens, by COLMAP's name.
+    /// Camera model, by COLMAP's name.
     pub lens: &'static str,
-    /// Poses scored.
+    /// Number of poses scored.
     pub poses: usize,
-    /// Poses that see any line.
+    /// Number of poses that see any line.
     pub seeing: usize,
-    /// Largest difference of a pose's sum, relative; samples at the picture's edge apart.
+    /// Largest relative difference of a pose's sum, not counting samples at the picture's edge.
     pub worst: f64,
-    /// Fraction of the poses that have a sample at the picture's edge which only one of the two sees.
+    /// Fraction of the poses with a sample at the picture's edge that only one of the two sees.
     pub edges: f64,
 }
 
@@ -47,13 +47,13 @@ impl ScoreComparison {
     }
 }
 
-/// Compares every model with every lens on so many scenes.
+/// Compares every observation model with every lens on this many scenes.
 pub fn compare_scores(context: &Arc<GpuContext>, scenes: u64) -> Result<Vec<ScoreComparison>, BackendError> {
     let field = FieldDimensions::preset("humanoid-kidsize-2010").expect("a preset of the core");
     let cameras = cameras().expect("lenses that are valid");
     let mut comparisons = Vec::new();
     for kind in [ObservationKind::Gauss, ObservationKind::Distance, ObservationKind::Contrast] {
-        // Noise has no border.
+        // A picture of noise has no field border.
         let config = ObservationConfig { mask_border: false, ..ObservationConfig::new(kind) };
         for camera in &cameras {
             let gpu = GpuScorer::new(context.clone(), camera, &field, config)?;
@@ -64,27 +64,27 @@ pub fn compare_scores(context: &Arc<GpuContext>, scenes: u64) -> Result<Vec<Scor
     Ok(comparisons)
 }
 
-/// How far the filter's kernels are from their twins.
+/// Differences between the filter's kernels and their twins.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct FilterComparison {
-    /// Updates of one iteration, each from particles of its own.
+    /// Number of updates, each of one iteration with new particles.
     pub updates: usize,
-    /// Updates whose best particle is the same to a tenth of a millimetre and of a milliradian.
+    /// Number of updates whose best particle agrees to 0.1 mm and 0.1 mrad.
     pub same_best: usize,
-    /// Survivors in all updates.
+    /// Number of survivors in all updates.
     pub survivors: usize,
-    /// Survivors that are the same in the same place.
+    /// Number of survivors that are the same particle in the same slot.
     pub same_survivors: usize,
 }
 
 impl FilterComparison {
-    /// Whether both compute the same: a particle whose expected copies lie at a whole number may get one more or less.
+    /// Whether both compute the same: a particle whose expected number of copies is nearly whole may get one more or less.
     pub fn agrees(&self) -> bool {
         self.same_best == self.updates && 50 * (self.survivors - self.same_survivors) <= self.survivors
     }
 }
 
-/// Compares an iteration of the filter, systematic resampling, on so many scenes.
+/// Compares one iteration of the filter with systematic resampling on this many scenes.
 pub fn compare_filters(context: &Arc<GpuContext>, scenes: u64) -> Result<FilterComparison, BackendError> {
     let field = FieldDimensions::preset("humanoid-kidsize-2010").expect("a preset of the core");
     let camera = &cameras().expect("lenses that are valid")[0];
@@ -162,7 +162,7 @@ fn compare(
     Ok(comparison)
 }
 
-/// One camera of every model, and one with an image circle.
+/// Returns one camera of every model, and one with an image circle.
 pub(crate) fn cameras() -> Result<Vec<Camera>, InvalidCamera> {
     let fisheye = |k| Distortion::OpencvFisheye(OpencvFisheye { k });
     let opencv = Opencv { k1: -0.12, k2: 0.03, p1: 0.001, p2: -0.002, k3: 0.0 };
@@ -172,12 +172,12 @@ pub(crate) fn cameras() -> Result<Vec<Camera>, InvalidCamera> {
         Camera::new([608, 800], [330.2, 330.2, 292.1, 401.3], fisheye([-0.033, 0.001, 0.0, 0.0]))?
             .with_image_circle(Some(circle)),
         Camera::new([640, 480], [620.0, 618.0, 306.9, 231.7], Distortion::Opencv(opencv))?,
-        // Not a multiple of four pixels.
+        // The width is not a multiple of four pixels.
         Camera::new([317, 239], [250.0, 250.0, 160.0, 120.0], Distortion::Pinhole)?,
     ])
 }
 
-/// A picture with light and dark at all scales, and poses all over the field.
+/// Makes a picture with light and dark at all scales, and poses all over the field.
 pub(crate) fn scene(camera: &Camera, seed: u64) -> (RgbImage, Vec<CameraPose>) {
     let stream = Stream::new(seed, Purpose::Initialise, 0, 0);
     let picture = RgbImage::from_fn(camera.width, camera.height, |u, v| {

@@ -17,30 +17,30 @@ use crate::{
     recent::Recent,
 };
 
-/// Threads of a workgroup, a pixel each.
+/// Threads per workgroup; each draws one pixel.
 const THREADS: u32 = 64;
-/// Cameras whose rays are kept.
+/// Number of cameras whose rays are kept.
 const RAY_TABLES: usize = 4;
 
-/// Rays as `RayTable` has them.
+/// Rays in the layout of `RayTable`.
 type Rays = Vec<[Lanes; 3]>;
 
-/// Colour and source in a word, then the trust.
+/// One word with colour and source, and one with the trust.
 type WarpedWords = [u32; 2];
 
-/// Pictures by a compute shader, see [`reality_sim_core::warp::blend`]. What it draws from is kept on the device: a picture
-/// is uploaded when it is first drawn from, the rays of a camera when they are first followed. Threads take turns.
+/// Warper in a compute shader, see [`reality_sim_core::warp::blend`]. Inputs are kept on the device: a picture is uploaded
+/// when it is first drawn from, and the rays of a camera when they are first used. Threads take turns.
 #[derive(Debug)]
 pub struct GpuWarper {
     context: Arc<GpuContext>,
-    /// One for each kind of lenses.
+    /// One kernel for each value of [`Lenses`].
     kernels: [Kernel; 3],
     scene: wgpu::Buffer,
     sources: wgpu::Buffer,
     kept: Mutex<Kept>,
 }
 
-/// What one picture leaves for the next.
+/// Buffers and textures that are kept from one picture to the next.
 #[derive(Debug)]
 struct Kept {
     layers: Layers,
@@ -48,7 +48,7 @@ struct Kept {
     outputs: Outputs,
 }
 
-/// Pixels on their way back.
+/// Buffers for the pixels on their way back.
 #[derive(Debug)]
 struct Outputs {
     pixels: usize,
@@ -57,7 +57,7 @@ struct Outputs {
 }
 
 impl GpuWarper {
-    /// On a device that was opened before.
+    /// Makes a warper for a device that is already open.
     pub fn new(context: Arc<GpuContext>) -> Result<Self, GpuError> {
         let kernel = |lenses: Lenses| {
             Kernel::with_constants(&context, "blend", &[("lenses", f64::from(lenses as u32))])
@@ -78,7 +78,7 @@ impl GpuWarper {
         Ok(warper)
     }
 
-    /// See [`reality_sim_core::warp::blend`].
+    /// Draws a picture, see [`reality_sim_core::warp::blend`].
     pub fn draw(
         &self,
         target: &Target,
@@ -142,7 +142,7 @@ impl Warper for GpuWarper {
 }
 
 impl Kept {
-    /// Room for a picture of so many pixels from these sources.
+    /// Makes room for a picture with this many pixels from these sources.
     fn make_room(&mut self, context: &GpuContext, pixels: usize, sources: &[Source]) -> Result<(), GpuError> {
         let size = sources.iter().fold(self.layers.size(), |[width, height], source| {
             [width.max(source.picture.width), height.max(source.picture.height)]
@@ -168,7 +168,7 @@ impl Outputs {
     }
 }
 
-/// What `lenses` means in `shaders/blend.wgsl`.
+/// Values of `lenses` in `shaders/blend.wgsl`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Lenses {
     Perspective,
@@ -185,7 +185,7 @@ fn lenses(sources: &[Source]) -> Lenses {
     }
 }
 
-/// Rays for the kernel: 0 where a pixel sees nothing, since shaders need not know NaN.
+/// Uploads rays for the kernel: 0 where a pixel sees nothing, since shaders need not support NaN.
 fn ray_buffer(context: &GpuContext, rays: &Rays) -> Result<wgpu::Buffer, GpuError> {
     let known = |value: &f32| if value.is_nan() { 0.0 } else { *value };
     let values: Vec<f32> = rays.as_flattened().as_flattened().iter().map(known).collect();
@@ -213,13 +213,13 @@ mod tests {
         CameraPose::new(Pose2::new(x_m, 0.0, 0.0), 0.5, 0.3, 0.0)
     }
 
-    /// A picture of one colour.
+    /// Makes a picture of one colour.
     fn plain([width, height]: [u32; 2], value: u8) -> Arc<Picture> {
         let word = u32::from_le_bytes([value, 255 - value, 7, 0]);
         Arc::new(Picture { width, height, pixels: vec![word; (width * height) as usize] })
     }
 
-    /// What the warper draws at a size from pictures along a line; asserts that it is what the CPU draws.
+    /// Draws at a size from pictures along a line, asserts that the CPU draws the same, and returns it.
     fn drawn(warper: &GpuWarper, size: [u32; 2], pictures: &[Arc<Picture>]) -> Warped {
         let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
         let proxy = ProxyGeometry::new(&Hall::usual(&field), &field);
@@ -255,7 +255,7 @@ mod tests {
             drawn(&warper, size, &pictures[..1]);
             drawn(&warper, size, &pictures);
         }
-        // More than are ever mixed.
+        // More sources than are ever blended.
         drawn(&warper, [40, 30], &vec![pictures[0].clone(); MAX_SOURCES + 3]);
     }
 
@@ -263,7 +263,7 @@ mod tests {
     fn a_new_picture_is_never_taken_for_an_old_one() {
         let warper = GpuWarper::new(test_context()).unwrap();
         let lasting = plain([40, 30], 128);
-        // More than there are layers; each is gone before the next one is made.
+        // More pictures than there are layers; each is dropped before the next one is made.
         for number in 0..300 {
             let value = (number % 200) as u8 + 20;
             let warped = drawn(&warper, [20, 16], &[plain([40, 30], value)]);
@@ -272,7 +272,7 @@ mod tests {
                 drawn(&warper, [20, 16], &[lasting.clone(), plain([40, 30], value)]);
             }
         }
-        // And with all of them alive.
+        // The same with all of them alive.
         let pictures: Vec<_> = (0..300).map(|number| plain([40, 30], (number % 251) as u8)).collect();
         pictures.chunks(MAX_SOURCES).chain(pictures.chunks(3)).for_each(|pictures| {
             drawn(&warper, [20, 16], pictures);

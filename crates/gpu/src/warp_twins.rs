@@ -1,4 +1,4 @@
-//! Does the shader draw what its twin on the CPU draws? On seeded scenes, with every lens model among the sources.
+//! Comparison of the warp shader with its twin on the CPU, on seeded scenes with every lens model among the sources.
 
 use std::sync::Arc;
 
@@ -16,23 +16,23 @@ use reality_sim_core::{
 
 use crate::{GpuContext, GpuError, GpuWarper};
 
-/// So many of the pixels may differ by more than a grey level, come from another source, or differ in trust by more than
-/// two: those at the edges of goals, of the proxy geometry and of what a source sees fall to one side here and to the other there,
-/// and of two sources that are worth the same either may be named.
+/// Fraction of the pixels that may differ by more than one grey level, come from another source, or differ in trust by
+/// more than two. Rounding decides at the edges of goals, of the proxy geometry and of what a source sees, and between two
+/// sources of equal weight.
 pub const WARP_TOLERANCE: f64 = 1e-4;
 
-/// How far the shader is from its twin.
+/// Difference between the shader and its twin.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct WarpComparison {
-    /// Pixels drawn.
+    /// Number of pixels drawn.
     pub pixels: usize,
-    /// Pixels that a source saw.
+    /// Number of pixels that a source saw.
     pub seen: usize,
-    /// Pixels with a channel that differs by more than a grey level.
+    /// Number of pixels with a channel that differs by more than one grey level.
     pub other_color: usize,
-    /// Pixels from another source.
+    /// Number of pixels from another source.
     pub other_source: usize,
-    /// Pixels whose trust differs by more than two.
+    /// Number of pixels whose trust differs by more than two.
     pub other_trust: usize,
 }
 
@@ -45,7 +45,7 @@ impl WarpComparison {
     }
 }
 
-/// Compares pictures from none to all sources on so many scenes.
+/// Compares pictures from every number of sources, zero included, on this many scenes.
 pub fn compare_warps(context: &Arc<GpuContext>, scenes: u64) -> Result<WarpComparison, GpuError> {
     let field = FieldDimensions::preset("humanoid-kidsize-2010").expect("a preset of the core");
     let cameras = cameras().expect("lenses that are valid");
@@ -75,7 +75,7 @@ pub fn compare_warps(context: &Arc<GpuContext>, scenes: u64) -> Result<WarpCompa
     Ok(comparison)
 }
 
-/// Small cameras: one of every model, and one with an image circle.
+/// Returns small cameras: one of every model, and one with an image circle.
 fn cameras() -> Result<Vec<Camera>, InvalidCamera> {
     let fisheye = |k| Distortion::OpencvFisheye(OpencvFisheye { k });
     let opencv = Opencv { k1: -0.12, k2: 0.03, p1: 0.001, p2: -0.002, k3: 0.0 };
@@ -90,7 +90,7 @@ fn cameras() -> Result<Vec<Camera>, InvalidCamera> {
     ])
 }
 
-/// A pose, and what was seen from others around it. Cameras are numbers of the list.
+/// A pose and the pictures seen from other poses around it. Cameras are given by their position in the list.
 struct Scene {
     camera: usize,
     pose: CameraPose,
@@ -105,7 +105,8 @@ struct View {
 }
 
 impl Scene {
-    /// From no view to the most there can be. In every other round of those, all have the same camera.
+    /// Makes a scene with anything from no source to the largest number. In every other scene with the largest number, all
+    /// sources have the same camera.
     fn new(seed: u64, cameras: &[Camera]) -> Self {
         let stream = Stream::new(seed, Purpose::Initialise, 0, 0);
         let round = seed as usize / (MAX_SOURCES + 1);
@@ -139,7 +140,7 @@ impl View {
     }
 }
 
-/// Waves of all three colours with noise over them.
+/// Draws waves in all three channels, with noise on top.
 fn picture(camera: &Camera, stream: &Stream, number: u32) -> Picture {
     let pixel = |index: u32| {
         let (u, v) = (index % camera.width, index / camera.width);

@@ -1,5 +1,5 @@
-//! The shaders against their twins on the CPU. Needs an adapter; the package mesa-vulkan-drivers has one that runs on the
-//! processor.
+//! Comparison of the shaders with their twins on the CPU. Needs an adapter; the package mesa-vulkan-drivers provides one
+//! that runs on the processor.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test")]
 
@@ -30,7 +30,7 @@ fn an_iteration_of_the_filter_is_that_of_the_cpu() {
     assert!(comparison.updates == 24 && comparison.agrees(), "{comparison:?}");
 }
 
-/// From none to all sources, every lens, alone and mixed.
+/// Draws from every number of sources, with every lens, alone and mixed.
 #[test]
 fn pictures_are_drawn_as_on_the_cpu() {
     let context = context();
