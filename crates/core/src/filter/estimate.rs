@@ -1,14 +1,14 @@
-//! One pose from many particles.
+//! Estimates of one pose from many particles.
 
 use serde::{Deserialize, Serialize};
 
 use crate::pose::CameraPose;
 
-/// How the pose is taken from the particles.
+/// How the pose is estimated from the particles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Estimator {
-    /// The particle with the largest weight in any iteration: the paper's.
+    /// Particle with the largest weight in any iteration, as in the paper.
     #[default]
     Best,
     /// Weighted mean of all particles of the last iteration.
@@ -17,13 +17,13 @@ pub enum Estimator {
     Cluster,
 }
 
-/// Particles within this distance of the best one, metres, form its cluster.
+/// Radius around the best particle within which particles form its cluster, metres.
 const CLUSTER_RADIUS_M: f64 = 0.25;
-/// And within this angle, radians.
+/// Difference in heading from the best particle within which particles form its cluster, radians.
 const CLUSTER_ANGLE_RAD: f64 = 0.25;
 
-/// Weighted mean of the particles (of those around `centre` only, if given); angles by their mean direction. `None`
-/// where no particle has any weight.
+/// Returns the weighted mean of the particles (of those around `centre` only, if given); angles are averaged by their mean
+/// direction. Returns `None` if no particle has any weight.
 pub fn weighted_mean(
     particles: &[CameraPose],
     weights: &[f64],
@@ -58,7 +58,7 @@ pub fn weighted_mean(
     })
 }
 
-/// Root of the mean squared distance of the particles from a pose, metres.
+/// Returns the root mean square distance of the weighted particles from a pose, metres.
 pub fn spread_m(particles: &[CameraPose], weights: &[f64], from: CameraPose) -> f64 {
     let squared = |pose: &CameraPose| (pose.x_m - from.x_m).powi(2) + (pose.y_m - from.y_m).powi(2);
     particles.iter().zip(weights).map(|(pose, weight)| weight * squared(pose)).sum::<f64>().sqrt()

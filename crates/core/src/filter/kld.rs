@@ -1,4 +1,4 @@
-//! How many particles are enough: Fox, "KLD-sampling: adaptive particle filters", NIPS 2001.
+//! Number of particles by KLD-sampling: Fox, "KLD-sampling: adaptive particle filters", NIPS 2001.
 
 use std::collections::HashSet;
 
@@ -10,7 +10,7 @@ use crate::pose::CameraPose;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct KldConfig {
-    /// Never fewer than this.
+    /// Minimum number of particles.
     pub min_particles: usize,
     /// Allowed Kullback–Leibler distance between the particles and the true distribution.
     pub epsilon: f64,
@@ -29,7 +29,7 @@ impl Default for KldConfig {
 }
 
 impl KldConfig {
-    /// Particles needed for a cloud that fills as many bins as this one, at most `max_particles`.
+    /// Returns the number of particles needed for a cloud that fills as many bins as this one, at most `max_particles`.
     pub fn particles_needed(&self, cloud: &[CameraPose], max_particles: usize) -> usize {
         let bins: HashSet<[i64; 3]> = cloud
             .iter()

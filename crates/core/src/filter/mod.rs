@@ -1,4 +1,4 @@
-//! The particle filter (Fig. 1 of the paper): initialise, predict, weigh, resample, T iterations a picture.
+//! Particle filter (Fig. 1 of the paper): initialize, predict, weigh and resample, with T iterations per picture.
 
 mod estimate;
 mod kld;

@@ -1,4 +1,4 @@
-//! How particles move from one picture to the next.
+//! Motion model: how particles move from one picture to the next.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,19 +9,19 @@ use crate::pose::Motion2;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MotionNoise {
-    /// Of the place, standing still, metres: the camera sways with every step.
+    /// Position noise while standing still, metres: the camera sways with every step.
     pub still_m: f64,
-    /// Of the heading, standing still, radians.
+    /// Heading noise while standing still, radians.
     pub still_rad: f64,
-    /// Of the place, per metre moved.
+    /// Position noise per metre moved.
     pub m_per_m: f64,
-    /// Of the heading, per radian turned.
+    /// Heading noise per radian turned.
     pub rad_per_rad: f64,
-    /// Of the heading, radians per metre moved.
+    /// Heading noise, radians per metre moved.
     pub rad_per_m: f64,
-    /// Of the place between two pictures where no odometry is used, metres: the paper's prediction.
+    /// Position noise between two pictures without odometry, metres: the paper's prediction.
     pub unknown_m: f64,
-    /// Of the heading between two pictures where no odometry is used, radians.
+    /// Heading noise between two pictures without odometry, radians.
     pub unknown_rad: f64,
 }
 
@@ -39,17 +39,17 @@ impl Default for MotionNoise {
     }
 }
 
-/// Standard deviations of place (each axis) and heading.
+/// Standard deviations of position (along each axis) and heading.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarSigma {
-    /// Metres.
+    /// Standard deviation of x and of y, metres.
     pub position_m: f64,
-    /// Radians.
+    /// Standard deviation of the heading, radians.
     pub yaw_rad: f64,
 }
 
 impl PlanarSigma {
-    /// Of the sum of two independent errors.
+    /// Returns the standard deviations of the sum of two independent errors.
     pub fn plus(self, other: Self) -> Self {
         Self {
             position_m: self.position_m.hypot(other.position_m),
@@ -59,7 +59,7 @@ impl PlanarSigma {
 }
 
 impl MotionNoise {
-    /// Noise of a motion; `None` for a motion that nobody measured.
+    /// Returns the noise of a motion; `None` stands for a motion that was not measured.
     pub fn sigma(&self, motion: Option<Motion2>) -> PlanarSigma {
         match motion {
             Some(motion) => {

@@ -1,4 +1,4 @@
-//! The filter itself, one picture at a time.
+//! The particle filter itself, one picture at a time.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -18,23 +18,23 @@ use crate::{
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FilterConfig {
-    /// Number of particles; with [`FilterConfig::adaptive`] the largest number.
+    /// Number of particles; with [`FilterConfig::adaptive`], the maximum number.
     pub particles: usize,
-    /// Rounds of weighing and resampling for every picture: the paper's T.
+    /// Number of weighing and resampling iterations per picture: the paper's T.
     pub iterations: u32,
-    /// How survivors are chosen.
+    /// Resampling scheme.
     pub resampling: Resampling,
-    /// How the pose is taken from the particles.
+    /// How the pose is estimated from the particles.
     pub estimator: Estimator,
-    /// Same seed, same result.
+    /// Random seed: the same seed gives the same result.
     pub seed: u64,
     /// Noise of the motion between pictures.
     pub noise: MotionNoise,
-    /// Diffusion of each iteration over that of the one before.
+    /// Factor by which the diffusion shrinks from one iteration to the next.
     pub shrink: f64,
-    /// Adapt the number of particles to their spread.
+    /// Settings for adapting the number of particles to their spread; `None` keeps it constant.
     pub adaptive: Option<KldConfig>,
-    /// Particles also differ in height, pitch and roll, by this much; without it these are what joints and IMU say.
+    /// Spread of the particles in height, pitch and roll; `None` gives every particle the mount pose of joints and IMU.
     pub mount_sigma: Option<MountPoseSigma>,
 }
 
@@ -54,10 +54,10 @@ impl Default for FilterConfig {
     }
 }
 
-/// What the filter says after a picture.
+/// Estimate of the filter after a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilterEstimate {
-    /// The pose.
+    /// Estimated pose.
     pub pose: CameraPose,
     /// Log-weight of the best particle.
     pub log_weight: f64,
@@ -69,48 +69,48 @@ pub struct FilterEstimate {
     pub particles: usize,
 }
 
-/// Particles nearer than this to a better one, metres and radians, are no alternatives to it.
+/// Minimum distance of an alternative from any better particle, metres and radians.
 const ALTERNATIVE_DISTANCE: PlanarSigma = PlanarSigma { position_m: 0.12, yaw_rad: 0.08 };
-/// Alternatives kept.
+/// Maximum number of alternatives.
 const ALTERNATIVES: usize = 6;
 
-/// Particles, and how they follow a recording.
+/// Particles that follow a recording.
 #[derive(Debug, Clone)]
 pub struct ParticleFilter {
     config: FilterConfig,
     particles: Vec<CameraPose>,
     frame: u32,
-    /// Rounds of placing particles anew in this frame: each needs random numbers of its own.
+    /// Number of times that particles were placed anew in this frame: each time needs random numbers of its own.
     placements: u32,
-    /// The best particles of the first iteration of this frame that lie apart from each other.
+    /// Best particles of this frame's first iteration that lie apart from each other.
     alternatives: Vec<CameraPose>,
 }
 
 impl ParticleFilter {
-    /// Particles around a start pose.
+    /// Returns a filter with particles around a start pose.
     pub fn new(config: FilterConfig, start: Pose2, sigma: PlanarSigma) -> Self {
         let mut filter = Self::empty(config);
         filter.initialize(&[(start, 1.0)], sigma);
         filter
     }
 
-    /// No particles yet.
+    /// Returns a filter without particles.
     pub fn empty(config: FilterConfig) -> Self {
         Self { config, particles: Vec::new(), frame: 0, placements: 0, alternatives: Vec::new() }
     }
 
-    /// The particles after the last iteration.
+    /// Returns the particles after the last iteration.
     pub fn particles(&self) -> &[CameraPose] {
         &self.particles
     }
 
-    /// The best particles of the last update's first iteration that lie apart from each other, best first: other places
-    /// the picture may have been taken at.
+    /// Returns the best particles of the last update's first iteration that lie apart from each other, best first: other poses
+    /// from which the picture may have been taken.
     pub fn alternatives(&self) -> &[CameraPose] {
         &self.alternatives
     }
 
-    /// Settings in use.
+    /// Returns the settings in use.
     pub fn config(&self) -> &FilterConfig {
         &self.config
     }
@@ -120,15 +120,14 @@ impl ParticleFilter {
         self.particles.iter_mut().for_each(|particle| *particle = particle.mirrored());
     }
 
-    /// Places all particles anew, around several poses in proportion to their weights.
+    /// Replaces all particles by new ones around several poses, in proportion to the weights of the poses.
     pub fn initialize(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) {
         self.particles =
             placed(&self.config, modes, sigma, self.stream(Purpose::Initialise, self.placements));
         self.placements += 1;
     }
 
-    /// Moves the particles to the next picture. Without odometry the previous picture alone predicts this one, as in
-    /// the paper.
+    /// Moves the particles to the next picture. Without odometry they stay where they are and only spread, as in the paper.
     pub fn predict(&mut self, motion: Option<Motion2>) {
         self.frame += 1;
         self.placements = 0;
@@ -140,8 +139,8 @@ impl ParticleFilter {
         });
     }
 
-    /// Weighs and resamples T times against the picture the scorer holds. `sigma` is the diffusion of the first
-    /// iteration. Fails where the scorer's device does.
+    /// Weighs and resamples T times, against the picture that the scorer has loaded. `sigma` is the diffusion of the first
+    /// iteration. Fails if the scorer's device does.
     pub fn update(
         &mut self,
         scorer: &dyn Scorer,
@@ -181,7 +180,7 @@ impl ParticleFilter {
         weights: &[f64],
         mount: MountPose,
     ) -> FilterEstimate {
-        // Without any usable weight every particle is as good as any other.
+        // Without any usable weight, all particles are equally good.
         let (best, log_weight) = best.unwrap_or_else(|| {
             (particles.first().copied().unwrap_or(mount.at(Pose2::default())), f64::NEG_INFINITY)
         });
@@ -199,7 +198,8 @@ impl ParticleFilter {
         }
     }
 
-    /// The first iteration only gives the particles their mount pose: prediction has spread them already.
+    /// Diffuses the particles. The first iteration leaves the planar poses alone, since prediction has spread them already, and
+    /// starts from the mount pose.
     fn diffuse(&mut self, iteration: u32, scale: f64, sigma: PlanarSigma, mount: MountPose) {
         let stream = self.stream(Purpose::Diffuse, iteration);
         let mount_sigma = self.config.mount_sigma.unwrap_or(MountPoseSigma { height_m: 0.0, angle_rad: 0.0 });
@@ -232,7 +232,7 @@ impl ParticleFilter {
     }
 }
 
-/// As many particles as the settings say, around several poses in proportion to their weights.
+/// Returns as many particles as the settings say, around several poses in proportion to their weights.
 pub fn placed(
     config: &FilterConfig,
     modes: &[(Pose2, f64)],
@@ -257,7 +257,7 @@ fn diffused(pose: Pose2, sigma: PlanarSigma, normals: &[f64; 6]) -> Pose2 {
     }
 }
 
-/// The best particles that lie apart from each other, best first.
+/// Returns the best particles that lie apart from each other, best first.
 pub fn alternatives(particles: &[CameraPose], log_weights: &[f64]) -> Vec<CameraPose> {
     let mut order: Vec<usize> = (0..particles.len()).filter(|&index| !log_weights[index].is_nan()).collect();
     order.sort_by(|&a, &b| log_weights[b].total_cmp(&log_weights[a]));

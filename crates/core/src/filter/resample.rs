@@ -1,29 +1,29 @@
-//! Choosing which particles survive, and how often. All schemes are unbiased: the expected number of copies of a
-//! particle is the number asked for times its weight. Douc, Cappé and Moulines, "Comparison of resampling schemes for
+//! Resampling: which particles survive, and with how many copies. All schemes are unbiased: a particle's expected number of
+//! copies is its weight times the total number of survivors. Douc, Cappé and Moulines, "Comparison of resampling schemes for
 //! particle filtering", 2005.
 
 use serde::{Deserialize, Serialize};
 
 use super::rng::Stream;
 
-/// How survivors are chosen.
+/// Resampling scheme.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Resampling {
-    /// ⌊n w⌋ copies for certain, the rest drawn from the remainders: the paper's. Liu and Chen, "Sequential Monte Carlo
+    /// ⌊n w⌋ copies for certain, the rest drawn from the remainders, as in the paper. Liu and Chen, "Sequential Monte Carlo
     /// methods for dynamic systems", 1998.
     #[default]
     Residual,
     /// One random offset, then equal steps.
     Systematic,
-    /// One random place in each of n equal strata.
+    /// One random position in each of n equal strata.
     Stratified,
     /// n independent draws.
     Multinomial,
 }
 
 impl Resampling {
-    /// Indices of `count` survivors. Every slot finds its ancestor on its own, from prefix sums.
+    /// Returns the indices of `count` survivors. Each finds its ancestor independently, from prefix sums.
     pub fn resample(self, weights: &[f64], count: usize, stream: Stream) -> Vec<usize> {
         if weights.is_empty() {
             return Vec::new();
@@ -31,7 +31,7 @@ impl Resampling {
         let shares = self.cumulate(weights, count);
         let certain = shares.copies.last().copied().unwrap_or(0);
         let drawn = count - certain;
-        // All draws but systematic's one have a number of their own.
+        // Every draw has a random number of its own, except in systematic resampling, which has only one.
         let place = |draw: usize| match self {
             Self::Systematic => (draw as f64 + stream.uniform(0)) / drawn as f64,
             Self::Stratified => (draw as f64 + stream.uniform(draw as u32)) / drawn as f64,
@@ -44,7 +44,7 @@ impl Resampling {
         (0..count).map(ancestor).collect()
     }
 
-    /// What every particle gets for certain, and its share of what is drawn.
+    /// Computes each particle's certain copies and its share of the remaining draws.
     fn cumulate(self, weights: &[f64], count: usize) -> Shares {
         let per_weight = count as f64 / weights.iter().sum::<f64>();
         let (mut copies, mut rests) = (Vec::with_capacity(weights.len()), Vec::with_capacity(weights.len()));
@@ -61,20 +61,20 @@ impl Resampling {
     }
 }
 
-/// Prefix sums over the particles, each its own share included.
+/// Prefix sums over the particles, each including its own share.
 struct Shares {
-    /// Copies for certain.
+    /// Number of copies for certain.
     copies: Vec<usize>,
-    /// Expected copies beyond those.
+    /// Expected number of copies beyond those.
     rests: Vec<f64>,
 }
 
 impl Shares {
-    /// The particle at a place in [0, 1) of the drawn shares.
+    /// Returns the particle at a position in [0, 1) of the drawn shares.
     fn drawn_at(&self, place: f64) -> usize {
         let all = self.rests.last().copied().unwrap_or(0.0);
         let index = self.rests.partition_point(|&rest| rest <= place * all);
-        // Rounding may leave the last place beyond the last sum: the last particle with any share takes it.
+        // Rounding may leave the last position beyond the last sum: the last particle with any share takes it.
         index.min(self.rests.partition_point(|&rest| rest < all))
     }
 }

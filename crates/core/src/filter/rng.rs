@@ -1,25 +1,25 @@
 //! Counter-based random numbers: Philox 4×32-10 of Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011.
 //!
-//! A number depends on the seed and on what it is for (frame, iteration, particle, purpose) alone, so every particle can
-//! be handled by any thread, or by a GPU, in any order.
+//! A number depends only on the seed and on its use (frame, iteration, particle, purpose), so particles can be processed by
+//! any thread or GPU, in any order.
 
-/// What a random number is drawn for; keeps the streams apart.
+/// What a random number is drawn for: each purpose has a stream of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Purpose {
-    /// Placing particles at the start and where the filter recovers.
+    /// Placing particles at the start and at relocalization.
     Initialise = 1,
     /// Noise of the motion between two frames.
     Predict = 2,
     /// Diffusion between two iterations of a frame.
     Diffuse = 3,
-    /// Choosing survivors.
+    /// Resampling.
     Resample = 4,
-    /// Noise of a simulated picture; a pixel takes a particle's place.
+    /// Noise of a simulated picture; the pixel's number takes the place of the particle's.
     Picture = 5,
 }
 
-/// One stream of random numbers: a seed, a purpose, and where in the recording it is used.
+/// Stream of random numbers for one seed, purpose, frame and iteration.
 #[derive(Debug, Clone, Copy)]
 pub struct Stream {
     key: [u32; 2],
@@ -28,7 +28,7 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// The stream of this seed for one purpose in one iteration of one frame.
+    /// Returns the stream of this seed for one purpose in one iteration of one frame.
     pub fn new(seed: u64, purpose: Purpose, frame: u32, iteration: u32) -> Self {
         Self {
             key: [seed as u32, (seed >> 32) as u32],
@@ -37,17 +37,17 @@ impl Stream {
         }
     }
 
-    /// Four uniformly distributed words for one particle; `block` counts upwards where one needs more than four.
+    /// Returns four uniformly distributed words for one particle; count `block` up to get more than four.
     pub fn words(&self, particle: u32, block: u32) -> [u32; 4] {
         philox4x32_10([particle, block, self.frame, self.purpose_and_iteration], self.key)
     }
 
-    /// A number in [0, 1).
+    /// Returns a uniformly distributed number in [0, 1).
     pub fn uniform(&self, particle: u32) -> f64 {
         unit(self.words(particle, 0)[0])
     }
 
-    /// Six independent standard normal numbers for one particle, by Box and Muller.
+    /// Returns six independent standard normal numbers for one particle, by the Box–Muller transform.
     pub fn normals(&self, particle: u32) -> [f64; 6] {
         let (a, b) = (self.words(particle, 0), self.words(particle, 1));
         let ([n0, n1], [n2, n3], [n4, n5]) =
@@ -56,7 +56,7 @@ impl Stream {
     }
 }
 
-/// 24 bits in [0, 1): the same number in single and double precision.
+/// Maps the upper 24 bits to [0, 1): the same number in single and double precision.
 fn unit(word: u32) -> f64 {
     f64::from(word >> 8) / f64::from(1_u32 << 24)
 }
@@ -87,7 +87,7 @@ fn philox4x32_10(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
 mod tests {
     use super::*;
 
-    /// Known answers from the authors' library Random123 (kat_vectors).
+    /// Checks known answers from the authors' library Random123 (kat_vectors).
     #[test]
     fn philox_known_answers() {
         let cases = [

@@ -1,4 +1,4 @@
-//! A particle filter and the observation model that weighs its particles, as one.
+//! A particle filter together with the observation model that weighs its particles.
 
 use std::{fmt, sync::Arc};
 
@@ -13,39 +13,40 @@ use crate::{
     preprocess::Prepared,
 };
 
-/// One picture at a time: load it, predict, update. The particles may live on another device; what is asked of them
-/// between updates may take a while to come from there. A device that fails is an error of the call that failed, and what
-/// the filter holds is worth nothing until [`Filter::reset`].
+/// Particle filter that handles one picture at a time: load it, predict, update. The particles may live on another device, so
+/// that reading them between updates may be slow. If the device fails, the call returns an error, and the state of the filter
+/// is invalid until [`Filter::reset`].
 pub trait Filter: Send + Sync {
-    /// Takes over a new picture.
+    /// Loads a new picture. Fails if the device does.
     fn load(&mut self, picture: &Prepared) -> Result<(), BackendError>;
 
-    /// Hands over the picture that follows the one loaded: a device takes it while it computes.
+    /// Hands over early the picture after the loaded one, so that a device can upload it while it computes.
     fn prefetch(&mut self, _next: &Arc<RgbImage>) {}
 
-    /// Forgets all particles, and begins again as a new filter with this seed would.
+    /// Forgets all particles, and starts again as a new filter with this seed would.
     fn reset(&mut self, seed: u64);
 
-    /// Places all particles anew, around several poses in proportion to their weights.
+    /// Replaces all particles by new ones around several poses, in proportion to the weights of the poses. Fails if the device
+    /// does.
     fn initialize(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) -> Result<(), BackendError>;
 
-    /// Moves the particles to the next picture, see [`ParticleFilter::predict`].
+    /// Moves the particles to the next picture, see [`ParticleFilter::predict`]. Fails if the device does.
     fn predict(&mut self, motion: Option<Motion2>) -> Result<(), BackendError>;
 
-    /// Weighs and resamples T times, see [`ParticleFilter::update`].
+    /// Weighs and resamples T times, see [`ParticleFilter::update`]. Fails if the device does.
     fn update(&mut self, mount: MountPose, sigma: PlanarSigma) -> Result<FilterEstimate, BackendError>;
 
-    /// Turns all particles by 180° about the field's centre.
+    /// Turns all particles by 180° about the field's centre. Fails if the device does.
     fn mirror(&mut self) -> Result<(), BackendError>;
 
-    /// The particles after the last iteration.
+    /// Returns the particles after the last iteration. Fails if the device does.
     fn particles(&self) -> Result<Vec<CameraPose>, BackendError>;
 
-    /// Other places the picture may have been taken at, see [`ParticleFilter::alternatives`].
+    /// Returns other poses from which the picture may have been taken, see [`ParticleFilter::alternatives`].
     fn alternatives(&self) -> &[CameraPose];
 }
 
-/// A [`ParticleFilter`] on this processor, weighed by any scorer.
+/// [`ParticleFilter`] on the CPU, weighed by any scorer.
 pub struct ScoredFilter {
     scorer: Box<dyn Scorer>,
     filter: ParticleFilter,
@@ -58,7 +59,7 @@ impl fmt::Debug for ScoredFilter {
 }
 
 impl ScoredFilter {
-    /// A filter without particles.
+    /// Returns a filter without particles.
     pub fn new(scorer: Box<dyn Scorer>, config: FilterConfig) -> Self {
         Self { scorer, filter: ParticleFilter::empty(config) }
     }

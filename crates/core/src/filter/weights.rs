@@ -1,7 +1,7 @@
-//! Log-weights to probabilities, without overflow at any sum.
+//! Conversion of log-weights to probabilities, without overflow.
 
-/// Normalised weights, exp(log wᵢ) / Σ exp(log wⱼ), by subtracting the largest first. Log-weights of NaN or −∞ become
-/// zero; where nothing is left, all particles are equally likely.
+/// Returns the normalised weights, exp(log wᵢ) / Σ exp(log wⱼ), by subtracting the largest first. Log-weights of NaN or −∞
+/// give zero; if none is usable, all particles get the same weight.
 pub fn normalise(log_weights: &[f64]) -> Vec<f64> {
     let usable = |&value: &f64| if value.is_nan() { f64::NEG_INFINITY } else { value };
     let largest = log_weights.iter().map(usable).fold(f64::NEG_INFINITY, f64::max);
@@ -14,13 +14,13 @@ pub fn normalise(log_weights: &[f64]) -> Vec<f64> {
     weights
 }
 
-/// Effective sample size of normalised weights, 1/Σ wᵢ² (Kong, Liu and Wong, 1994).
+/// Returns the effective sample size of normalised weights, 1/Σ wᵢ² (Kong, Liu and Wong, 1994).
 pub fn effective_sample_size(weights: &[f64]) -> f64 {
     let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
     if squares > 0.0 { 1.0 / squares } else { 0.0 }
 }
 
-/// Index of the largest log-weight; the first of equals, NaN never.
+/// Returns the index of the largest log-weight, the first of equals; ignores NaN.
 pub fn best_index(log_weights: &[f64]) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
     for (index, &value) in log_weights.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! How a localizer is put together.
+//! Builder of a localizer.
 
 use std::{fmt, sync::Arc};
 
@@ -14,7 +14,7 @@ use crate::{
     search::GlobalSearch,
 };
 
-/// Settings of a [`Localizer`] that is to be built.
+/// Settings of a [`Localizer`] that has yet to be built.
 #[derive(Clone)]
 pub struct LocalizerBuilder<'a> {
     camera: &'a Camera,
@@ -25,8 +25,8 @@ pub struct LocalizerBuilder<'a> {
 }
 
 impl Localizer {
-    /// Localizes a camera on a field: with the usual settings, on this processor, from an unknown start, unless told
-    /// otherwise.
+    /// Returns a builder of a localizer for this camera and field. By default it uses the default settings, runs on the CPU
+    /// and does not know where the camera starts.
     pub fn builder<'a>(camera: &'a Camera, field: &'a FieldDimensions) -> LocalizerBuilder<'a> {
         let backend = Arc::new(CpuBackend);
         LocalizerBuilder { camera, field, config: LocalizerConfig::default(), backend, start: None }
@@ -34,22 +34,22 @@ impl Localizer {
 }
 
 impl LocalizerBuilder<'_> {
-    /// With these settings.
+    /// Replaces the settings.
     pub fn config(self, config: LocalizerConfig) -> Self {
         Self { config, ..self }
     }
 
-    /// On another device.
+    /// Runs the computations on another device.
     pub fn backend(self, backend: Arc<dyn Backend>) -> Self {
         Self { backend, ..self }
     }
 
-    /// From a pose where the camera is at the first picture; `None` where nobody knows.
+    /// Sets the pose of the camera at the first picture; `None` if it is unknown.
     pub fn start(self, start: impl Into<Option<Pose2>>) -> Self {
         Self { start: start.into(), ..self }
     }
 
-    /// Builds the localizer. Fails where the device cannot do what the settings ask for.
+    /// Builds the localizer. Fails if the device cannot do what the settings ask for.
     pub fn build(self) -> Result<Localizer, LocalizationError> {
         let Self { camera, field, config, backend, start } = self;
         let refine = RefineConfig { mount_sigma: config.mount_sigma, ..RefineConfig::default() };

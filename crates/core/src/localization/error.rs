@@ -1,8 +1,8 @@
-//! What can go wrong with a picture on its way to a pose.
+//! Errors of localizing a picture or a recording.
 
 use crate::{backend_error::BackendError, sequence::SequenceError};
 
-/// A picture or recording that could not be localized.
+/// Reason why a picture or recording could not be localized.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LocalizationError {
@@ -12,7 +12,7 @@ pub enum LocalizationError {
     /// The device that weighs the particles failed.
     #[error(transparent)]
     Backend(#[from] BackendError),
-    /// A picture that is not of the camera's size.
+    /// The picture does not have the camera's size.
     #[error(
         "the picture has {} x {} pixels and the camera {} x {}: give pictures of the camera, or the camera of the pictures",
         found[0], found[1], expected[0], expected[1]

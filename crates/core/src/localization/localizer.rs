@@ -21,8 +21,7 @@ use crate::{
     search::{GlobalSearch, Mode, Prior},
 };
 
-/// Finds the pose of a camera, picture after picture, by a particle filter over white lines. Made by
-/// [`Localizer::builder`].
+/// Localizes a camera picture by picture, with a particle filter over white lines. [`Localizer::builder`] makes one.
 pub struct Localizer {
     pub(super) config: LocalizerConfig,
     /// Width and height, pixels.
@@ -33,13 +32,13 @@ pub struct Localizer {
     pub(super) search: GlobalSearch,
     pub(super) goal_colors: Option<GoalColors>,
     pub(super) start: Option<Pose2>,
-    /// None before the first picture.
+    /// `None` before the first picture.
     pub(super) track: Option<Track>,
-    /// Pictures so far.
+    /// Number of pictures so far.
     pub(super) frame: u32,
 }
 
-/// What prediction, search and filter came to.
+/// Result of prediction, search and filter for one picture.
 struct Posterior {
     track: Track,
     estimate: FilterEstimate,
@@ -50,8 +49,8 @@ struct Posterior {
 impl Localizer {
     /// Finds the pose of the next picture.
     ///
-    /// After an error the track is as it was before the picture; where a device has failed, the particles may not be, and
-    /// [`Localizer::reset`] begins again.
+    /// Fails if the picture does not have the camera's size or if the device fails. After an error the track is as it was
+    /// before the picture. If a device has failed, its particles may be lost: [`Localizer::reset`] starts again.
     pub fn update(&mut self, observation: &Observation) -> Result<LocalizedFrame, LocalizationError> {
         let begin = Instant::now();
         let picture = self.load(observation)?;
@@ -85,35 +84,34 @@ impl Localizer {
         Ok(frame)
     }
 
-    /// Begins again at a pose, or anywhere on the field, as if no picture had been seen. Nothing is built anew.
+    /// Starts again at a pose, or anywhere on the field, as if no picture had been seen. Keeps everything that was built.
     pub fn reset(&mut self, start: Option<Pose2>) {
         self.reset_with_seed(start, self.config.filter.seed);
     }
 
-    /// As [`Localizer::reset`], with another seed of the random numbers.
+    /// Works as [`Localizer::reset`], with another random seed.
     pub fn reset_with_seed(&mut self, start: Option<Pose2>, seed: u64) {
         self.config.filter.seed = seed;
         self.filter.reset(seed);
         (self.start, self.track, self.frame) = (start, None, 0);
     }
 
-    /// Hands over the picture that follows the one localized next, where it is known already: a device takes it while it
-    /// computes.
+    /// Hands over early the picture that will be localized after the next one, so that a device can upload it while it computes.
     pub fn prefetch(&mut self, next: &Arc<RgbImage>) {
         self.filter.prefetch(next);
     }
 
-    /// Settings in use.
+    /// Returns the settings in use.
     pub fn config(&self) -> &LocalizerConfig {
         &self.config
     }
 
-    /// The particles after the last picture.
+    /// Returns the particles after the last picture. Fails if they cannot be read from the device.
     pub fn particles(&self) -> Result<Vec<CameraPose>, LocalizationError> {
         Ok(self.filter.particles()?)
     }
 
-    /// The field's border in a picture, for drawing.
+    /// Returns the field's border in a picture, for drawing.
     pub fn border(&self, observation: &Observation) -> FieldBorder {
         self.preprocessor.prepare(observation.picture.pixels().clone(), observation.mount).border
     }
@@ -129,7 +127,7 @@ impl Localizer {
         Ok(picture)
     }
 
-    /// The first picture: particles around the start, or around the places that a search finds.
+    /// Handles the first picture: places particles around the start, or around the places that a search finds.
     fn begin(
         &mut self,
         picture: &Prepared,
@@ -147,7 +145,8 @@ impl Localizer {
         Ok(Posterior { track, estimate, motion: None, searched: self.start.is_none() })
     }
 
-    /// Predict, relocalize where the prediction is worth too little, update, relocalize where the picture contradicts.
+    /// Handles any later picture: predicts and updates; relocalizes if the prediction is too uncertain or the picture
+    /// contradicts it.
     fn follow(
         &mut self,
         mut track: Track,
@@ -166,7 +165,7 @@ impl Localizer {
             self.relocalize(&mut track, &modes, prior);
             diffusion = self.config.relocalization.found_sigma;
         }
-        // After a long way there may be more than one place that fits.
+        // After a long way, more than one place may fit.
         let is_long_way = track.is_long_way(&prediction);
         if is_long_way {
             track.confirm_after_long_way();
@@ -191,8 +190,8 @@ impl Localizer {
         track.is_unconfirmed() || self.line_fraction_near(pose, mount, least) < least
     }
 
-    /// The line fraction of a pose, or where that is less than `enough`, of the pose next to it that fits the picture
-    /// best: joints and IMU that are wrong by a degree hide narrow lines from a pose in the right place.
+    /// Returns the line fraction of a pose. If it is less than `enough`, returns that of the pose next to it that fits the
+    /// picture best: with a mount pose that is wrong by a degree, narrow lines are missed even from the right place.
     fn line_fraction_near(&self, pose: CameraPose, mount: MountPose, enough: f64) -> f64 {
         let own = self.search.line_fraction(pose);
         if own >= enough {
@@ -206,7 +205,7 @@ impl Localizer {
         }
     }
 
-    /// Searches the field; moves the particles only where another place fits clearly better than the filter's.
+    /// Searches the field; moves the particles only if another place fits clearly better than the filter's own.
     fn recover(
         &mut self,
         track: &mut Track,
@@ -216,7 +215,7 @@ impl Localizer {
     ) -> Result<FilterEstimate, LocalizationError> {
         let prior = track.prior_of_lost();
         let mut modes = self.modes(picture, mount, Some(prior))?;
-        // From many places no line is in view, which fits every picture a little and none well.
+        // From many places no line is in view: they fit every picture a little and none well.
         modes.retain(|mode| self.search.line_fraction(mode.pose) >= self.config.track.lost_line_fraction);
         let Some(best) = modes.first() else { return Ok(estimate) };
         let Some(own) = self.search.best_of(&[estimate.pose], mount, Some(prior)) else {
@@ -230,7 +229,7 @@ impl Localizer {
         Ok(self.filter.update(mount, self.config.relocalization.found_sigma)?)
     }
 
-    /// Searches the field, and places the particles where the picture fits.
+    /// Searches the field, and places the particles at the poses that fit the picture.
     fn search(
         &mut self,
         picture: &Prepared,
@@ -265,8 +264,8 @@ impl Localizer {
         track.relocalize(best, self.config.relocalization.is_clear(modes), prior);
     }
 
-    /// The best particle, its alternatives and the prediction, each fitted to the picture: the most probable of them, by
-    /// picture and prediction together.
+    /// Fits the best particle, its alternatives and the prediction to the picture. Returns the most probable of these poses,
+    /// given both picture and prediction.
     fn refine(
         &mut self,
         track: &Track,
@@ -283,14 +282,14 @@ impl Localizer {
             return Ok((best, None));
         };
         if !self.config.relocalization.is_same_place(pose, best) {
-            // The particles follow, or they would go on from a place that was given up.
+            // Move the particles, too, or they would go on from a place that was given up.
             self.filter.initialize(&[(pose.planar(), 1.0)], self.config.relocalization.found_sigma)?;
         }
         Ok((pose, fit))
     }
 
-    /// Lets the colours of the goals decide between a pose and its mirror image, and turns everything round when they
-    /// speak for the other.
+    /// Decides by the colours of the goals between a pose and its mirror pose, and turns everything round if they favour the
+    /// mirror pose.
     fn resolve_symmetry(
         &mut self,
         track: &mut Track,

@@ -1,37 +1,37 @@
-//! What a robot knows at one time.
+//! What a robot observes at one time.
 
 use super::picture::Picture;
 use crate::{mount::MountPose, pose::Pose2, sequence::Sequence};
 
-/// A picture with what the robot knew when it was taken.
+/// A picture and what the robot knew when it was taken.
 #[derive(Debug, Clone)]
 pub struct Observation {
-    /// When it was taken, by any clock, seconds.
+    /// Time at which the picture was taken, by any clock, seconds.
     pub timestamp_s: f64,
-    /// The picture; it has the camera's size.
+    /// Picture of the camera's size.
     pub picture: Picture,
-    /// Pose by dead reckoning, in a frame of its own, where the robot has odometry.
+    /// Pose by dead reckoning in the odometry's own frame; `None` without odometry.
     pub odometry: Option<Pose2>,
-    /// Height, pitch and roll by joints and IMU.
+    /// Mount pose by joints and IMU.
     pub mount: MountPose,
 }
 
 impl Observation {
-    /// A picture without odometry.
+    /// Makes an observation without odometry.
     pub fn new(timestamp_s: f64, picture: impl Into<Picture>, mount: MountPose) -> Self {
         Self { timestamp_s, picture: picture.into(), odometry: None, mount }
     }
 
-    /// With the pose by dead reckoning, in a frame of its own.
+    /// Adds the pose by dead reckoning, in the odometry's own frame.
     pub fn with_odometry(self, odometry: Pose2) -> Self {
         Self { odometry: Some(odometry), ..self }
     }
 
-    /// A frame of a recording (from 0) with its picture.
+    /// Makes an observation from the record of a frame (counted from 0) and its picture.
     ///
     /// # Panics
     ///
-    /// Where the recording has no such frame.
+    /// If the recording has no such frame.
     pub fn of_frame(sequence: &Sequence, index: usize, picture: impl Into<Picture>) -> Self {
         let record = &sequence.frames[index];
         let mount = mount_of_frame(sequence, index);
@@ -39,11 +39,11 @@ impl Observation {
     }
 }
 
-/// The mount pose at a frame of a recording (from 0): the height of the camera's mount, pitch and roll of that frame.
+/// Returns the mount pose at a frame (counted from 0): the recording's camera height, and the frame's own pitch and roll.
 ///
 /// # Panics
 ///
-/// Where the recording has no such frame.
+/// If the recording has no such frame.
 pub fn mount_of_frame(sequence: &Sequence, index: usize) -> MountPose {
     let record = &sequence.frames[index];
     MountPose {

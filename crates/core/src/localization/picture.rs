@@ -4,18 +4,18 @@ use std::{fmt, sync::Arc};
 
 use image::{GrayImage, Rgb, RgbImage};
 
-/// A camera picture of 8 bits a channel. Clones share its pixels.
+/// Camera picture with 8 bits per channel. Clones share its pixels.
 ///
 /// An owned or shared RGB picture is taken over without a copy; a borrowed one is copied once. A grey picture becomes RGB
-/// with three equal channels: lines are found as in a colour picture, but it has no green to tell the carpet's border by,
-/// so that what lies beyond the border is not masked, and no goal colours, so that they never tell the field's halves apart.
+/// with three equal channels. Its lines are found as in a colour picture, but without green there is no carpet border, so
+/// nothing beyond it is masked, and without goal colours the halves of the field cannot be told apart.
 #[derive(Clone)]
 pub struct Picture {
     pixels: Arc<RgbImage>,
     is_grey: bool,
 }
 
-/// A buffer that is no picture of the size given.
+/// The buffer does not have the number of bytes that a picture of this size needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
     "a picture of {} x {} pixels has {expected} bytes, and the buffer has {found}: give one row after the other, without padding",
@@ -24,14 +24,15 @@ pub struct Picture {
 pub struct InvalidPicture {
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// Bytes that a picture of this size has.
+    /// Number of bytes that a picture of this size has.
     pub expected: usize,
-    /// Bytes of the buffer.
+    /// Number of bytes in the buffer.
     pub found: usize,
 }
 
 impl Picture {
-    /// Copies RGB pixels out of a buffer, one row after the other without padding; `size` is width and height.
+    /// Copies RGB pixels from a buffer, row by row without padding. `size` is width and height, pixels. Fails if the number of
+    /// bytes does not match.
     pub fn from_rgb(size: [u32; 2], bytes: &[u8]) -> Result<Self, InvalidPicture> {
         let expected = byte_count(size, 3);
         let invalid = InvalidPicture { size, expected, found: bytes.len() };
@@ -41,7 +42,8 @@ impl Picture {
         RgbImage::from_raw(size[0], size[1], bytes.to_vec()).map(Self::from).ok_or(invalid)
     }
 
-    /// Copies grey pixels out of a buffer, one row after the other without padding; `size` is width and height.
+    /// Copies grey pixels from a buffer, row by row without padding. `size` is width and height, pixels. Fails if the number of
+    /// bytes does not match.
     pub fn from_grey(size: [u32; 2], bytes: &[u8]) -> Result<Self, InvalidPicture> {
         let expected = byte_count(size, 1);
         let invalid = InvalidPicture { size, expected, found: bytes.len() };
@@ -53,17 +55,17 @@ impl Picture {
         Ok(Self { pixels: Arc::new(pixels), is_grey: true })
     }
 
-    /// The pixels; three equal channels where the picture is grey.
+    /// Returns the RGB pixels; the three channels of a grey picture are equal.
     pub fn pixels(&self) -> &Arc<RgbImage> {
         &self.pixels
     }
 
-    /// Width and height, pixels.
+    /// Returns width and height, pixels.
     pub fn size(&self) -> [u32; 2] {
         self.pixels.dimensions().into()
     }
 
-    /// Whether it was delivered without colours.
+    /// Returns whether the picture was delivered in grey.
     pub fn is_grey(&self) -> bool {
         self.is_grey
     }

@@ -9,29 +9,29 @@ use std::{
 use super::{observation::Observation, picture::Picture};
 use crate::sequence::{Sequence, SequenceError};
 
-/// Pictures that wait decoded at most, besides the one being decoded.
+/// Maximum number of decoded pictures that wait, besides the one being decoded.
 const QUEUE: usize = 1;
 
-/// The frames of a recording in order, with their pictures: these are decoded ahead on a thread of their own, which ends
-/// with this. After an error there are no more.
+/// Iterator over the frames of a recording with their pictures. A thread decodes them ahead; it ends when the iterator is
+/// dropped. The iteration ends after an error.
 #[derive(Debug)]
 pub struct Playback {
     sequence: Arc<Sequence>,
     next: usize,
-    /// None once it has ended.
+    /// `None` once the thread has ended.
     pictures: Option<Peekable<mpsc::IntoIter<Result<Picture, SequenceError>>>>,
     thread: Option<thread::JoinHandle<()>>,
 }
 
 impl Playback {
-    /// Begins to decode the pictures of a recording.
+    /// Starts decoding the pictures of a recording.
     pub fn new(sequence: Arc<Sequence>) -> Self {
         let (sender, receiver) = mpsc::sync_channel(QUEUE);
         let decoded = sequence.clone();
         let thread = thread::spawn(move || {
             for index in 0..decoded.frames.len() {
                 let picture = decoded.load_image(index).map(Picture::from);
-                // The receiver is gone once nobody wants any more.
+                // The receiver is gone once nobody wants more pictures.
                 if sender.send(picture).is_err() {
                     break;
                 }
@@ -40,17 +40,17 @@ impl Playback {
         Self { sequence, next: 0, pictures: Some(receiver.into_iter().peekable()), thread: Some(thread) }
     }
 
-    /// The recording.
+    /// Returns the recording.
     pub fn sequence(&self) -> &Arc<Sequence> {
         &self.sequence
     }
 
-    /// The picture of the observation after the one given last, once it is decoded; `None` at the end.
+    /// Waits for the next picture and returns it without advancing; `None` at the end or if the picture cannot be read.
     pub fn peek(&mut self) -> Option<&Picture> {
         self.pictures.as_mut()?.peek()?.as_ref().ok()
     }
 
-    /// Ends the thread; a panic in it goes on here.
+    /// Ends the thread; a panic in the thread is resumed here.
     fn end(&mut self) {
         self.pictures = None;
         if let Some(Err(panic)) = self.thread.take().map(thread::JoinHandle::join)

@@ -1,4 +1,4 @@
-//! What becomes of the places that a search finds: decisions of numbers.
+//! Decisions about the places that a search finds, by numbers alone.
 
 use super::config::RelocalizationConfig;
 use crate::{
@@ -7,7 +7,7 @@ use crate::{
 };
 
 impl RelocalizationConfig {
-    /// Whether a search had one answer only; its places are the best first.
+    /// Returns whether a search had a single answer; `modes` are sorted, best first.
     pub(crate) fn is_clear(&self, modes: &[Mode]) -> bool {
         match modes {
             [] => false,
@@ -16,19 +16,19 @@ impl RelocalizationConfig {
         }
     }
 
-    /// Places that particles are put around, with their weights: the best one and all that are nearly as good.
+    /// Returns the poses to place particles around, with their weights: the best one and all that are nearly as good.
     pub(crate) fn seeds(&self, modes: &[Mode]) -> Vec<(Pose2, f64)> {
         let best = modes.first().map_or(0.0, |mode| mode.log_weight);
         let good = modes.iter().filter(|mode| best - mode.log_weight < self.alternative_margin);
         good.map(|mode| (mode.pose.planar(), mode.probability)).collect()
     }
 
-    /// Whether the best place of a search is another one than the filter's own, and fits clearly better.
+    /// Returns whether the best place of a search differs from the filter's own, and fits clearly better.
     pub(crate) fn is_better_elsewhere(&self, best: &Mode, own: &Mode) -> bool {
         !self.is_same_place(best.pose, own.pose) && best.log_weight - own.log_weight >= self.move_margin
     }
 
-    /// Whether two poses are of one place, so that particles around the one find the other.
+    /// Returns whether two poses are the same place, so that particles around one find the other.
     pub(crate) fn is_same_place(&self, a: CameraPose, b: CameraPose) -> bool {
         (a.x_m - b.x_m).hypot(a.y_m - b.y_m) < self.same_place.position_m
             && wrap_angle(a.yaw_rad - b.yaw_rad).abs() < self.same_place.yaw_rad

@@ -1,4 +1,4 @@
-//! A recording localized, frame after frame.
+//! Localization of a whole recording, frame by frame.
 
 use std::{borrow::BorrowMut, sync::Arc};
 
@@ -8,8 +8,8 @@ use super::{
 };
 use crate::sequence::Sequence;
 
-/// The frames of a recording, localized in order. Pictures are decoded ahead on a thread of their own; dropping this
-/// cancels it. After an error there are no more frames.
+/// Iterator that localizes the frames of a recording in order. A thread decodes the pictures ahead; dropping the iterator
+/// stops it. The iteration ends after an error.
 #[derive(Debug)]
 pub struct Run<L> {
     localizer: L,
@@ -26,22 +26,22 @@ impl Localizer {
 }
 
 impl<L: BorrowMut<Localizer>> Run<L> {
-    /// As [`Localizer::run`], with a localizer that is owned.
+    /// Works as [`Localizer::run`], with a localizer that is owned.
     pub fn new(localizer: L, sequence: Arc<Sequence>) -> Self {
         Self { localizer, playback: Playback::new(sequence), observation: None, has_failed: false }
     }
 
-    /// Ends here, and gives the localizer back.
+    /// Ends the run, and returns the localizer.
     pub fn into_localizer(self) -> L {
         self.localizer
     }
 
-    /// The localizer as the last frame left it.
+    /// Returns the localizer as the last frame left it.
     pub fn localizer(&self) -> &Localizer {
         self.localizer.borrow()
     }
 
-    /// What was observed at the last frame.
+    /// Returns what was observed at the last frame.
     pub fn observation(&self) -> Option<&Observation> {
         self.observation.as_ref()
     }

@@ -1,4 +1,4 @@
-//! All frames together: nothing forces a recording to be localized causally.
+//! Smoothing: the poses of a whole recording are estimated together, from past and future pictures.
 
 use super::{config::LocalizerConfig, frame::LocalizedFrame, localizer::Localizer, picture::Picture};
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     refine::{Reach, Refiner, SmoothedPose, TrajectoryFrame, smooth_trajectory},
 };
 
-/// Finds the most probable poses of all frames together, see [`smooth_trajectory`]. Made by [`Localizer::smoother`].
+/// Finds the most probable poses of all frames together, see [`smooth_trajectory`]. [`Localizer::smoother`] makes one.
 #[derive(Debug)]
 pub struct Smoother<'a> {
     config: &'a LocalizerConfig,
@@ -14,7 +14,7 @@ pub struct Smoother<'a> {
     refiner: &'a Refiner,
 }
 
-/// Frames that were smoothed once, and what is known of them.
+/// Frames after the first pass of smoothing, and what is known about each.
 #[derive(Debug, Clone)]
 pub struct Smoothing {
     frames: Vec<TrajectoryFrame>,
@@ -22,17 +22,17 @@ pub struct Smoothing {
 }
 
 impl Localizer {
-    /// Smooths what this localizer has found.
+    /// Returns a smoother for the frames that this localizer has found.
     pub fn smoother(&self) -> Smoother<'_> {
         Smoother { config: &self.config, preprocessor: &self.preprocessor, refiner: &self.refiner }
     }
 }
 
 impl Smoother<'_> {
-    /// The most probable poses of all frames together, one a frame. Pictures whose own fit was missing, or contradicts the
-    /// others, are looked at once more from where the others say they were taken: `picture` gives them by their number.
+    /// Returns the most probable poses of all frames together, one per frame. A picture whose own fit was missing or contradicts
+    /// the others is fitted once more, starting from the pose that the others suggest; `picture` loads it by its index.
     ///
-    /// `None` where no picture could be fitted at all; an error is that of `picture`.
+    /// Returns `None` if no picture could be fitted at all. Fails only if `picture` does.
     pub fn smooth<E>(
         &self,
         frames: &[LocalizedFrame],
@@ -45,7 +45,7 @@ impl Smoother<'_> {
         Ok(self.finish(&smoothing))
     }
 
-    /// The first pass, with the fits that the frames have. `None` where there is none at all.
+    /// Runs the first pass, with the fits that the frames have. Returns `None` if there are none at all.
     pub fn begin(&self, frames: &[LocalizedFrame]) -> Option<Smoothing> {
         let least = self.config.track.fitting_line_fraction;
         let mut frames: Vec<TrajectoryFrame> = frames
@@ -65,11 +65,11 @@ impl Smoother<'_> {
         Some(Smoothing { frames, unexplained })
     }
 
-    /// Looks at a picture again, from where the first pass says it was taken.
+    /// Fits a picture again, starting from the pose that the first pass found for it.
     ///
     /// # Panics
     ///
-    /// Where there is no frame of this number.
+    /// If there is no frame with this index.
     pub fn revisit(&self, smoothing: &mut Smoothing, index: usize, picture: &Picture) {
         let frame = &mut smoothing.frames[index];
         let prepared = self.preprocessor.prepare(picture.pixels().clone(), frame.mount);
@@ -78,7 +78,7 @@ impl Smoother<'_> {
         frame.fit = self.refiner.fit(&texture, frame.guess, frame.mount, contrast, Reach::Wide);
     }
 
-    /// The second pass, with what was seen again.
+    /// Runs the second pass, with the pictures that were fitted again.
     pub fn finish(&self, smoothing: &Smoothing) -> Option<Vec<SmoothedPose>> {
         self.pass(&smoothing.frames)
     }
@@ -89,7 +89,7 @@ impl Smoother<'_> {
 }
 
 impl Smoothing {
-    /// Numbers of the frames whose pictures the first pass could not use.
+    /// Returns the indices of the frames whose pictures the first pass could not use.
     pub fn unexplained(&self) -> &[usize] {
         &self.unexplained
     }

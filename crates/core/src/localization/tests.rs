@@ -1,4 +1,4 @@
-//! The localizer as a whole, on small pictures, and on a device that fails.
+//! Tests of the whole localizer, on small pictures and on a device that fails.
 
 use std::{
     io,
@@ -86,7 +86,7 @@ fn after_a_reset_everything_is_as_if_it_had_just_been_built() {
     assert_eq!(three(&mut localizer), from_nowhere);
 }
 
-/// The processor, but an update of its filter fails: the one that begins with so many left.
+/// CPU backend whose filter fails after a given number of updates: `left` is how many still succeed.
 #[derive(Clone)]
 struct Failing {
     left: Arc<AtomicU32>,

@@ -1,8 +1,8 @@
-//! What is carried from picture to picture: a state machine of numbers, without pictures, particles or devices.
+//! State that passes from picture to picture: a state machine of plain numbers, without pictures, particles or devices.
 //!
-//! A track is *settled* while the lines fit and no other place is in question; after a search with several answers it is
-//! *unconfirmed* until some pictures in a row have fitted; it is *doubtful* while they fit badly. Whether the field's point
-//! symmetry has been resolved is kept apart: a settled pose may still be the mirror image of the right one.
+//! A track is *settled* while the lines fit and no other place is in question. After a search with several answers it is
+//! *unconfirmed* until some consecutive pictures have fitted. It is *doubtful* while they fit badly. Whether the field's
+//! point symmetry has been resolved is tracked separately: a settled pose may still be the mirror image of the right one.
 
 use super::config::TrackConfig;
 use crate::{
@@ -11,47 +11,47 @@ use crate::{
     search::Prior,
 };
 
-/// Where a track begins.
+/// How a track begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Beginning {
-    /// At a pose that was given, of which the right half of the field is known.
+    /// At a given pose, so that the half of the field is known.
     Given,
-    /// At the best place of a search; `is_clear` where it had one answer only.
+    /// At the best place of a search; `is_clear` if the search had a single answer.
     Searched { is_clear: bool },
 }
 
-/// What the motion model says before a picture is looked at.
+/// What the motion model predicts before the picture is used.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Prediction {
     /// Standard deviations of the motion.
     pub sigma: PlanarSigma,
-    /// Motion since the picture before, where odometry tells.
+    /// Motion since the previous picture, if odometry measured it.
     pub motion: Option<Motion2>,
-    /// The odometry was reset: nothing is known of the way here.
+    /// Whether the odometry was reset, so that nothing is known of the motion.
     pub is_kidnapped: bool,
 }
 
-/// The state of a track.
+/// State of a track.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Track {
     config: TrackConfig,
-    /// The last pose that fitted, moved by the odometry since.
+    /// Last pose that fitted, moved by the odometry since.
     anchor: Pose2,
-    /// How far off the anchor may be by now.
+    /// Present uncertainty of the anchor.
     anchor_sigma: PlanarSigma,
     odometry: Option<Pose2>,
     /// Slow average of the line fraction of settled poses.
     usual_line_fraction: f64,
-    /// Pictures in a row that fitted since the place became uncertain; `None` where it is confirmed.
+    /// Number of consecutive pictures that fitted since the place became uncertain; `None` once it is confirmed.
     unconfirmed: Option<u32>,
-    /// Pictures since the last one that fitted in which the filter may have been lost.
+    /// Number of doubtful pictures since the last one that fitted: in these the filter may have been lost.
     doubtful_frames: u32,
-    /// Log-odds of the mirrored pose against the pose itself.
+    /// Log-odds of the mirror pose against the pose itself.
     mirrored_log_odds: f64,
 }
 
 impl Track {
-    /// A track that begins at a pose.
+    /// Starts a track at a pose.
     pub fn new(config: TrackConfig, pose: Pose2, odometry: Option<Pose2>, beginning: Beginning) -> Self {
         let (unconfirmed, mirrored_log_odds) = match beginning {
             Beginning::Given => (None, f64::NEG_INFINITY),
@@ -69,7 +69,7 @@ impl Track {
         }
     }
 
-    /// Moves the track to the next picture by the odometry of its time.
+    /// Predicts the pose at the next picture from the odometry at that time.
     pub fn predict(&mut self, odometry: Option<Pose2>, noise: &MotionNoise) -> Prediction {
         let prediction = self.prediction(odometry, noise);
         self.odometry = odometry;
@@ -87,45 +87,45 @@ impl Track {
             return Prediction { sigma: noise.sigma(None), motion: None, is_kidnapped: false };
         };
         let motion = before.motion_to(now);
-        // Dead reckoning that starts again at its origin says nothing of the way there.
+        // Odometry that restarts at its origin says nothing about the motion in between.
         if now == Pose2::default() && motion.distance_m() > self.config.reset_jump_m {
             return Prediction { sigma: self.config.kidnapped_sigma, motion: None, is_kidnapped: true };
         }
         Prediction { sigma: noise.sigma(Some(motion)), motion: Some(motion), is_kidnapped: false }
     }
 
-    /// Whether the field must be searched before the particles can be used again.
+    /// Returns whether the field must be searched before the particles can be used again.
     pub fn needs_search(&self, prediction: &Prediction) -> bool {
         prediction.is_kidnapped || prediction.sigma.position_m > self.config.search_sigma_m
     }
 
-    /// Whether the prediction may have led to the wrong one of two places that fit.
+    /// Returns whether the prediction may have led to the wrong one of two places that fit.
     pub fn is_long_way(&self, prediction: &Prediction) -> bool {
         prediction.sigma.position_m > self.config.long_way_sigma_m
     }
 
-    /// Has the place confirmed again after a long way.
+    /// Requires the place to be confirmed again after a long way.
     pub fn confirm_after_long_way(&mut self) {
         let head_start = self.config.confirming_frames.saturating_sub(self.config.confirmed_on_a_long_way);
         self.unconfirmed.get_or_insert(head_start);
     }
 
-    /// Goes on from what a search around a prior found.
+    /// Continues from the result of a search around a prior.
     pub fn relocalize(&mut self, best: Option<Pose2>, is_clear: bool, prior: Prior) {
         self.unconfirmed = (!is_clear).then_some(0);
         if let Some(best) = best {
-            // The picture cannot tell the two halves apart: only what was known before can.
+            // A picture of the lines cannot tell the two halves apart: only prior knowledge can.
             let odds = prior.log_probability(best.mirrored()) - prior.log_probability(best);
             self.mirrored_log_odds = self.mirrored_log_odds.max(odds);
         }
     }
 
-    /// Where the camera probably is; wider where there is doubt, with every picture that did not fit.
+    /// Returns where the camera probably is; while in doubt, the prior widens with every picture that does not fit.
     pub fn prior(&self) -> Prior {
         self.prior_with_doubt(self.doubtful_frames > 0)
     }
 
-    /// As [`Track::prior`], of a filter that may be lost.
+    /// Works as [`Track::prior`], for a filter that may be lost.
     pub fn prior_of_lost(&self) -> Prior {
         self.prior_with_doubt(true)
     }
@@ -140,22 +140,22 @@ impl Track {
         Prior { pose: self.anchor, sigma }
     }
 
-    /// Whether the last search left several places, and no picture since has fitted.
+    /// Returns whether the last search left several places, and no picture has fitted since.
     pub fn is_unconfirmed(&self) -> bool {
         self.unconfirmed == Some(0)
     }
 
-    /// The line fraction below which the filter may be lost.
+    /// Returns the line fraction below which the filter may be lost.
     pub fn lost_below(&self) -> f64 {
         self.config.lost_line_fraction.max(self.config.lost_ratio * self.usual_line_fraction)
     }
 
-    /// The line fraction from which on a pose fits.
+    /// Returns the line fraction from which a pose fits.
     pub fn fits_from(&self) -> f64 {
         self.config.fitting_line_fraction.max(self.config.fitting_ratio * self.usual_line_fraction)
     }
 
-    /// Takes the pose of a picture and the fraction of the line it shows there; returns whether the pose is settled.
+    /// Updates the track with the pose of a picture and its line fraction; returns whether the pose is settled.
     pub fn settle(&mut self, pose: Pose2, line_fraction: f64) -> bool {
         let fits = line_fraction >= self.fits_from();
         self.unconfirmed = match self.unconfirmed {
@@ -178,7 +178,7 @@ impl Track {
         is_settled
     }
 
-    /// What was usual before a search need not be usual after it: without a settled picture the average fades.
+    /// Updates the slow average. Without a settled picture it fades: what was usual before a search need not be usual after it.
     fn average(&mut self, line_fraction: Option<f64>) {
         let weight = self.config.line_fraction_weight;
         match line_fraction {
@@ -190,12 +190,12 @@ impl Track {
         }
     }
 
-    /// Whether a picture can tell which half of the field it shows, and nobody has told so before.
+    /// Returns whether the half of the field is still uncertain and the picture shows enough to decide it.
     pub fn asks_for_half(&self, line_fraction: f64) -> bool {
         self.mirrored_log_odds != f64::NEG_INFINITY && line_fraction >= self.config.fitting_line_fraction
     }
 
-    /// Adds a picture's log-odds of the mirrored pose. Where that is now the more probable one, the track turns round and
+    /// Adds a picture's log-odds of the mirror pose. If the mirror pose becomes the more probable one, the track turns round and
     /// this returns true.
     pub fn weigh_halves(&mut self, mirrored_log_odds: f64) -> bool {
         self.mirrored_log_odds += mirrored_log_odds;
@@ -207,12 +207,12 @@ impl Track {
         is_mirrored
     }
 
-    /// Probability that the mirrored pose is the right one.
+    /// Returns the probability that the mirror pose is the right one.
     pub fn mirrored_probability(&self) -> f64 {
         1.0 / (1.0 + (-self.mirrored_log_odds).exp())
     }
 
-    /// Whether the half of the field is beyond doubt.
+    /// Returns whether the half of the field is beyond doubt.
     pub fn is_half_sure(&self) -> bool {
         self.mirrored_probability() < self.config.max_mirrored_probability
     }
@@ -233,14 +233,14 @@ mod tests {
         Track::new(TrackConfig::default(), start, Some(Pose2::default()), beginning)
     }
 
-    /// A track at a given start whose first picture fitted.
+    /// Returns a track with a given start whose first picture fitted.
     fn settled() -> Track {
         let mut track = track(Beginning::Given);
         assert!(track.settle(Pose2::new(-1.0, 0.5, 0.3), GOOD));
         track
     }
 
-    /// The next prediction, by odometry that goes on by one step.
+    /// Predicts the next picture, with odometry that advances by one step.
     fn step(track: &mut Track) -> Prediction {
         let odometry = track.odometry.unwrap().moved(STEP);
         track.predict(Some(odometry), &MotionNoise::default())
@@ -363,7 +363,7 @@ mod tests {
             let odometry = Pose2::new(forward_m, 0.0, 0.0);
             (track, track.predict(Some(odometry), &MotionNoise::default()))
         };
-        // 0.02 m standing still and 0.15 m a metre: 0.15 m after 0.87 m, 0.3 m after 1.87 m.
+        // 0.02 m standing still plus 0.15 m per metre: 0.15 m after 0.87 m, 0.3 m after 1.87 m.
         for (forward_m, is_long, needs_search) in
             [(0.8, false, false), (0.9, true, false), (1.8, true, false), (1.9, true, true)]
         {
@@ -445,7 +445,7 @@ mod tests {
         let mut far = settled();
         far.relocalize(Some(pose), true, prior_of(40.0, 40.0));
         assert!(!far.is_half_sure() && far.asks_for_half(GOOD));
-        // A wrong half is never more probable than the prior says, and certainty is not won back by searching.
+        // The wrong half is never more probable than the prior says, and searching does not restore certainty.
         far.relocalize(Some(pose), true, prior_of(0.5, 0.4));
         assert!(!far.is_half_sure());
     }
