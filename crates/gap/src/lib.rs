@@ -1,9 +1,10 @@
-//! Where a camera's simulation and its pictures disagree, which effect is missing, and how much of the gap it explains.
+//! Comparison of a simulated camera with real pictures: where they disagree, which effect the model lacks, and how much of
+//! the gap that effect explains.
 //!
-//! A recording with reference poses is compared with what a model of the camera predicts for the same poses: the places of
-//! lines, their brightness and sharpness, the noise of the carpet, the steps of the odometry. Effects of a library that
-//! explain the differences are added to the model one after the other; what that brings is measured on frames that no fit has
-//! seen.
+//! A recording with reference poses is compared with what a camera model predicts for the same poses: the positions,
+//! brightness and sharpness of lines, the noise of the carpet, and the steps of the odometry. Effects from a library that
+//! explain the differences are added to the model one by one. The improvement is measured on held-out frames, which no fit
+//! has seen.
 //!
 //! | | |
 //! |---|---|
@@ -31,14 +32,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Inside, data flow one way:
+//! Data flow through the crate in one direction:
 //!
 //! ```text
 //! recording → measurement (lines and carpet of each picture) → linear_model (residuals and normal equations)
 //!   → inference (tests of effects, model search, limits) → diagnostics (what no effect explains) → report
 //! ```
 //!
-//! `docs/gap.md` is the method with its sources, and how it was tested.
+//! `docs/gap.md` describes the method, its sources and how it was tested.
 
 mod diagnostics;
 mod inference;

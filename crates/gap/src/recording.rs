@@ -1,4 +1,4 @@
-//! A recording as the workflow uses it: frames with reference poses, in the order of time.
+//! Recording as the workflow uses it: frames with reference poses, in order of time.
 
 use std::{ops::Range, path::PathBuf};
 
@@ -14,12 +14,12 @@ use crate::thresholds::{RecordingThresholds, Thresholds};
 
 const THRESHOLDS: RecordingThresholds = Thresholds::DEFAULT.recording;
 
-/// Fewer frames than this tell nothing: a quarter of them is kept for judging.
+/// Least number of frames of a recording. A quarter of them is held out, and fewer frames would not suffice for the tests.
 pub const LEAST_FRAMES: usize = THRESHOLDS.least_frames;
-/// With fewer views than this nothing can be told.
+/// Least number of views. With fewer of them, no effect is tested.
 pub(crate) const LEAST_VIEWS: usize = THRESHOLDS.least_views;
 
-/// Why a recording cannot be compared with a model.
+/// Reason why a recording cannot be compared with a model.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// Too few frames with a reference pose.
@@ -27,62 +27,62 @@ pub enum RecordingError {
         "{name}: only {found} of the {frames} frames chosen have a reference pose, the comparison needs at least {LEAST_FRAMES}: record more, choose more with --frames, or give poses with --poses"
     )]
     TooFewFrames {
-        /// The recording.
+        /// Name of the recording.
         name: String,
-        /// Frames with a pose.
+        /// Number of frames with a pose.
         found: usize,
-        /// Frames chosen.
+        /// Number of frames chosen.
         frames: usize,
     },
-    /// The frames asked for are not in the recording.
+    /// The requested frames are not in the recording.
     #[error("{name} has the frames 0 to {last}: {from}..{to} is no range of them")]
     NoSuchFrames {
-        /// The recording.
+        /// Name of the recording.
         name: String,
         /// Index of its last frame.
         last: usize,
-        /// As asked.
+        /// Start of the requested range.
         from: usize,
-        /// As asked, not included.
+        /// End of the requested range, exclusive.
         to: usize,
     },
-    /// The reference poses are no way of a camera.
+    /// The reference poses do not form a trajectory.
     #[error("{name}: the reference poses are no way of a camera")]
     Trajectory {
-        /// The recording.
+        /// Name of the recording.
         name: String,
-        /// What is wrong.
+        /// Fault of the trajectory.
         source: TrajectoryError,
     },
 }
 
-/// Where the reference poses come from.
+/// Source of the reference poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ReferenceSource {
-    /// Something else than the pictures: motion capture.
+    /// The poses were measured independently of the pictures, for example by motion capture.
     Measured,
-    /// Place and heading were found in the pictures themselves; height, pitch and roll are those of the robot.
+    /// Position and heading were estimated from the pictures themselves; height, pitch and roll are the robot's own.
     Tagged,
 }
 
-/// Which numbers of the reference poses were measured by something else than the pictures.
+/// Components of the reference poses that were measured independently of the pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ReferenceKind {
-    /// All six.
+    /// All six components.
     Whole,
-    /// Height, pitch and roll; position and heading come from the pictures themselves.
+    /// Only height, pitch and roll; position and heading were estimated from the pictures.
     Attitude,
 }
 
-/// Linear values of the field's surfaces as the nominal camera records them, 1 at full scale.
+/// Linear RGB values of the field's surfaces as the nominal camera records them; 1 is full scale.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NominalReflectance {
     pub(crate) line_linear_rgb: [f64; 3],
     pub(crate) carpet_linear_rgb: [f64; 3],
 }
 
-/// Odometry from a frame to the next one.
+/// Odometry between a frame and the next one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OdometryStep {
     /// Time of the next frame, seconds.
@@ -90,7 +90,7 @@ pub(crate) struct OdometryStep {
     pub(crate) odometry: Motion2,
 }
 
-/// One frame to compare.
+/// Frame that is compared with the model.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Frame {
     /// Index in the sequence.
@@ -99,7 +99,7 @@ pub(crate) struct Frame {
     pub(crate) step: Option<OdometryStep>,
 }
 
-/// The frames of a sequence that are compared.
+/// Frames of a sequence that are compared with a model.
 #[derive(Debug)]
 pub struct Recording<'a> {
     pub(crate) sequence: &'a Sequence,
@@ -107,12 +107,13 @@ pub struct Recording<'a> {
     pub(crate) frames: Vec<Frame>,
     pub(crate) source: ReferenceSource,
     pub(crate) scene: Option<NominalReflectance>,
-    /// Files of frames whose picture is broken or missing.
+    /// Picture files that are broken or missing; their frames are left out.
     pub(crate) left_out: Vec<PathBuf>,
 }
 
 impl<'a> Recording<'a> {
-    /// The frames of a sequence, or a range of them, with their reference poses: as many as the sequence has frames.
+    /// Selects the frames of a sequence, or a range of them, that have a reference pose. `poses` has one entry for each
+    /// frame of the sequence.
     pub fn new(
         sequence: &'a Sequence,
         poses: &[Option<CameraPose>],
@@ -152,7 +153,8 @@ impl<'a> Recording<'a> {
         Ok(Self { sequence, trajectory, frames, source, scene: scene(sequence), left_out })
     }
 
-    /// For each frame the number of its view: frames in a row whose poses differ by less than poses' errors may show one.
+    /// Returns each frame's view number. Successive frames belong to one view while their poses differ by so little that
+    /// they may show the same pose errors.
     pub(crate) fn views(&self) -> Vec<usize> {
         let mut first: Option<CameraPose> = None;
         let mut number = 0;
@@ -169,7 +171,7 @@ impl<'a> Recording<'a> {
         views
     }
 
-    /// Whether the camera's poses change by more than their errors between frames.
+    /// Whether the camera's poses change by more than their errors over the recording.
     pub(crate) fn moves(&self) -> bool {
         let poses: Vec<CameraPose> =
             self.frames.iter().map(|frame| self.trajectory.at(frame.time_s)).collect();
@@ -194,7 +196,7 @@ impl<'a> Recording<'a> {
         }
     }
 
-    /// A frame's picture and the bytes of its file.
+    /// Reads a frame's picture; returns it with the bytes of its file.
     pub(crate) fn picture(&self, frame: &Frame) -> Result<(RgbImage, Vec<u8>), SequenceError> {
         let bytes = self.sequence.image_bytes(frame.index)?;
         let camera = &self.sequence.setup.camera;
@@ -203,7 +205,7 @@ impl<'a> Recording<'a> {
     }
 }
 
-/// Frames whose pictures are whole, and the files of the others.
+/// Splits frames into those whose pictures can be read and the picture files of the others.
 fn readable(
     sequence: &Sequence,
     posed: Vec<(usize, f64, CameraPose)>,
@@ -219,7 +221,7 @@ fn readable(
     (kept.collect(), left_out)
 }
 
-/// Whether poses are so near that their pictures show the same.
+/// Whether two poses are so close that their pictures show the same.
 fn is_same_view(a: &CameraPose, b: CameraPose) -> bool {
     let moved_m = (a.position_in_world() - b.position_in_world()).length();
     let turned = a.rotation_world_from_camera().transpose() * b.rotation_world_from_camera();
@@ -228,7 +230,7 @@ fn is_same_view(a: &CameraPose, b: CameraPose) -> bool {
     moved_m < THRESHOLDS.same_view_m && turned_rad < THRESHOLDS.same_view_rad
 }
 
-/// What the camera's file tells of lines and carpet.
+/// Returns the reflectance of lines and carpet in the camera's file, if it gives both.
 fn scene(sequence: &Sequence) -> Option<NominalReflectance> {
     let photometry = sequence.setup.photometry?;
     Some(NominalReflectance {
@@ -237,7 +239,7 @@ fn scene(sequence: &Sequence) -> Option<NominalReflectance> {
     })
 }
 
-/// The odometry from a frame to the next one.
+/// Returns the odometry between a frame and the next one. None without odometry, or if the next frame is too late.
 fn step(sequence: &Sequence, index: usize) -> Option<OdometryStep> {
     let (from, to) = (&sequence.frames[index], sequence.frames.get(index + 1)?);
     let (before, after): (Pose2, Pose2) = (from.odometry?, to.odometry?);

@@ -1,4 +1,4 @@
-//! What tests of several modules make their data of.
+//! Test data shared by several modules.
 
 use std::collections::BTreeMap;
 
@@ -29,7 +29,7 @@ impl Noise {
     }
 }
 
-/// A measurement of a quantity, seen from straight above.
+/// Returns a measurement of a quantity, seen from straight above.
 pub(crate) fn measurement(quantity: Quantity) -> Measurement {
     Measurement {
         subject: Subject::OdometryStep,
@@ -45,7 +45,7 @@ pub(crate) fn measurement(quantity: Quantity) -> Measurement {
     }
 }
 
-/// The green of a block of carpet.
+/// Returns a measurement of the green level of a block of carpet.
 pub(crate) fn carpet_measurement(pixel: DVec2, ground: DVec2) -> Measurement {
     Measurement {
         pixel,
@@ -56,7 +56,7 @@ pub(crate) fn carpet_measurement(pixel: DVec2, ground: DVec2) -> Measurement {
     }
 }
 
-/// A system of frames with these normal equations; each is a view and a place on the field of its own.
+/// Returns a linear system of frames with these normal equations. Each frame is a view and a cell of the field of its own.
 pub(crate) fn system_of(frames: Vec<(DMatrix<f64>, DVector<f64>)>) -> LinearSystem {
     let size = frames[0].1.len();
     let frames: Vec<NormalEquations> =
@@ -72,7 +72,7 @@ pub(crate) fn system_of(frames: Vec<(DMatrix<f64>, DVector<f64>)>) -> LinearSyst
     }
 }
 
-/// An effect in which every parameter has this value, surely, and nothing else is known.
+/// Returns the report of an effect whose parameters all have this value with certainty; all other entries are empty.
 pub(crate) fn effect_report(id: &str, value: f64) -> EffectReport {
     let parameters = effect(id).map_or(&[][..], |known| known.parameters());
     let estimate = |parameter: &Parameter| {
@@ -91,7 +91,7 @@ pub(crate) fn effect_report(id: &str, value: f64) -> EffectReport {
     }
 }
 
-/// A report in which nothing was found.
+/// Returns a report in which no effect was found.
 pub(crate) fn report() -> Report {
     Report {
         recording: "hall".to_owned(),

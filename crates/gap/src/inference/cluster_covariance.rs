@@ -1,17 +1,17 @@
-//! Scatter of a fit's scores between clusters of frames: the middle of a cluster-robust (sandwich) covariance.
+//! Scatter of a fit's scores between clusters of frames: the middle factor of a cluster-robust (sandwich) covariance.
 //!
-//! With scores `sᵢ = gᵢ − Aᵢ δ` of the clusters, the covariance of a fit with information `A` is `A⁻¹ M A⁻¹` (White 1980).
-//! `M = Σ sᵢ sᵢᵀ` where clusters are independent; where neighbouring ones are correlated, their products count with
-//! Bartlett's weights `1 − lag / (L + 1)` as well (Newey and West, Econometrica 55, 1987).
+//! With the clusters' scores `sᵢ = gᵢ − Aᵢ δ`, the covariance of a fit with information `A` is `A⁻¹ M A⁻¹` (White 1980). For
+//! independent clusters, `M = Σ sᵢ sᵢᵀ`. If neighbouring clusters are correlated, their products count as well, with
+//! Bartlett's weights `1 − lag / (L + 1)` (Newey and West, Econometrica 55, 1987).
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::thresholds::Thresholds;
 
-/// Clusters that follow one another are taken to be correlated over this many.
+/// Largest lag at which successive clusters are taken to be correlated.
 pub(crate) const LAG: usize = Thresholds::DEFAULT.inference.correlated_clusters;
 
-/// `Σ sᵢ sᵢᵀ` of clusters in the order of time, with Bartlett's weights for the products of neighbours.
+/// Returns `Σ sᵢ sᵢᵀ` of clusters in order of time, plus the products of neighbours with Bartlett's weights.
 pub(crate) fn of_neighbours(scores: &[DVector<f64>], size: usize) -> DMatrix<f64> {
     let mut scatter = DMatrix::zeros(size, size);
     for (index, score) in scores.iter().enumerate() {
@@ -25,7 +25,7 @@ pub(crate) fn of_neighbours(scores: &[DVector<f64>], size: usize) -> DMatrix<f64
     scatter * small_sample_factor(scores.len())
 }
 
-/// `Σ sᵢ sᵢᵀ` of clusters that are independent of each other.
+/// Returns `Σ sᵢ sᵢᵀ` of mutually independent clusters.
 pub(crate) fn of_independent(scores: &[DVector<f64>], size: usize) -> DMatrix<f64> {
     let mut scatter = DMatrix::zeros(size, size);
     for score in scores {
@@ -34,7 +34,7 @@ pub(crate) fn of_independent(scores: &[DVector<f64>], size: usize) -> DMatrix<f6
     scatter * small_sample_factor(scores.len())
 }
 
-/// `n / (n − 1)`, for the mean that a fit takes out of the scores of n clusters.
+/// Returns `n / (n − 1)`, which corrects for the mean that a fit removes from the scores of n clusters.
 fn small_sample_factor(count: usize) -> f64 {
     let count = count as f64;
     count / (count - 1.0).max(1.0)

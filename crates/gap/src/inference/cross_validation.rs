@@ -1,5 +1,5 @@
-//! Cross-validation over the frames that are fitted: parts of the recording are left out in turn, and each is compared with
-//! a fit to all others.
+//! Cross-validation over the training frames: each part of the recording in turn is left out and compared with a fit to all
+//! others.
 
 use nalgebra::DVector;
 
@@ -12,24 +12,25 @@ use crate::{
 const FOLDS: usize = Thresholds::DEFAULT.inference.folds;
 const RUN: usize = Thresholds::DEFAULT.inference.fold_run_frames;
 
-/// How frames are divided into folds.
+/// Way to divide frames into folds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FoldKind {
-    /// Each fold is one stretch of the recording: frames next to each other see the same things, and would tell of each
-    /// other.
+    /// Each fold is one stretch of the recording. Neighbouring frames see the same things, so frames of one fold must not
+    /// predict each other.
     Stretches,
-    /// Each fold is many short runs of frames, so that what changes over time is seen before and after each.
+    /// Each fold consists of many short runs of frames, so that whatever changes over time is seen before and after each
+    /// run.
     ShortRuns,
 }
 
-/// A fold: the frames that are left out, and the equations of all others.
+/// Fold: the frames that are left out, and the equations of all others.
 #[derive(Debug)]
 struct Fold {
     left_out: Vec<usize>,
     others: ReducedEquations,
 }
 
-/// The folds of a system.
+/// Folds of a linear system.
 #[derive(Debug)]
 pub(crate) struct CrossValidation {
     stretches: Vec<Fold>,
@@ -37,7 +38,7 @@ pub(crate) struct CrossValidation {
 }
 
 impl CrossValidation {
-    /// The folds of a system with so many columns of fitted parameters.
+    /// Divides a system into folds. `parameters` is the number of columns of fitted parameters.
     pub(crate) fn new(system: &LinearSystem, parameters: usize) -> Self {
         let count = system.frames.len();
         let folds = FOLDS.min(count).max(1);
@@ -53,10 +54,10 @@ impl CrossValidation {
         Self { stretches, runs }
     }
 
-    /// Gains of a set of free columns over the model as it is, frame by frame. `base` is where the model is, in the columns'
-    /// coordinates. `shared` columns are free in what this is compared with as well: where the other frames do not tell of
-    /// them, they stay where the model is, or a line that is seen in the frames left out alone would drown what the sets
-    /// differ in.
+    /// Returns, frame by frame, the gain of freeing a set of columns over the present model. `base` is the present model in
+    /// the columns' coordinates. The `shared` columns are also free in the set that this one is compared with. Where the
+    /// other frames do not constrain a shared column, it keeps the model's value: otherwise a line that is seen only in the
+    /// frames left out would drown the difference between the two sets.
     pub(crate) fn gains(
         &self,
         system: &LinearSystem,

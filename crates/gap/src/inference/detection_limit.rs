@@ -1,4 +1,4 @@
-//! How large an effect that was not found would have to be to be found, and which cannot be seen at all.
+//! Detection limits of effects that were not found, and reasons why effects cannot be seen at all.
 
 use reality_sim_sensor::{Effect, EffectIndex, Need, Stage};
 use serde::{Deserialize, Serialize};
@@ -13,44 +13,44 @@ use crate::{
 
 const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
 
-/// An effect that was not found.
+/// Outcome for an effect that was not found.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NotFound {
-    /// It would have been found at this size of its first parameter.
+    /// The effect would have been found at this size of one of its parameters.
     Limit {
-        /// As in the parameter's unit.
+        /// Size in the parameter's unit.
         value: f64,
-        /// The parameter's.
+        /// Unit of the parameter.
         unit: &'static str,
-        /// The parameter's.
+        /// Name of the parameter.
         parameter: &'static str,
     },
-    /// It cannot be seen in this recording.
+    /// The effect cannot be seen in this recording.
     Unobservable(UnobservableCause),
 }
 
-/// Why an effect cannot be seen in a recording.
+/// Reason why an effect cannot be seen in a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum UnobservableCause {
-    /// The recording's files do not have what the effect is compared with.
+    /// The recording's files lack what the effect is compared with.
     MissingInput {
-        /// What they do not have.
+        /// Missing part of the files.
         input: MissingInput,
     },
-    /// The camera hardly moves: nothing depends on when a row or a picture is taken.
+    /// The camera hardly moves, so nothing depends on when a row or a picture is taken.
     CameraAtRest,
-    /// The robot hardly moves: its odometry has nothing to report.
+    /// The robot hardly moves, so its odometry has nothing to report.
     RobotAtRest,
-    /// Too few views: what is odd in one of them may be the place's own.
+    /// There are too few views: residuals of a single view may come from that place instead of the camera.
     FewViews {
         /// Number of views.
         views: usize,
-        /// Number from which on effects can be seen.
+        /// Least number of views at which effects can be seen.
         needed: usize,
     },
-    /// Other parts of the model, or errors of the poses, change these pictures as the effect does.
+    /// Other parts of the model, or pose errors, change these pictures in the same way as the effect.
     NotSeparable,
 }
 
@@ -69,13 +69,13 @@ pub enum MissingInput {
 }
 
 impl UnobservableCause {
-    /// Whether another recording by the same robot would do; else its files lack something.
+    /// Whether another recording by the same robot would help. Otherwise the recording's files lack something.
     pub(crate) fn is_of_the_recording(self) -> bool {
         !matches!(self, Self::MissingInput { .. })
     }
 }
 
-/// What can be said of an effect beside those in the model.
+/// Returns the detection limit of an effect that is tested beside those in the model, or why it cannot be seen.
 pub(crate) fn limit(
     recording: &Recording<'_>,
     naming: &EffectTests<'_>,
@@ -89,7 +89,7 @@ pub(crate) fn limit(
     let columns = naming.columns_of(&[effect]);
     let sizes: Vec<ColumnIndex> =
         columns.into_iter().filter(|&column| naming.columns[column.0].is_size()).collect();
-    // The first that can be seen: parameters are listed by their weight.
+    // The first observable parameter counts: parameters are listed by importance.
     let limit = sizes.iter().find_map(|&column| Some((column, limit_of(naming, column, all)?)));
     let Some((column, value)) = limit else {
         return NotFound::Unobservable(unseen_cause(recording, used));
@@ -98,7 +98,8 @@ pub(crate) fn limit(
     NotFound::Limit { value, unit: parameter.unit, parameter: parameter.name }
 }
 
-/// The limit of one column alone beside the effects of the model, in its unit. None where it cannot be seen.
+/// Returns the detection limit of a single column beside the effects of the model, in the column's unit. None if it cannot
+/// be seen.
 fn limit_of(naming: &EffectTests<'_>, column: ColumnIndex, all: &[EffectIndex]) -> Option<f64> {
     if naming.evidence.views() < LEAST_VIEWS {
         return None;
@@ -120,7 +121,7 @@ fn limit_of(naming: &EffectTests<'_>, column: ColumnIndex, all: &[EffectIndex]) 
     (value < reach).then_some(value)
 }
 
-/// What an effect needs and the recording's files do not have.
+/// Returns the first input that an effect needs and the recording's files lack.
 fn missing_input(recording: &Recording<'_>, effect: &dyn Effect) -> Option<MissingInput> {
     let missing = effect.about().needs.iter().find(|need| !provides(recording, **need))?;
     Some(match missing {
@@ -164,7 +165,7 @@ mod tests {
         testing::{Noise, system_of},
     };
 
-    /// Forty frames with this much information each on the one column, in which the effect is this large.
+    /// Returns forty frames with this much information each on a single column, in which the effect has this size.
     fn system(seed: u64, information: f64, size: f64) -> LinearSystem {
         let mut noise = Noise(seed);
         let mut frame = || {
@@ -179,7 +180,7 @@ mod tests {
         FittedParameter { effect, parameter: 0 }
     }
 
-    /// The limit, and how unlikely what is fitted is chance.
+    /// Returns the detection limit and the p-value of the fit.
     fn limit_and_p(seed: u64, information: f64, size: f64) -> (Option<f64>, f64) {
         let system = system(seed, information, size);
         let evidence = Evidence::new(&system, DVector::zeros(1));

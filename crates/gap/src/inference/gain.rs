@@ -1,4 +1,4 @@
-//! Gains in log-likelihood on held-out frames, and how surely they are above zero.
+//! Gains in log-likelihood on held-out frames, and their significance.
 
 use nalgebra::DVector;
 
@@ -7,41 +7,41 @@ use crate::{
     linear_model::system::PRIOR,
 };
 
-/// A gain in log-likelihood on frames that the fit has not seen.
+/// Gain in log-likelihood on frames that the fit has not seen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Gain {
     pub(crate) value: f64,
     pub(crate) sigma: f64,
-    /// How surely it is above zero, in standard deviations of a rank test.
+    /// Score of a rank test that the gain is above zero, in standard deviations.
     rank_score: f64,
 }
 
-/// Gains of a set of effects over the model as it is, on held-out frames.
+/// Gains of a set of effects over the present model, on held-out frames.
 #[derive(Debug, Clone)]
 pub(crate) struct HeldOutGains {
-    /// In log-likelihood, frame by frame, each by a fit to the other parts of the recording.
+    /// Gain in log-likelihood of each frame, by a fit to the other parts of the recording.
     frames: Vec<f64>,
-    /// Half the sum of squares of the fitted nuisance parameters, in their prior standard deviations: nominal values that
-    /// have to be far off speak against the set, and no frame shows it.
+    /// Half the sum of squares of the fitted nuisance parameters, in their prior standard deviations. A set that needs
+    /// nominal values far from their priors is less plausible, which the gain of no frame shows.
     strain: f64,
 }
 
 impl HeldOutGains {
-    /// `frames` are the gains frame by frame, `fitted` is the change of all columns in a fit to all frames: those of so many
-    /// fitted parameters and, behind them, the nuisances'.
+    /// Creates the gains of a set. `frames` are the gains frame by frame; `fitted` is the change of all columns in a fit to
+    /// all frames, with `parameters` fitted parameters first and the nuisance parameters behind them.
     pub(crate) fn new(frames: Vec<f64>, fitted: &DVector<f64>, parameters: usize) -> Self {
         let strain = fitted.iter().skip(parameters).map(|value| value * value).sum::<f64>();
         Self { frames, strain: 0.5 * PRIOR * strain }
     }
 
-    /// By how much this is better than another.
+    /// Returns the gain of this set over another one.
     pub(crate) fn over(&self, other: &Self) -> Gain {
         let gain = sum_of(&self.differences(other));
         Gain { value: gain.value + other.strain - self.strain, ..gain }
     }
 
-    /// How surely this is better than another, in standard deviations. Gains go with the square of what an effect is at
-    /// the time: their roots scatter less.
+    /// Returns the score of the gain of this set over another one, in standard deviations. It uses the signed roots of the
+    /// frames' gains: a gain grows with the square of the effect's size at that time, and roots scatter less.
     pub(crate) fn surely_over(&self, other: &Self) -> f64 {
         let roots: Vec<f64> =
             self.differences(other).iter().map(|gain| gain.signum() * gain.abs().sqrt()).collect();
@@ -55,15 +55,16 @@ impl HeldOutGains {
 }
 
 impl Gain {
-    /// How many standard deviations above zero. Few frames may have most of a gain, as those in which the camera turns
-    /// quickly: their sum scatters much, but its sign does not.
+    /// Returns the number of standard deviations by which the gain is above zero. A few frames may contribute most of a
+    /// gain, such as those in which the camera turns quickly: then the sum scatters strongly, but its sign does not, and the
+    /// rank test is more powerful.
     pub(crate) fn score(self) -> f64 {
         let plain = if self.sigma > 0.0 { self.value / self.sigma } else { 0.0 };
         if self.value > 0.0 { plain.max(self.rank_score) } else { plain }
     }
 }
 
-/// Sum over frames with its standard deviation, frames in a row taken to be correlated.
+/// Returns the sum over frames with its standard deviation; successive frames are taken to be correlated.
 pub(crate) fn sum_of(frames: &[f64]) -> Gain {
     let count = frames.len() as f64;
     let value: f64 = frames.iter().sum();
@@ -73,7 +74,7 @@ pub(crate) fn sum_of(frames: &[f64]) -> Gain {
     Gain { value, sigma, rank_score: rank_score(frames) }
 }
 
-/// Wilcoxon's signed-rank test on sums over a few frames in a row each: how many standard deviations above even.
+/// Score of Wilcoxon's signed-rank test on sums over short runs of successive frames, in standard deviations.
 fn rank_score(frames: &[f64]) -> f64 {
     let mut sums: Vec<f64> = frames.chunks(LAG).map(|run| run.iter().sum()).collect();
     sums.sort_by(|a, b| a.abs().total_cmp(&b.abs()));

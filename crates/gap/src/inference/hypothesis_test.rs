@@ -1,23 +1,23 @@
-//! Tests against chance: Student's t of one number, Hotelling's T² of several.
+//! Significance tests: Student's t for a single number, Hotelling's T² for several.
 
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
-/// Probability that chance takes a number as many standard deviations from zero as `score`, to either side. `degrees` is
-/// the degrees of freedom of the scatter that the standard deviation was estimated from.
+/// Two-sided p-value of a number that is `score` standard deviations from zero. `degrees` is the number of degrees of
+/// freedom of the scatter that the standard deviation was estimated from.
 pub(crate) fn two_sided(score: f64, degrees: f64) -> f64 {
     StudentsT::new(0.0, 1.0, degrees.max(1.0)).map_or(1.0, |student| 2.0 * student.sf(score.abs()))
 }
 
-/// Quantile of Student's distribution.
+/// Quantile of Student's t-distribution.
 pub(crate) fn student_quantile(probability: f64, degrees: f64) -> f64 {
     StudentsT::new(0.0, 1.0, degrees.max(1.0))
         .map_or(f64::INFINITY, |student| student.inverse_cdf(probability))
 }
 
-/// Probability that chance takes estimates as far from zero together (Hotelling's T²): with `n` numbers whose covariance
-/// was estimated from `count` clusters, `T² (count − n) / (n (count − 1))` is F-distributed with n and count − n degrees of
-/// freedom. 1 where there are no numbers, or too few clusters for them.
+/// P-value of estimates that are jointly as far from zero as these (Hotelling's T²). If the covariance of `n` numbers was
+/// estimated from `count` clusters, `T² (count − n) / (n (count − 1))` is F-distributed with n and count − n degrees of
+/// freedom. Returns 1 without numbers, or with too few clusters for them.
 pub(crate) fn hotelling_p_value(covariance: &DMatrix<f64>, estimates: &DVector<f64>, count: usize) -> f64 {
     let number = estimates.len();
     if number == 0 || count <= number + 1 {
@@ -32,8 +32,8 @@ pub(crate) fn hotelling_p_value(covariance: &DMatrix<f64>, estimates: &DVector<f
     }
 }
 
-/// Squared Mahalanobis distance `vᵀ C⁻¹ v`. Parameters that hardly differ in what they do leave the covariance all but
-/// singular: a billionth is added to the diagonal of the correlations.
+/// Squared Mahalanobis distance `vᵀ C⁻¹ v`. The covariance of parameters with nearly the same effect is almost singular, so
+/// 1e-9 is added to the diagonal of the correlation matrix.
 fn squared_distance(covariance: &DMatrix<f64>, value: &DVector<f64>) -> Option<f64> {
     let scale = covariance.diagonal().map(|variance| variance.max(f64::MIN_POSITIVE).sqrt());
     let size = value.len();

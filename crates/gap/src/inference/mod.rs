@@ -1,5 +1,5 @@
-//! Which effects a recording supports: tests of effects, the search for a set of them, detection limits, and the gap on
-//! held-out frames.
+//! Inference of the effects that a recording supports: effect tests, the search for a set of effects, detection limits, and
+//! the gap on held-out frames.
 //!
 //! ```text
 //! split ─ cross_validation ─┐

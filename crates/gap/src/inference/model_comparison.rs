@@ -1,4 +1,4 @@
-//! What settled models leave, compared with one another.
+//! Comparison of settled models by the likelihood of their residuals.
 
 use std::collections::BTreeMap;
 
@@ -16,23 +16,23 @@ use crate::{
 
 const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
 
-/// Difference in log-likelihood below which settled models leave as little as each other, where the better one explains this
-/// much. No model is exact, and what it is off by grows with what it explains.
+/// Difference in log-likelihood below which two settled models fit equally well, if the better one explains `explained`. No
+/// model is exact, and its error grows with what it explains.
 pub(crate) fn indistinguishable_below(explained: f64) -> f64 {
     let score = THRESHOLDS.distinguishable_score;
     (0.5 * score * score).max(THRESHOLDS.compared_model_error * explained)
 }
 
-/// What a settled model leaves of the fitted frames, as minus log-likelihood: residuals in the standard deviations of one
-/// system, cut off where they are no measurements, and what the nuisance parameters have to be. Infinite where the nuisance
-/// parameters cannot be fitted.
+/// Minus log-likelihood of the training frames under a settled model. It adds up the squared residuals in the standard
+/// deviations of one system, clipped at outliers, and the squared nuisance parameters that the fit needs. Infinite if the
+/// nuisance parameters cannot be fitted.
 pub(crate) fn minus_log_likelihood(
     measured: &LinearizedRecording,
     system: &LinearSystem,
     columns: &[FittedParameter],
     split: &HeldOutSplit,
 ) -> f64 {
-    // The model as it is: nothing moves but the nuisance parameters.
+    // The effects keep their values; only the nuisance parameters are fitted.
     let own = &measured.system;
     let total = ReducedEquations::of(own.frames.iter(), own.size, columns.len());
     let Some(fit) = total.fit(&[], &DVector::zeros(columns.len())) else { return f64::INFINITY };
@@ -51,7 +51,8 @@ pub(crate) fn minus_log_likelihood(
             }
         }
     }
-    // Other models find other numbers of lines: means count, times as many as there are independent.
+    // Models differ in the number of lines that they find. Hence each quantity counts by its mean, times the number of
+    // independent measurements.
     let counted = means.iter().map(|(quantity, (sum, count))| {
         let rows = if quantity.is_odometry() {
             THRESHOLDS.odometry_rows

@@ -1,5 +1,5 @@
-//! Search for the set of effects that a recording supports: which set to try next, and how a set settles, that is, is fitted
-//! while everything is measured anew where the model puts things.
+//! Search for the set of effects that a recording supports: chooses the sets to try next, and settles each of them. A set is
+//! settled when it has been fitted until a further step, with everything measured anew at the fitted model, gains nothing.
 
 use std::cmp::Ordering;
 
@@ -21,28 +21,28 @@ use crate::{
 
 const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
 
-/// Search among the sets of effects of one recording.
+/// Search over sets of effects for one recording.
 pub(crate) struct ModelSearch<'a> {
     pub(crate) source: &'a dyn Linearize,
     pub(crate) columns: &'a [FittedParameter],
     pub(crate) split: &'a HeldOutSplit,
-    /// Effects that the model has had from the start.
+    /// Effects that the model had from the start.
     pub(crate) given: &'a [EffectIndex],
     pub(crate) progress: &'a dyn Fn(Progress),
 }
 
-/// A set of named effects, and the recording at the model in which they are settled.
+/// Set of named effects, with the recording measured at the model in which they have settled.
 pub(crate) type Settled = (Vec<EffectIndex>, LinearizedRecording);
 
 impl ModelSearch<'_> {
-    /// The effects of a model in which these are named.
+    /// Returns all effects of a model: the given ones and these named ones.
     fn all(&self, named: &[EffectIndex]) -> Vec<EffectIndex> {
         self.given.iter().chain(named).copied().collect()
     }
 
-    /// The model without an effect that is no longer supported, settled, where the effect is not supported beside that model,
-    /// either: once settled, a large effect may seem unsupported, as Wald's test loses its power far from zero (Hauck and
-    /// Donner 1977). `tests` are those of `measured`.
+    /// Returns the settled model without an effect that is no longer supported, provided that the effect is not supported
+    /// beside that smaller model either. The second condition matters because a large effect may seem unsupported once
+    /// settled: Wald's test loses power far from zero (Hauck and Donner 1977). `tests` belong to `measured`.
     pub(crate) fn dropped(
         &self,
         measured: &LinearizedRecording,
@@ -65,7 +65,7 @@ impl ModelSearch<'_> {
         Ok(None)
     }
 
-    /// P-value of an effect that is not in the model, corrected for all effects of the library.
+    /// Returns the p-value of an effect that is not in the model, corrected for all effects of the library.
     pub(crate) fn p_value(
         &self,
         tests: &EffectTests<'_>,
@@ -75,8 +75,8 @@ impl ModelSearch<'_> {
         Some(tests.test(effect, &self.all(named), tests.effects().len())?.p_value)
     }
 
-    /// The next sets of named effects to try, one of which is to be taken: one effect replaced by a better one, one more, or
-    /// two more. `is_new` is true for sets that were not tried yet.
+    /// Returns the sets of named effects to try next, one of which is to be taken: one effect replaced by a better one, one
+    /// effect more, or two more. `is_new` is true for sets that have not been tried yet.
     pub(crate) fn next_sets(
         &self,
         tests: &EffectTests<'_>,
@@ -95,8 +95,8 @@ impl ModelSearch<'_> {
         tests.next_additions(&all).iter().map(|added| with(added)).filter(|set| is_new(set)).collect()
     }
 
-    /// Settles each of several sets: first the one to take, then those that leave as little. The one to take has the fewest
-    /// sizes among those that cannot be told apart, then it leaves least.
+    /// Settles each of several sets and returns the one to take, followed by those that fit as well. Among the sets whose
+    /// fits are indistinguishable, the one to take has the fewest sizes and then the best fit.
     pub(crate) fn closest(
         &self,
         measured: &LinearizedRecording,
@@ -121,8 +121,9 @@ impl ModelSearch<'_> {
         Ok(settled.into_iter().map(|(_, set, measured)| (set, measured)).collect())
     }
 
-    /// Named effects, each with one that it is confusable with: one that tied with it when it was taken, or that the
-    /// linearised model cannot tell from it, and that leaves as little in its place once it has settled.
+    /// Returns pairs of a named effect and an effect that it is confusable with. The second one tied with it when it was
+    /// taken, or the linearised model cannot distinguish the two, and it fits as well in the first one's place once it has
+    /// settled.
     pub(crate) fn confusable(
         &self,
         measured: &LinearizedRecording,
@@ -156,12 +157,12 @@ impl ModelSearch<'_> {
         Ok(confusable)
     }
 
-    /// What a settled model leaves, in the standard deviations of `system`. See [`minus_log_likelihood`].
+    /// Minus log-likelihood of a settled model, in the standard deviations of `system`. See [`minus_log_likelihood`].
     pub(crate) fn left(&self, measured: &LinearizedRecording, system: &LinearSystem) -> f64 {
         minus_log_likelihood(measured, system, self.columns, self.split)
     }
 
-    /// Fits the effects together and measures anew where they put things, until a step gains nothing (Gauss–Newton).
+    /// Fits the effects jointly and measures again at the fitted model, until a step gains nothing (Gauss–Newton).
     pub(crate) fn settle(
         &self,
         mut measured: LinearizedRecording,
@@ -182,7 +183,7 @@ impl ModelSearch<'_> {
         Ok(measured)
     }
 
-    /// The model with only these effects, at the fitted values.
+    /// Returns the model with only these effects, at the fitted values.
     fn moved(&self, model: &Model, tests: &EffectTests<'_>, fit: &Fit, effects: &[EffectIndex]) -> Model {
         let mut moved = Model::default();
         for &index in effects {
@@ -190,7 +191,7 @@ impl ModelSearch<'_> {
             let mut values = model
                 .values(effect.id())
                 .map_or_else(|| self.source.starting_values(effect), <[f64]>::to_vec);
-            // What these frames do not tell of a given effect stays as it was given.
+            // Parameters of a given effect that these frames do not constrain keep their given values.
             let stays = |column: &ColumnIndex| self.given.contains(&index) && fit.tells_nothing(*column);
             for column in tests.columns_of(&[index]).into_iter().filter(|column| !stays(column)) {
                 values[self.columns[column.0].parameter] = tests.value(fit, column);

@@ -1,25 +1,26 @@
-//! Which frames are fitted and which are held out.
+//! Split into training frames and held-out frames.
 
 use crate::thresholds::Thresholds;
 
 const RUN: usize = Thresholds::DEFAULT.inference.held_out_run_frames;
 const EVERY: usize = Thresholds::DEFAULT.inference.held_out_every;
 
-/// Which of so many stretches of a recording, one after the other and equally long, a frame is in.
+/// Returns the stretch that a frame is in, if `count` frames are divided into `stretches` successive stretches of equal
+/// length.
 pub(crate) fn stretch(frame: usize, count: usize, stretches: usize) -> usize {
     frame * stretches / count
 }
 
-/// Frames that are fitted and frames that are held out: no fit sees those.
+/// Split into training frames and held-out frames, which no fit sees.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct HeldOutSplit {
     judged: Vec<bool>,
 }
 
 impl HeldOutSplit {
-    /// Every fourth run of frames is held out; the seed says with which the count begins.
+    /// Holds out every fourth run of frames; the seed chooses the first one.
     pub(crate) fn new(frames: usize, seed: u64) -> Self {
-        // Short recordings have shorter runs, so that both kinds are spread over all of them.
+        // Short recordings have shorter runs, so that both kinds of frames are spread over the whole recording.
         let run = RUN.min(frames / (2 * EVERY)).max(1);
         let first = (seed % EVERY as u64) as usize;
         Self { judged: (0..frames).map(|frame| (frame / run) % EVERY == (first + 2) % EVERY).collect() }
@@ -29,7 +30,7 @@ impl HeldOutSplit {
         self.judged.iter().enumerate().filter(|(_, judged)| !**judged).map(|(frame, _)| frame)
     }
 
-    /// Whether a frame is held out; false where there is no such frame.
+    /// Whether a frame is held out; false for a frame that does not exist.
     pub(crate) fn is_judged(&self, frame: usize) -> bool {
         self.judged.get(frame).copied().unwrap_or(false)
     }
