@@ -1,4 +1,4 @@
-//! Draws a recording's frame as the model sees it, beside the real picture: `draw SEQUENCE FRAME OUT.png`.
+//! Draws a recording's frame as predicted by the model beside the real picture: `draw SEQUENCE FRAME OUT.png`.
 
 use std::{error::Error, path::Path, time::Instant};
 

@@ -1,25 +1,25 @@
 //! The point spread function: light that falls beside its pixel.
 //!
-//! The kernel is that of heat which spreads along a line of pixels for a while. Its variance is exactly what is asked for,
-//! also where that is a fraction of a pixel, and it comes near to a Gaussian (Lindeberg, "Scale-space for discrete
-//! signals", PAMI 1990). It is applied along the rows, then along the columns.
+//! The kernel is that of heat diffusing along a line of pixels. Its variance is exactly the requested one, even for
+//! fractions of a pixel, and its form approaches a Gaussian (Lindeberg, "Scale-space for discrete signals", PAMI 1990). It
+//! is applied along the rows, then along the columns.
 
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
 use crate::light::Light;
 
-/// The least number of steps in which the heat spreads.
+/// Least number of diffusion steps.
 const LEAST_STEPS: usize = 16;
-/// A pixel beyond this many standard deviations there is next to no light.
+/// Reach of a kernel in standard deviations: pixels beyond it receive next to no light.
 const REACH_SIGMAS: f64 = 5.0;
-/// Kernels of more variance are Gaussians: heat would take too many steps.
+/// Variance in pixels² above which kernels are sampled Gaussians: diffusion would take too many steps.
 const HEAT_PX2: f64 = 100.0;
-/// No kernel reaches farther: pictures end before.
+/// Longest reach of a kernel in pixels: pictures end before that.
 const LONGEST_REACH: usize = 4096;
 
-/// The picture with each pixel blurred by the variance at its place, pixels² along each axis. Beyond the picture's sides
-/// the light is taken to go on as on them.
+/// Returns the picture blurred at each pixel by the variance there, in pixels² along each axis. Beyond the picture's sides,
+/// the light continues with the values at the sides.
 pub(crate) fn blurred(light: Light, variance_px2: impl Fn(DVec2) -> f64 + Sync) -> Light {
     let mut across = light.clone();
     across.rows_mut().zip(light.rows()).enumerate().for_each(|(v, (row, source))| {
@@ -33,7 +33,7 @@ pub(crate) fn blurred(light: Light, variance_px2: impl Fn(DVec2) -> f64 + Sync) 
     both
 }
 
-/// `source` gives the light at a pixel of the row, offset along the direction of the blur.
+/// Blurs one row of the output; `source` gives the light at a pixel of the row, offset along the direction of the blur.
 fn blur_row(
     row: &mut [Vec3],
     v: usize,
@@ -50,7 +50,7 @@ fn blur_row(
     }
 }
 
-/// Weights of a pixel and its neighbours on one side; those of the other are the same.
+/// Weights of a pixel and of its neighbours on one side; the other side mirrors them.
 struct Kernel {
     variance_px2: f64,
     weights: Vec<f32>,
@@ -71,10 +71,10 @@ impl Kernel {
     }
 }
 
-/// What is left of heat in a pixel after it has spread to this variance, and what has come to its neighbours.
+/// Returns the share of heat left in a pixel after diffusing to this variance, followed by the shares of its neighbours.
 fn heat(variance_px2: f64) -> Vec<f64> {
     let steps = LEAST_STEPS.max((2.0 * variance_px2).ceil() as usize);
-    // Each step moves this share of the light by a pixel to either side.
+    // Each step moves this share of the light by one pixel to either side.
     let share = variance_px2 / (2.0 * steps as f64);
     let reach = (1 + (REACH_SIGMAS * variance_px2.sqrt()).ceil() as usize).min(steps);
     let mut weights = vec![0.0; reach + 2];

@@ -1,4 +1,4 @@
-//! The simulated camera: its stages one after the other, each with the effects that change it.
+//! The simulated camera: its stages in order, each with the effects that change it.
 
 use glam::DVec2;
 use reality_sim_core::{
@@ -17,21 +17,21 @@ use crate::{
     trajectory::Trajectory,
 };
 
-/// Gamma of a camera whose photometry is not known.
+/// Gamma of a camera without photometric calibration.
 const DEFAULT_GAMMA: f64 = 2.2;
 
-/// One camera with its effects: from a point of the world to a pixel, from light to a pixel's value, from a motion to
-/// what the odometry says of it. Effects of one stage are applied in the order of [`library`].
+/// Simulated camera with its effects: maps points in the world to pixels, light to pixel values, and motions to what the
+/// odometry reports of them. Effects of one stage are applied in the order of [`library`].
 #[derive(Debug, Clone)]
 pub struct Chain {
     model: Model,
-    /// Of this stage, as of the others, those that are not neutral.
+    /// This list and those below hold the stage's effects that are not neutral.
     world: Vec<Used>,
     motion: Vec<Used>,
     mount: Vec<Used>,
     lens: Vec<Used>,
     exposure: Vec<Used>,
-    /// First the nominal black level.
+    /// The nominal black level comes first.
     sensor: Vec<Used>,
     odometry: Vec<Used>,
     field: FieldDimensions,
@@ -46,8 +46,8 @@ pub struct Chain {
     tone: Tone,
 }
 
-/// Variance of a Gaussian kernel sampled at the pixels' centres: below the square of a sigma under half a pixel, which
-/// the pixels' neighbours hardly see.
+/// Returns the variance of a Gaussian kernel sampled at the pixels' centres. Below half a pixel it is less than the square
+/// of sigma, because the kernel hardly reaches the neighbouring pixels.
 fn sampled_variance_px2(sigma_px: f64) -> f64 {
     if sigma_px <= 0.0 {
         return 0.0;
@@ -61,9 +61,9 @@ fn sampled_variance_px2(sigma_px: f64) -> f64 {
 }
 
 impl Chain {
-    /// The chain of a nominal camera, a nominal field and what the model changes of them. Where the camera's photometry
-    /// is not known, gamma is 2.2 and there is no black level, noise or blur. Fails where a value is not finite or
-    /// the effects leave no camera.
+    /// Builds the chain from a nominal camera, a nominal field and the model's changes to them. A camera without photometry
+    /// gets a gamma of 2.2 and no black level, noise or blur. Fails where a value is not finite or where the effects leave
+    /// no valid camera.
     pub fn new(setup: &CameraSetup, field: &FieldDimensions, model: &Model) -> Result<Self, ModelError> {
         check_finite(model)?;
         let mut chain = Self::nominal(setup, field);
@@ -81,7 +81,7 @@ impl Chain {
         Ok(Self { model: model.clone(), world, motion, mount, lens, exposure, odometry, ..chain })
     }
 
-    /// The chain of a camera and a field as they are written down, without effects.
+    /// Builds the chain of a camera and a field at their nominal values, without effects.
     pub fn nominal(setup: &CameraSetup, field: &FieldDimensions) -> Self {
         let photometry = setup.photometry.as_ref();
         let value = |of: fn(&Photometry) -> Option<f64>| photometry.and_then(of).unwrap_or(0.0);
@@ -107,27 +107,27 @@ impl Chain {
         }
     }
 
-    /// The effects.
+    /// Returns the effects.
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// The field as it is.
+    /// Returns the field with the effects' changes.
     pub fn field(&self) -> &FieldDimensions {
         &self.field
     }
 
-    /// The camera with what effects change of its lens.
+    /// Returns the camera with the effects' changes to its lens.
     pub fn camera(&self) -> &Camera {
         &self.camera
     }
 
-    /// How long after the time of the reference poses images and odometry are taken, seconds.
+    /// Returns the delay in seconds of images and odometry after the time of the reference poses.
     pub fn clock_s(&self) -> f64 {
         self.clock_s
     }
 
-    /// How long each row is exposed, seconds.
+    /// Returns the exposure time of each row in seconds.
     pub fn exposure_s(&self) -> f64 {
         self.exposure_s
     }
@@ -137,92 +137,93 @@ impl Chain {
         self.has_row_times
     }
 
-    /// By how much red, green and blue are magnified about the principal point; 1 is not at all.
+    /// Returns the magnification of red, green and blue about the principal point; 1 leaves the channel unchanged.
     pub fn magnification(&self) -> [f64; 3] {
         self.magnification
     }
 
-    /// Whether red, green and blue are seen at different places.
+    /// Whether red, green and blue are magnified differently.
     pub fn splits_colors(&self) -> bool {
         self.magnification.iter().any(|magnification| *magnification != self.magnification[1])
     }
 
-    /// The camera's true pose in the middle of a row's exposure, of the frame with this time stamp. `trajectory` holds
-    /// the reference poses; rows run from 0, the top one, to 1.
+    /// Returns the camera's true pose in the middle of a row's exposure, for the frame with this time stamp. `trajectory`
+    /// holds the reference poses; rows run from 0 at the top to 1 at the bottom.
     pub fn pose(&self, trajectory: &Trajectory, time_s: f64, row: f64) -> CameraPose {
         self.mounted(trajectory.at(self.exposure_middle_s(time_s, row)))
     }
 
-    /// When the middle of a row's exposure is, on the clock of the reference poses, seconds.
+    /// Returns the middle of a row's exposure in seconds, on the clock of the reference poses.
     pub fn exposure_middle_s(&self, time_s: f64, row: f64) -> f64 {
         time_s + self.clock_s + delay_s(&self.motion, row)
     }
 
-    /// The camera's true pose, from the reference one.
+    /// Returns the camera's true pose for a reference pose.
     pub fn mounted(&self, pose: CameraPose) -> CameraPose {
         self.mount.iter().fold(pose, |pose, used| used.effect.mount(&used.values, pose))
     }
 
-    /// Factor of red, green and blue on the light of a point of the scene: the light on the ground at `ground`, metres,
-    /// where the point lies there, the lens's falloff at `pixel`, and the gain of the frame with this time stamp.
+    /// Returns the factors of red, green and blue on the light of a point in the scene: the product of the light on the
+    /// ground at `ground` (metres, for a point on the ground), the lens's falloff at `pixel`, and the gain of the frame with
+    /// this time stamp.
     pub fn light(&self, time_s: f64, pixel: DVec2, ground: Option<DVec2>) -> [f64; 3] {
         let light = ground.map_or(1.0, |point| self.light_on_ground(point)) * self.falloff(pixel);
         self.gain(time_s).map(|gain| light * gain)
     }
 
-    /// Factor of the light on the ground at a point of it, metres.
+    /// Returns the factor of the light on the ground at a point, metres.
     pub fn light_on_ground(&self, point_in_world: DVec2) -> f64 {
         let light = |used: &Used| used.effect.light(&used.values, point_in_world, &self.field);
         self.world.iter().map(light).product()
     }
 
-    /// The share of the light that reaches the sensor at a pixel.
+    /// Returns the share of the light that reaches the sensor at a pixel.
     pub fn falloff(&self, pixel: DVec2) -> f64 {
         let radius = self.radius(pixel);
         self.lens.iter().map(|used| used.effect.falloff(&used.values, radius)).product()
     }
 
-    /// Factor of red, green and blue in the frame with this time stamp.
+    /// Returns the gain of red, green and blue in the frame with this time stamp.
     pub fn gain(&self, time_s: f64) -> [f64; 3] {
         product(&self.exposure, |used| used.effect.gain(&used.values, time_s))
     }
 
-    /// Variance, along each axis, of the blur by lens and sensor at a pixel, pixels²: the nominal one and that of the
-    /// effects. The pixel's own extent (1/12) and the blur by motion are not in it.
+    /// Returns the variance along each axis, in pixels², of the blur by lens and sensor at a pixel: the nominal variance
+    /// plus the effects'. It excludes the pixel's own extent (1/12) and motion blur.
     pub fn psf_variance_px2(&self, pixel: DVec2) -> f64 {
         let radius = self.radius(pixel);
         let added = |used: &Used| used.effect.blur_variance_px2(&used.values, radius);
         self.psf_variance_px2 + self.lens.iter().map(added).sum::<f64>()
     }
 
-    /// The sensor's linear output for a linear value with its noise.
+    /// Returns the sensor's linear output for a linear value that includes noise.
     pub fn respond(&self, linear: f64) -> f64 {
         self.sensor.iter().fold(linear, |value, used| used.effect.respond(&used.values, value))
     }
 
-    /// Noise of linear values, before the sensor adds to them.
+    /// Returns the noise of linear values before the sensor's response.
     pub fn noise(&self) -> Noise {
         self.noise
     }
 
-    /// From linear output to pixel values.
+    /// Returns the tone curve from linear output to pixel values.
     pub(crate) fn tone(&self) -> Tone {
         self.tone
     }
 
-    /// The pixel value, 0 to 1, for the sensor's linear output.
+    /// Returns the pixel value, 0 to 1, for the sensor's linear output.
     pub fn encode(&self, linear: f64) -> f64 {
         self.tone.encode(linear)
     }
 
-    /// What the odometry reports of a true motion of the camera that took `duration_s` seconds. The robot's clock is
-    /// late: for two time stamps, `true_motion` is between the poses [`Chain::clock_s`] after them.
+    /// Returns the motion that the odometry reports for a true motion of the camera that took `duration_s` seconds. The
+    /// robot's clock is late: between two time stamps, `true_motion` connects the poses [`Chain::clock_s`] after them.
     pub fn odometry(&self, true_motion: Motion2, duration_s: f64) -> Motion2 {
         let reported = |motion, used: &Used| used.effect.odometry(&used.values, motion, duration_s);
         self.odometry.iter().fold(true_motion, reported)
     }
 
-    /// Distance from the principal point in halves of the picture's diagonal.
+    /// Returns the distance from the principal point in units of half the picture's diagonal.
     fn radius(&self, pixel: DVec2) -> f64 {
         let diagonal_px = f64::from(self.camera.width - 1).hypot(f64::from(self.camera.height - 1));
         2.0 * pixel.distance(DVec2::new(self.camera.cx, self.camera.cy)) / diagonal_px.max(1.0)
@@ -240,7 +241,7 @@ fn check_finite(model: &Model) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Those of a stage that are not neutral, in the library's order.
+/// Returns the effects of a stage that are not neutral, in the library's order.
 fn effects_of(model: &Model, stage: Stage) -> Vec<Used> {
     let of_stage = library().iter().filter(|effect| effect.stage() == stage);
     of_stage
@@ -272,7 +273,7 @@ fn delay_s(motion: &[Used], row: f64) -> f64 {
     motion.iter().map(|used| used.effect.delay_s(&used.values, row)).sum()
 }
 
-/// What several effects do to red, green and blue together.
+/// Multiplies the colour factors of several effects.
 fn product(effects: &[Used], factors: impl Fn(&Used) -> [f64; 3]) -> [f64; 3] {
     effects.iter().map(factors).fold([1.0; 3], |[r, g, b], [red, green, blue]| [r * red, g * green, b * blue])
 }

@@ -23,8 +23,8 @@ pub struct SceneColors {
 }
 
 impl Default for SceneColors {
-    /// White lines and goals on green carpet, exposed so that nothing is cut off; the hall is grey. Lines and carpet
-    /// are those of the nominal camera that the project's ray-traced recordings were made with.
+    /// Returns white lines and goals on green carpet, exposed so that nothing is clipped; the hall is grey. Lines and carpet
+    /// have the colours of the nominal camera of the project's ray-traced recordings.
     fn default() -> Self {
         let white = Vec3::new(0.65, 0.67, 0.65);
         Self {
@@ -40,7 +40,7 @@ impl Default for SceneColors {
 }
 
 impl SceneColors {
-    /// Lines and carpet as the camera's photometry has them, goals as the field has them; the default for the rest.
+    /// Takes lines and carpet from the camera's photometry, goals from the field, and the default for the rest.
     pub fn new(setup: &CameraSetup, field: &FieldDimensions) -> Self {
         let default = Self::default();
         let recorded =
@@ -61,7 +61,7 @@ impl SceneColors {
     }
 }
 
-/// The linear value of an sRGB one (IEC 61966-2-1).
+/// Converts an sRGB value to a linear one (IEC 61966-2-1).
 fn linear_from_srgb(value: u8) -> f32 {
     let value = f32::from(value) / 255.0;
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }

@@ -1,23 +1,23 @@
-//! Effects of the library by their place in it.
+//! Indices of the effects in the library.
 
 use crate::{effect::Effect, effects::library};
 
-/// Place of an effect in the [`library`]: smaller and cheaper to compare than the effect itself.
+/// Index of an effect in the [`library`]: smaller and cheaper to compare than the effect itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct EffectIndex(usize);
 
 impl EffectIndex {
-    /// Every effect of the library, in its order.
+    /// Iterates over all effects of the library, in its order.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..library().len()).map(Self)
     }
 
-    /// The effect with this id; `None` for one that is not known.
+    /// Finds the effect with this id; `None` for an unknown id.
     pub fn find(id: &str) -> Option<Self> {
         Self::all().find(|index| index.effect().id() == id)
     }
 
-    /// The effect at this place.
+    /// Returns the effect at this index.
     pub fn effect(self) -> &'static dyn Effect {
         library()[self.0]
     }

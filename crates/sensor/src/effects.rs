@@ -1,5 +1,5 @@
-//! The library of effects, one file each: its forward model, what it needs and changes, and its words. Nothing else knows it
-//! but its place here.
+//! The library of effects, one file each, with forward model, description and wording. Other code only knows an effect
+//! through this library.
 
 mod adjustments;
 mod black_level;
@@ -28,7 +28,7 @@ mod white_balance;
 
 use crate::effect::Effect;
 
-/// In the order in which a chain applies those of one stage.
+/// All effects; a chain applies the effects of one stage in this order.
 const LIBRARY: &[&dyn Effect] = &[
     &field_dimensions::FieldSize,
     &uneven_illumination::UnevenIllumination,
@@ -54,15 +54,15 @@ const LIBRARY: &[&dyn Effect] = &[
     &odometry_lateral_slip::OdometryLateralSlip,
 ];
 
-/// What the chain applies the nominal camera's own black level by.
+/// Effect by which the chain applies the nominal camera's own black level.
 pub(crate) const BLACK_LEVEL: &dyn Effect = &black_level::BlackLevel;
 
-/// Every effect that is known, in the order of the stages.
+/// Returns all known effects, in the order of the stages.
 pub fn library() -> &'static [&'static dyn Effect] {
     LIBRARY
 }
 
-/// The effect with this id; `None` for one that is not known.
+/// Finds the effect with this id; `None` for an unknown id.
 pub fn effect(id: &str) -> Option<&'static dyn Effect> {
     LIBRARY.iter().copied().find(|effect| effect.id() == id)
 }

@@ -1,10 +1,10 @@
-//! From linear values to the numbers in the file.
+//! Conversion from linear values to the numbers in the file.
 
 use glam::Vec3;
 
 use crate::tone::Tone;
 
-/// A pixel value is full scale times what the tone curve makes of the linear value, rounded.
+/// Encoder of pixel values: full scale times the tone curve's output for the linear value, rounded.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Encoding {
     exponent: f32,
@@ -16,7 +16,7 @@ impl Encoding {
         Self { exponent: (1.0 / tone.gamma) as f32, contrast: tone.contrast as f32 }
     }
 
-    /// What is brighter than full scale is cut off.
+    /// Encodes a pixel; values above full scale are clipped.
     pub(crate) fn encode(self, linear_rgb: Vec3) -> [u8; 3] {
         linear_rgb.to_array().map(|linear| {
             let encoded = linear.clamp(0.0, 1.0).powf(self.exponent);

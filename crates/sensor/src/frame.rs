@@ -1,24 +1,25 @@
-//! Where points are seen in one picture, row by row as it is exposed.
+//! Projection of points into one picture whose rows may be exposed one after another.
 
 use glam::{DMat3, DVec2, DVec3};
 use reality_sim_core::pose::CameraPose;
 
 use crate::{Chain, Trajectory};
 
-/// [`Frame::project`] follows points so far out of the picture, pixels.
+/// Margin outside the picture, in pixels, within which [`Frame::project`] still returns points.
 const MARGIN_PX: f64 = 40.0;
 
-/// Of a picture in which a row passes by as fast as rows are read, or faster, no row could be told for a point.
+/// Largest slope of a point's row over the row assumed for its exposure. At a slope of 1, points move as fast as rows are
+/// read, and no row can be found.
 const LARGEST_ROW_SLOPE: f64 = 0.9;
 
-/// One picture of a [`Chain`] on its way. Make it once for all points of a picture.
+/// Exposure of one picture of a [`Chain`] along a trajectory. Make it once for all points of a picture.
 #[derive(Debug, Clone)]
 pub struct Frame<'a> {
     chain: &'a Chain,
     trajectory: &'a Trajectory,
     time_s: f64,
     has_row_times: bool,
-    /// The camera in the middle row's exposure.
+    /// Camera pose in the middle row's exposure.
     middle: CameraFromWorld,
 }
 
@@ -36,13 +37,13 @@ impl CameraFromWorld {
 }
 
 impl Chain {
-    /// The picture with this time stamp, for many points.
+    /// Prepares the picture with this time stamp for projecting many points.
     pub fn frame<'a>(&'a self, trajectory: &'a Trajectory, time_s: f64) -> Frame<'a> {
         Frame::new(self, trajectory, time_s)
     }
 
-    /// Where a point of the world, metres, is seen in red (0), green (1) or blue (2) of the frame with this time stamp:
-    /// [`Frame::project`] for one point.
+    /// Projects one point, as [`Frame::project`]: from the world, in metres, to its pixel in red (0), green (1) or blue (2)
+    /// of the frame with this time stamp.
     pub fn project(
         &self,
         trajectory: &Trajectory,
@@ -61,9 +62,9 @@ impl<'a> Frame<'a> {
         Self { chain, trajectory, time_s, has_row_times, middle }
     }
 
-    /// Where a point of the world, metres, is seen in red (0), green (1) or blue (2), in the middle of its row's exposure.
-    /// The pixel may lie up to 40 pixels outside the picture, and outside the image circle; `None` farther out, beyond
-    /// the camera's valid angle and for a channel that there is not.
+    /// Projects a point in the world, in metres, to its pixel in red (0), green (1) or blue (2), in the middle of its row's
+    /// exposure. The pixel may lie up to 40 pixels outside the picture, and outside the image circle. Returns `None` farther
+    /// out, beyond the camera's valid angle and for any other channel.
     pub fn project(&self, point_in_world: DVec3, channel: usize) -> Option<DVec2> {
         let magnification = *self.chain.magnification().get(channel)?;
         let seen = |camera: CameraFromWorld| self.seen(camera, point_in_world, magnification);
@@ -72,8 +73,9 @@ impl<'a> Frame<'a> {
         self.is_near_picture(pixel).then_some(pixel)
     }
 
-    /// Where a point is seen depends on when its row is exposed, and that on where it is seen. The row in which it is seen
-    /// is all but linear in the row that is assumed: two guesses give the third (Steffensen's method).
+    /// Solves for the row in which a point appears: its projection depends on when its row is exposed, and its row on the
+    /// projection. The projected row is nearly linear in the assumed one, so that two guesses give the third (Steffensen's
+    /// method).
     fn settled(&self, first: DVec2, seen: impl Fn(CameraFromWorld) -> Option<DVec2>) -> Option<DVec2> {
         let at_row =
             |row: f64| seen(CameraFromWorld::new(self.chain.pose(self.trajectory, self.time_s, row)));
@@ -94,7 +96,7 @@ impl<'a> Frame<'a> {
         Some(pixel + (magnification - 1.0) * (pixel - DVec2::new(lens.cx, lens.cy)))
     }
 
-    /// From 0, the top one, to 1; a point far outside the picture is taken as not so far.
+    /// Returns the row from 0 at the top to 1 at the bottom, clamped for points far outside the picture.
     fn row(&self, pixel: DVec2) -> f64 {
         (pixel.y / f64::from(self.chain.camera().height.max(2) - 1)).clamp(-1.0, 2.0)
     }

@@ -1,23 +1,23 @@
-//! Which rays each pixel collects. They are found once for a camera: no lens is inverted while a picture is drawn.
+//! Rays of each pixel, found once for a camera: no lens is inverted while a picture is drawn.
 
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use reality_sim_core::camera::Camera;
 
-/// The rays that a pixel, or a part of one, collects: `center + x across + y down` with x and y between −½ and ½, in
-/// the camera's axes. Their lengths mean nothing.
+/// Rays that a pixel, or a part of one, collects: `center + x across + y down` with x and y between −½ and ½, in the camera
+/// frame. Their lengths are arbitrary.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct RayPatch {
-    /// The ray in the middle.
+    /// Ray in the middle.
     pub(crate) center: Vec3,
-    /// From the left side to the right one.
+    /// Difference between the right side and the left side.
     pub(crate) across: Vec3,
-    /// From the upper side to the lower one.
+    /// Difference between the lower side and the upper side.
     pub(crate) down: Vec3,
 }
 
 impl RayPatch {
-    /// The parts of a patch cut into `per_side` × `per_side`.
+    /// Cuts the patch into `per_side` × `per_side` parts.
     pub(crate) fn parts(self, per_side: u16) -> impl Iterator<Item = Self> {
         let scale = f32::from(per_side).recip();
         let (across, down) = (self.across * scale, self.down * scale);
@@ -32,16 +32,16 @@ impl RayPatch {
     }
 }
 
-/// The rays of all pixels.
+/// Rays of all pixels.
 #[derive(Debug, Clone)]
 pub(crate) struct Lens {
     width: usize,
-    /// Row by row; `None` where the picture is black.
+    /// Patches row by row; `None` where the picture is black.
     patches: Vec<Option<RayPatch>>,
 }
 
 impl Lens {
-    /// The rays of a camera whose picture is magnified once more, about the principal point: by 1 for not at all.
+    /// Computes the rays of a camera whose picture is also magnified about the principal point; 1 leaves it unchanged.
     pub(crate) fn new(camera: &Camera, magnification: f64) -> Self {
         let width = camera.width as usize;
         let mut patches = vec![None; width * camera.height as usize];
@@ -53,13 +53,13 @@ impl Lens {
         Self { width, patches }
     }
 
-    /// The rays of a row's pixels, from left to right; `None` beyond the valid angle and outside the image circle.
+    /// Returns the rays of a row's pixels, from left to right; `None` beyond the valid angle and outside the image circle.
     pub(crate) fn row(&self, v: usize) -> &[Option<RayPatch>] {
         &self.patches[v * self.width..(v + 1) * self.width]
     }
 }
 
-/// A pixel is small enough for its rays to change evenly within it: they are a thousandth of a pixel off.
+/// Linearises the rays within one pixel; the error is a thousandth of a pixel.
 fn ray_patch(camera: &Camera, magnification: f64, pixel: DVec2) -> Option<RayPatch> {
     camera.check_inside(pixel).ok()?;
     let principal_point = DVec2::new(camera.cx, camera.cy);
@@ -73,7 +73,7 @@ fn ray_patch(camera: &Camera, magnification: f64, pixel: DVec2) -> Option<RayPat
     Some(RayPatch { center: center.as_vec3(), across: change(DVec2::X), down: change(DVec2::Y) })
 }
 
-/// The change across a pixel; on the lens's rim one of its sides may have no ray.
+/// Returns the difference across a pixel; on the lens's rim, one of its sides may have no ray.
 fn difference(before: Option<DVec3>, center: DVec3, after: Option<DVec3>) -> DVec3 {
     match (before, after) {
         (Some(before), Some(after)) => after - before,

@@ -1,4 +1,4 @@
-//! The simulated picture to compare real ones with: the field, its lines and goals in a plain hall, seen through the true
+//! Simulated pictures to compare real ones with: the field, its lines and goals in a plain hall, projected through the true
 //! lens from a camera's pose.
 //!
 //! | type | what |

@@ -23,7 +23,7 @@ impl Light {
         self.pixels.par_chunks_exact_mut(self.width)
     }
 
-    /// The row nearest to the one asked for.
+    /// Returns the row at `v`, or the nearest one if `v` is outside the picture.
     pub(crate) fn nearest_row(&self, v: isize) -> &[Vec3] {
         let last = self.pixels.len() / self.width - 1;
         let v = v.clamp(0, last as isize) as usize;

@@ -1,4 +1,4 @@
-//! `model.toml`: which effects the simulated camera has beside what `camera.toml` says, and how large they are.
+//! Models, `model.toml`: the effects that the simulated camera has in addition to `camera.toml`, and their sizes.
 
 mod error;
 mod text;
@@ -6,19 +6,19 @@ mod text;
 pub use self::error::{ModelError, ModelFault};
 use crate::effect::Effect;
 
-/// Effects with their values. The default has none: the nominal camera.
+/// Effects with their values. The default is the nominal camera, without effects.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Model {
-    /// In the order of the file, no effect twice.
+    /// Effects in the order of the file, each at most once.
     pub effects: Vec<Used>,
 }
 
 /// An effect with its values.
 #[derive(Debug, Clone)]
 pub struct Used {
-    /// What happens.
+    /// The effect.
     pub effect: &'static dyn Effect,
-    /// How much, in the order of the effect's parameters.
+    /// Values in the order of the effect's parameters.
     pub values: Vec<f64>,
 }
 
@@ -29,7 +29,7 @@ impl PartialEq for Used {
 }
 
 impl Used {
-    /// Whether all values are neutral: then the effect changes nothing.
+    /// Whether all values are neutral, so that the effect changes nothing.
     pub fn is_neutral(&self) -> bool {
         self.effect
             .parameters()
@@ -40,8 +40,8 @@ impl Used {
 }
 
 impl Model {
-    /// The same model with an effect at these values, in the order of its parameters; those missing at the end are
-    /// neutral. Values that the effect had are replaced.
+    /// Returns the model with an effect set to these values, in the order of its parameters; values missing at the end are
+    /// neutral. Replaces values that the effect already had.
     pub fn with(&self, effect: &'static dyn Effect, values: impl Into<Vec<f64>>) -> Self {
         let mut values = values.into();
         values.truncate(effect.parameters().len());
@@ -55,7 +55,7 @@ impl Model {
         changed
     }
 
-    /// The values of an effect, in the order of its parameters; `None` where the model does not have it.
+    /// Returns an effect's values in the order of its parameters; `None` where the model does not contain it.
     pub fn values(&self, id: &str) -> Option<&[f64]> {
         self.effects.iter().find(|used| used.effect.id() == id).map(|used| used.values.as_slice())
     }

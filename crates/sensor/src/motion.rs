@@ -1,21 +1,21 @@
-//! Where the camera is while a row is exposed.
+//! Camera poses while a row is exposed.
 
 use reality_sim_core::pose::CameraPose;
 
 use crate::{Chain, Trajectory};
 
-/// Instants of an exposure; more where the picture moves farther.
+/// Least number of instants of an exposure; more are used where the picture moves farther.
 const INSTANTS: f64 = 8.0;
-/// No exposure has more.
+/// Largest number of instants of an exposure.
 const MOST_INSTANTS: f64 = 64.0;
 
-/// The camera during one frame.
+/// Motion of the camera during one frame.
 #[derive(Debug)]
 pub(crate) struct Motion<'a> {
     chain: &'a Chain,
     trajectory: &'a Trajectory,
     time_s: f64,
-    /// Before and after the middle of a row's exposure.
+    /// Offsets of the instants from the middle of a row's exposure.
     offsets_s: Vec<f64>,
 }
 
@@ -32,21 +32,21 @@ impl<'a> Motion<'a> {
         self.trajectory.is_still() || !self.chain.has_row_times()
     }
 
-    /// True poses, evenly spread over a row's exposure; rows run from 0, the top one, to 1.
+    /// Iterates over true poses, evenly spaced over a row's exposure; rows run from 0 at the top to 1 at the bottom.
     pub(crate) fn poses(&self, row: f64) -> impl Iterator<Item = CameraPose> {
         let middle_s = self.chain.exposure_middle_s(self.time_s, row);
         self.offsets_s.iter().map(move |offset_s| self.chain.mounted(self.trajectory.at(middle_s + offset_s)))
     }
 }
 
-/// One for each pixel that the picture moves, or the edges would show as steps.
+/// Returns one instant for each pixel that the picture moves: with fewer, blurred edges would show steps.
 fn instant_count(chain: &Chain, trajectory: &Trajectory, time_s: f64) -> u32 {
     if trajectory.is_still() || chain.exposure_s() == 0.0 {
         return 1;
     }
     let middle_s = chain.exposure_middle_s(time_s, 0.5);
     let twist = trajectory.velocity(middle_s);
-    // Nothing is nearer than the ground right under the camera.
+    // The nearest visible point is the ground directly under the camera.
     let nearest_m = trajectory.at(middle_s).height_m.max(f64::MIN_POSITIVE);
     let rate_rad_per_s =
         twist.angular_velocity_in_camera.length() + twist.velocity_in_world.length() / nearest_m;

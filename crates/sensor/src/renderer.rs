@@ -1,4 +1,4 @@
-//! The picture at a pose: every stage, pixel by pixel.
+//! Rendering of the picture at a pose: every stage, pixel by pixel.
 
 use glam::{DVec2, Vec3};
 use image::RgbImage;
@@ -17,10 +17,10 @@ use crate::{
     world::World,
 };
 
-/// Parts along each side of a pixel that an edge crosses.
+/// Default number of parts along each side of a pixel that an edge crosses.
 const DEFAULT_PARTS_PER_SIDE: u16 = 3;
 
-/// A pose from which nothing can be drawn.
+/// Error of a pose that cannot be rendered.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
@@ -30,17 +30,17 @@ pub enum RenderError {
     /// The camera is on the ground or under it.
     #[error("the camera's height is {height_m} m: it must be above 0, the ground")]
     NotAboveGround {
-        /// As given, metres.
+        /// Height as given, metres.
         height_m: f64,
     },
 }
 
-/// Draws what one camera sees of one field, at any pose. Make it once: it keeps every pixel's rays.
+/// Draws the picture of one camera on one field at any pose. Make it once: it keeps every pixel's rays.
 #[derive(Debug, Clone)]
 pub struct Renderer {
     chain: Chain,
     world: World,
-    /// One for all colours, or one each where the lens magnifies them differently.
+    /// One lens for all colours, or one each where the lens magnifies them differently.
     lenses: Vec<Lens>,
     encoding: Encoding,
     size: [u32; 2],
@@ -48,13 +48,13 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// A renderer for a camera, a field and colours. The hall's walls are 3 m outside the carpet, its ceiling is 4 m
-    /// above it. Pixel values follow the gamma of the camera's photometry, 2.2 where it has none.
+    /// Makes a renderer for a camera, a field and colours. The hall's walls stand 3 m outside the carpet; its ceiling is 4 m
+    /// above the ground. Pixel values follow the gamma of the camera's photometry, or 2.2 without photometry.
     pub fn new(setup: &CameraSetup, field: &FieldDimensions, colors: SceneColors) -> Self {
         Self::through(Chain::nominal(setup, field), colors)
     }
 
-    /// A renderer for a camera and a field with effects. Fails where they leave no camera.
+    /// Makes a renderer for a camera and a field with effects. Fails where the effects leave no valid camera.
     pub fn with_model(
         setup: &CameraSetup,
         field: &FieldDimensions,
@@ -78,22 +78,22 @@ impl Renderer {
         }
     }
 
-    /// The same renderer with pixels that an edge crosses cut into `per_side` × `per_side` parts (0 is taken as 1);
-    /// 3 × 3 unless told. What a shape covers of a part is computed, not sampled: more parts help where edges of
-    /// several colours meet.
+    /// Sets the number of parts, `per_side` × `per_side`, into which a pixel is cut where an edge crosses it (0 is taken as
+    /// 1); the default is 3 × 3. The part's area that a shape covers is computed, not sampled: more parts help where edges
+    /// of several colours meet.
     pub fn with_parts_per_side(self, per_side: u16) -> Self {
         Self { parts_per_side: per_side.max(1), ..self }
     }
 
-    /// The camera with its effects.
+    /// Returns the camera with its effects.
     pub fn chain(&self) -> &Chain {
         &self.chain
     }
 
-    /// The picture at a pose. Pixels beyond the camera's valid angle or outside its image circle are black.
+    /// Draws the picture at a pose. Pixels beyond the camera's valid angle or outside its image circle are black.
     ///
-    /// Without effects this is the plain picture of an ideal sensor: no blur, no black level, no noise. With a model it
-    /// is [`Renderer::draw_at`] time 0 by a camera that stands still, without noise.
+    /// Without effects, this is the picture of an ideal sensor: no blur, no black level, no noise. With a model, it is the
+    /// picture of [`Renderer::draw_at`] at time 0 by a still camera, without noise.
     pub fn draw(&self, pose: CameraPose) -> Result<RgbImage, RenderError> {
         if !self.chain.model().effects.is_empty() {
             return self.draw_at(&Trajectory::still(pose), 0.0, None);
@@ -109,9 +109,9 @@ impl Renderer {
         Ok(picture)
     }
 
-    /// The picture with a time stamp, seconds, by a camera whose reference poses are on a trajectory: through all stages
-    /// of the camera. There is noise where a seed is given; the same seed and time give the same noise. No light falls
-    /// on pixels beyond the camera's valid angle or outside its image circle.
+    /// Draws the picture with a time stamp, seconds, through all stages of a camera whose reference poses are on a
+    /// trajectory. Adds noise if a seed is given; the same seed and time give the same noise. No light falls on pixels
+    /// beyond the camera's valid angle or outside its image circle.
     pub fn draw_at(
         &self,
         trajectory: &Trajectory,
@@ -123,7 +123,7 @@ impl Renderer {
         Ok(self.recorded(&light, &Sensor::new(&self.chain, time_s, noise_seed)))
     }
 
-    /// What falls through the lens while each row is exposed.
+    /// Returns the light that falls through the lens while each row is exposed.
     fn light(&self, motion: &Motion<'_>) -> Result<Light, RenderError> {
         let mut light = Light::dark(self.size);
         let shared = if motion.is_same_for_rows() { Some(self.views(motion, 0.5)?) } else { None };
@@ -138,7 +138,7 @@ impl Renderer {
         Ok(light)
     }
 
-    /// What is seen at each instant of a row's exposure; rows run from 0, the top one, to 1.
+    /// Returns the views at each instant of a row's exposure; rows run from 0 at the top to 1 at the bottom.
     fn views(&self, motion: &Motion<'_>, row: f64) -> Result<Vec<View>, RenderError> {
         motion.poses(row).map(|pose| self.view(pose)).collect()
     }
@@ -161,7 +161,7 @@ impl Renderer {
         }
     }
 
-    /// What is seen at a pixel, each colour through its own lens.
+    /// Returns the colour at a pixel, each channel through its own lens.
     fn color(&self, view: &View, u: usize, v: usize) -> Vec3 {
         let through = |lens: &Lens| match lens.row(v)[u] {
             Some(patch) => view.color(patch, self.parts_per_side, self.light_on_ground(view, patch)),

@@ -1,21 +1,21 @@
-//! From light to the sensor's linear output.
+//! Conversion from light to the sensor's linear output.
 
 use glam::Vec3;
 use reality_sim_core::filter::{Purpose, Stream};
 
 use crate::Chain;
 
-/// The sensor while one picture is taken.
+/// Sensor while one picture is taken.
 #[derive(Debug)]
 pub(crate) struct Sensor<'a> {
     chain: &'a Chain,
     gain: Vec3,
-    /// `None` where the picture is to have no noise.
+    /// Random stream of the noise; `None` for a picture without noise.
     noise: Option<Stream>,
 }
 
 impl<'a> Sensor<'a> {
-    /// Pictures of one seed and different times have different noise.
+    /// Prepares one picture; pictures of the same seed and different times have different noise.
     pub(crate) fn new(chain: &'a Chain, time_s: f64, noise_seed: Option<u64>) -> Self {
         let gain = Vec3::from_array(chain.gain(time_s).map(|gain| gain as f32));
         let bits = time_s.to_bits();
@@ -24,8 +24,8 @@ impl<'a> Sensor<'a> {
         Self { chain, gain, noise }
     }
 
-    /// The output of a pixel, which is counted row by row. Noise is that of the light and of reading it: what is added
-    /// to it then has none.
+    /// Returns the output of a pixel, indexed row by row. The noise covers the light and its readout; what the sensor's
+    /// response adds afterwards has none.
     pub(crate) fn record(&self, light: Vec3, pixel: u32) -> Vec3 {
         let exposed = light * self.gain;
         let noisy = self.noise.map_or(exposed, |stream| exposed + self.noise(exposed, stream, pixel));

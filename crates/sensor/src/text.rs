@@ -1,4 +1,4 @@
-//! Numbers as a person says them: with as many digits as their uncertainty leaves, in units that are easy to imagine.
+//! Numbers in words: with the digits that their uncertainty justifies, in units that are easy to imagine.
 
 mod number;
 mod unit;

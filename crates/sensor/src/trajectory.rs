@@ -1,4 +1,4 @@
-//! Where a camera is at any time, from its poses at some.
+//! Interpolation of a camera's pose at any time between stamped poses.
 
 mod spline;
 
@@ -7,54 +7,54 @@ use reality_sim_core::pose::{CameraPose, wrap_angle};
 
 use self::spline::{Coordinates, Spline};
 
-/// Poses farther apart in time are joined by a straight line: a curve through them would be a guess.
+/// Longest time between poses that a curve connects; over longer gaps it would be a guess, and a straight line is used.
 const LONGEST_STEP_S: f64 = 0.6;
 
-/// For this long the camera goes on as it moved at the trajectory's end; then it stands.
+/// Time for which the camera keeps its velocity beyond the trajectory's ends; then it stands still.
 const CONTINUATION_S: f64 = 0.2;
 
-/// Poses that give no trajectory.
+/// Error of poses that define no trajectory.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrajectoryError {
-    /// There is none.
+    /// There are no poses.
     #[error("a trajectory needs poses: give at least one")]
     NoPoses,
     /// A time or a coordinate is NaN or infinite.
     #[error("pose {index} (from 0) or its time is not made of finite numbers: correct it, or leave it out")]
     NotFinite {
-        /// Which pose.
+        /// Index of the pose.
         index: usize,
     },
     /// A pose is not later than the one before.
     #[error("time {time_s} s does not follow {previous_s} s: sort the poses by time and remove doubles")]
     NotIncreasing {
-        /// Of the pose before, seconds.
+        /// Time of the previous pose, seconds.
         previous_s: f64,
-        /// Of this pose, seconds.
+        /// Time of this pose, seconds.
         time_s: f64,
     },
 }
 
-/// How a camera moves.
+/// Velocity of a camera.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Twist {
-    /// World axes, metres per second.
+    /// Linear velocity in the world frame, metres per second.
     pub velocity_in_world: DVec3,
-    /// About the camera's axes, right-handed, radians per second.
+    /// Angular velocity in the camera frame, right-handed, radians per second.
     pub angular_velocity_in_camera: DVec3,
 }
 
-/// A camera's way: natural cubic splines through its poses, straight lines where they are more than 0.6 s apart.
+/// Trajectory of a camera: natural cubic splines through its poses, straight lines where they are more than 0.6 s apart.
 #[derive(Debug, Clone)]
 pub struct Trajectory {
-    /// Time and coordinates of every pose, the angles unwrapped.
+    /// Times and coordinates of every pose, with unwrapped angles.
     spline: Spline,
     is_still: bool,
 }
 
 impl Trajectory {
-    /// The way through poses with their times, seconds, in the order of time.
+    /// Makes the trajectory through poses in the order of their times, seconds.
     pub fn new(poses: &[(f64, CameraPose)]) -> Result<Self, TrajectoryError> {
         if poses.is_empty() {
             return Err(TrajectoryError::NoPoses);
@@ -66,23 +66,23 @@ impl Trajectory {
         Ok(Self { spline: Spline::new(times_s, &places, LONGEST_STEP_S), is_still })
     }
 
-    /// A camera that stands at a pose for ever.
+    /// Makes the trajectory of a camera that stands still at a pose.
     pub fn still(pose: CameraPose) -> Self {
         Self { spline: Spline::new(vec![0.0], &[coordinates(pose)], LONGEST_STEP_S), is_still: true }
     }
 
-    /// Whether nothing ever moves.
+    /// Whether the camera never moves.
     pub fn is_still(&self) -> bool {
         self.is_still
     }
 
-    /// The pose at a time, seconds. Before the first pose and after the last one the camera goes on for at most 0.2 s
-    /// as it moved there. The yaw may lie outside −π to π: it runs on where the camera turns on.
+    /// Returns the pose at a time, seconds. Before the first pose and after the last one, the camera keeps its velocity for
+    /// at most 0.2 s. The yaw is unwrapped: it may lie outside −π to π.
     pub fn at(&self, time_s: f64) -> CameraPose {
         pose(self.spline.at(time_s, CONTINUATION_S))
     }
 
-    /// How the camera moves at a time, seconds: the derivative of [`Trajectory::at`].
+    /// Returns the camera's velocity at a time, seconds: the derivative of [`Trajectory::at`].
     pub fn velocity(&self, time_s: f64) -> Twist {
         let [x, y, height, yaw_rate, pitch_rate, roll_rate] = self.spline.slope(time_s, CONTINUATION_S);
         let rotation = self.at(time_s).rotation_world_from_camera();
@@ -97,7 +97,8 @@ impl Trajectory {
     }
 }
 
-/// Yaw turns about the world's z; pitch, positive down, about the level left; roll about the optical axis.
+/// Computes the angular velocity: yaw turns about the world's z axis; pitch, positive down, about the horizontal axis to the
+/// left; roll about the optical axis.
 fn angular_velocity(
     rotation_world_from_camera: DMat3,
     roll_rad: f64,
@@ -122,7 +123,7 @@ fn check(poses: &[(f64, CameraPose)]) -> Result<(), TrajectoryError> {
     Ok(())
 }
 
-/// Coordinates whose angles change by no more than half a turn from pose to pose.
+/// Returns coordinates whose angles change by at most half a turn from pose to pose.
 fn unwrapped(poses: &[(f64, CameraPose)]) -> Vec<Coordinates> {
     let mut places: Vec<Coordinates> = Vec::with_capacity(poses.len());
     for (_, pose) in poses {

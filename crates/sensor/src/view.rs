@@ -1,8 +1,8 @@
-//! The world as rays from a camera, and how much of a pixel each shape covers.
+//! The world as rays from a camera, and the fraction of a pixel that each shape covers.
 //!
-//! A shape with straight edges is seen in the rays between planes through the projection centre. Where a ray lies to
-//! such a plane is linear in the ray: the part of a pixel that it covers is found in closed form, however far the
-//! shape and however thin.
+//! A shape with straight edges occupies the rays between planes through the projection centre. A ray's position relative to
+//! such a plane is linear in the ray, so that the covered fraction of a pixel has a closed form, however far away or thin
+//! the shape is.
 
 mod polygon;
 mod ring;
@@ -17,17 +17,17 @@ use crate::{
     world::{Overlap, Shape, World},
 };
 
-/// What a camera sees at a pose.
+/// View of the world from a camera pose.
 #[derive(Debug)]
 pub(crate) struct View {
     position_in_world: DVec3,
     camera_from_world: DMat3,
     background: Vec3,
-    /// Each hides those before it.
+    /// Layers from back to front.
     layers: Vec<Layer>,
 }
 
-/// What is seen of one colour.
+/// Visible shapes of one colour.
 #[derive(Debug)]
 struct Layer {
     color: Vec3,
@@ -36,7 +36,7 @@ struct Layer {
     on_ground: bool,
 }
 
-/// The rays in which a shape is seen.
+/// Rays in which a shape is visible.
 #[derive(Debug)]
 enum Cone {
     Polygon(Polygon),
@@ -44,7 +44,7 @@ enum Cone {
 }
 
 impl View {
-    /// The pose is one above the ground.
+    /// Builds the view from a pose above the ground.
     pub(crate) fn new(world: &World, pose: CameraPose) -> Self {
         let position = pose.position_in_world();
         let camera_from_world = pose.rotation_world_from_camera().transpose();
@@ -59,15 +59,15 @@ impl View {
         Self { position_in_world: position, camera_from_world, background: world.background(), layers }
     }
 
-    /// The point of the ground plane, metres, that a ray meets; `None` for one that does not.
+    /// Returns the point in metres where a ray meets the ground plane; `None` if it does not.
     pub(crate) fn ground(&self, ray: Vec3) -> Option<DVec2> {
         let ray_in_world = self.camera_from_world.transpose() * ray.as_dvec3();
         let length = -self.position_in_world.z / ray_in_world.z;
         (ray_in_world.z < 0.0).then(|| (self.position_in_world + length * ray_in_world).truncate())
     }
 
-    /// Mean linear colour over a patch; what lies on the ground is `light` times as bright. Where edges cross the patch,
-    /// it is cut into `parts_per_side` × `parts_per_side`.
+    /// Returns the mean linear colour over a patch; the colours of layers on the ground are multiplied by `light`. A patch
+    /// that edges cross is cut into `parts_per_side` × `parts_per_side`.
     pub(crate) fn color(&self, patch: RayPatch, parts_per_side: u16, light: f32) -> Vec3 {
         self.even_color(&patch, light).unwrap_or_else(|| {
             let sum: Vec3 = patch.parts(parts_per_side).map(|part| self.blended_color(&part, light)).sum();
@@ -75,7 +75,7 @@ impl View {
         })
     }
 
-    /// The colour of a patch that no visible edge crosses: that of the foremost layer.
+    /// Returns the foremost layer's colour for a patch that no visible edge crosses.
     fn even_color(&self, patch: &RayPatch, light: f32) -> Option<Vec3> {
         for layer in self.layers.iter().rev() {
             match layer.side(patch) {
@@ -87,7 +87,7 @@ impl View {
         Some(self.background)
     }
 
-    /// Each layer hides the part of the patch that it covers.
+    /// Blends the layers from back to front by the fraction of the patch that each covers.
     fn blended_color(&self, patch: &RayPatch, light: f32) -> Vec3 {
         self.layers
             .iter()
@@ -96,7 +96,7 @@ impl View {
 }
 
 impl Layer {
-    /// The colour where the light on the ground is this much.
+    /// Returns the colour under this light on the ground.
     fn lit(&self, light: f32) -> Vec3 {
         if self.on_ground { light * self.color } else { self.color }
     }
@@ -123,7 +123,7 @@ impl Layer {
 }
 
 impl Cone {
-    /// `None` for a shape without area.
+    /// Computes the rays of a shape; `None` for a shape without area.
     fn new(shape: &Shape, position: DVec3, camera_from_world: DMat3) -> Option<Self> {
         match shape {
             Shape::Polygon(corners) => Polygon::new(corners, position, camera_from_world).map(Self::Polygon),

@@ -1,4 +1,4 @@
-//! What there is to see: layers of shapes, from the ground up.
+//! The visible world: layers of shapes, from the ground up.
 
 mod goal;
 mod lines;
@@ -14,17 +14,17 @@ use self::{
 };
 use crate::SceneColors;
 
-/// From the carpet's edge to the hall's walls, metres.
+/// Distance from the carpet's edge to the hall's walls, metres.
 const FLOOR_AROUND_CARPET_M: f64 = 3.0;
-/// From the ground to the hall's ceiling, metres.
+/// Height of the hall's ceiling above the ground, metres.
 const HALL_HEIGHT_M: f64 = 4.0;
 
-/// How the shapes of a layer lie to each other.
+/// Overlap between the shapes of a layer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Overlap {
-    /// They touch at most.
+    /// Shapes touch at most.
     None,
-    /// They reach into each other where they meet.
+    /// Shapes intersect where they meet.
     Joined,
 }
 
@@ -35,7 +35,7 @@ pub(crate) struct Layer {
     pub(crate) color: Vec3,
     pub(crate) shapes: Vec<Shape>,
     pub(crate) overlap: Overlap,
-    /// Whether they lie on the ground, where the light may be uneven.
+    /// Whether the shapes lie on the ground, where the light may be uneven.
     pub(crate) on_ground: bool,
 }
 
@@ -43,10 +43,10 @@ pub(crate) struct Layer {
 #[derive(Debug, Clone)]
 pub(crate) struct World {
     wall: Vec3,
-    /// Floor, carpet, straight lines and circles, each on the one before.
+    /// Floor, carpet, straight lines and circles, each on top of the previous one.
     ground: [Layer; 4],
     ceiling: Layer,
-    /// The goals at −x and at +x.
+    /// Goals at −x and at +x.
     goals: [(Vec3, GoalBars); 2],
 }
 
@@ -75,16 +75,16 @@ impl World {
         }
     }
 
-    /// What is seen where there is no layer: the walls.
+    /// Returns the colour where there is no layer: the walls.
     pub(crate) fn background(&self) -> Vec3 {
         self.wall
     }
 
-    /// What is seen from a place above the ground, each layer in front of those before it. The hall has no outside:
-    /// from beyond its walls or above its ceiling they do not hide the field.
+    /// Returns the layers visible from a position above the ground, from back to front. The hall has no outside: from beyond
+    /// its walls or above its ceiling, they do not hide the field.
     pub(crate) fn layers_seen_from(&self, position: DVec3) -> Vec<Layer> {
         let ceiling = (position.z < HALL_HEIGHT_M).then_some(&self.ceiling);
-        // The nearer goal hides the farther one: the plane x = 0 is between them.
+        // The nearer goal hides the farther one: the plane x = 0 separates them.
         let [negative_x, positive_x] = &self.goals;
         let far_to_near = if position.x < 0.0 { [positive_x, negative_x] } else { [negative_x, positive_x] };
         let goals = far_to_near.map(|(color, bars)| Layer {

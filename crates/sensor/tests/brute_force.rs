@@ -1,4 +1,4 @@
-//! The picture against one made in another way: 256 rays a pixel, each followed to what it meets first.
+//! Comparison of the picture with brute-force ray casting: 256 rays a pixel, each to its first hit.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -15,12 +15,12 @@ use reality_sim_core::{
 };
 use reality_sim_sensor::{Renderer, SceneColors};
 
-/// As many as 16 × 16, but no two in a row or a column (Hammersley's points): those would take a far line along the
-/// rows, 0.03 pixels thick, for one of a sixteenth.
+/// Last of 256 rays: as many as in a 16 × 16 grid, but no two in one row or column (Hammersley's points). A grid would count
+/// a distant line along the rows, 0.03 pixels thick, as a sixteenth of a pixel.
 const LAST_RAY: u8 = 255;
-/// Of the full scale 255. Two edges of different colours may lie along each other in a third of a pixel: then what
-/// they cover together is not the product, by a quarter of that third at most: 21.3. The rays themselves count a pixel's
-/// parts to a sixtieth.
+/// Largest difference, at a full scale of 255. Two edges of different colours may run along each other in a third of a
+/// pixel: there, the fraction that they cover together differs from the product by at most a quarter of that third: 21.3.
+/// The rays themselves resolve fractions of a pixel to a sixtieth.
 const LARGEST_DIFFERENCE: f32 = 26.0;
 const MEAN_DIFFERENCE: f32 = 0.25;
 
@@ -61,7 +61,7 @@ impl Reference {
         nearest.1
     }
 
-    /// Ground, walls and ceiling of the hall around the camera.
+    /// Intersects a ray with ground, walls and ceiling of the hall around the camera.
     fn hall(&self, from: DVec3, ray: DVec3) -> (f64, Vec3) {
         let half = (self.field.carpet_half_extent_m() + 3.0).extend(4.0);
         let far =
@@ -109,7 +109,7 @@ impl Reference {
     }
 }
 
-/// The distance to a cylinder's side.
+/// Returns the distance to a cylinder's side.
 fn cylinder(from: DVec3, ray: DVec3, bottom: DVec3, top: DVec3, radius: f64) -> Option<f64> {
     let axis = (top - bottom) / top.distance(bottom);
     let across = |vector: DVec3| vector - vector.dot(axis) * axis;
@@ -130,7 +130,7 @@ fn any_camera() -> impl Strategy<Value = Camera> {
     ]
 }
 
-/// In the hall, and not in a post.
+/// Generates poses inside the hall and outside the posts.
 fn any_pose() -> impl Strategy<Value = CameraPose> {
     let planar = [-5.0..5.0, -4.0..4.0, -3.1..3.1];
     (planar, [0.2..2.5, -0.3..1.2, -0.6..0.6])

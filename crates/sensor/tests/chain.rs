@@ -1,4 +1,4 @@
-//! Where the chain sees points, and what it makes of light, against closed forms.
+//! Comparison of the chain's projections and its handling of light with closed forms.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -29,12 +29,12 @@ fn pinhole() -> Camera {
     scene::pinhole([640, 480], 300.0)
 }
 
-/// At the field's centre, looking level along +x from a metre above the ground.
+/// Camera at the field's centre, looking level along +x from a metre above the ground.
 fn level() -> CameraPose {
     scene::pose([0.0; 3], [1.0, 0.0, 0.0])
 }
 
-/// What a level camera at the field's centre sees in this direction, to the right and down, at the horizon's distance.
+/// Returns a distant point in this direction, to the right and down, seen by a level camera at the field's centre.
 fn far_point(right_rad: f64, down_rad: f64) -> DVec3 {
     1e6 * DVec3::new(1.0, -right_rad.tan(), -down_rad.tan()) + DVec3::Z
 }
@@ -93,7 +93,7 @@ fn lens_effects_move_points_as_their_formulas_say() {
     assert_eq!(colored.project(&Trajectory::still(level()), 0.0, point, 3), None);
 }
 
-/// Turns evenly to the left, and looks along +x at time 0.
+/// Trajectory of a camera that turns left at a constant rate and looks along +x at time 0.
 fn turning(rate_rad_per_s: f64) -> Trajectory {
     let pose = |time_s: f64| (time_s, CameraPose { yaw_rad: rate_rad_per_s * time_s, ..level() });
     Trajectory::new(&[-0.4, -0.2, 0.0, 0.2, 0.4].map(pose)).unwrap()
@@ -140,7 +140,7 @@ fn points_a_little_outside_the_picture_are_followed_and_others_not() {
     assert_eq!(nominal.project(&Trajectory::still(level()), 0.0, behind, GREEN), None);
 }
 
-/// Turns and walks as a robot does.
+/// Generates trajectories that turn and walk as a robot does.
 fn any_walk() -> impl Strategy<Value = Trajectory> {
     let pose = ([-0.2..0.2, -0.2..0.2, -0.3..0.3], [0.4..0.6, 0.2..0.6, -0.1..0.1]);
     proptest::array::uniform5(pose).prop_map(|poses| {
@@ -186,7 +186,7 @@ proptest! {
     }
 }
 
-/// A camera of which all is known.
+/// Camera with complete photometry.
 fn measured_setup() -> CameraSetup {
     let photometry = Photometry {
         gamma: 2.0,
@@ -205,7 +205,7 @@ fn what_the_camera_file_says_of_the_photometry_is_in_the_chain() {
     let nominal = Chain::nominal(&measured_setup(), &scene::field());
     assert!((nominal.respond(0.5) - 0.55).abs() < 1e-12);
     assert!((nominal.noise().variance(0.5) - (0.002 * 0.5 + 1e-4)).abs() < 1e-12);
-    // A Gaussian of 0.6 pixels sampled at the pixels' centres.
+    // Weights of a Gaussian of 0.6 pixels sampled at the pixels' centres.
     let weights = [1.0_f64, 0.249352, 0.003866, 3.7e-6];
     let squares: f64 =
         weights.iter().zip([0.0, 1.0, 4.0, 9.0]).map(|(weight, square)| 2.0 * weight * square).sum();

@@ -1,4 +1,4 @@
-//! The library of effects, hook by hook, against closed forms.
+//! Comparison of the effects' hooks with closed forms.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -15,7 +15,7 @@ use reality_sim_core::{
 };
 use reality_sim_sensor::{Effect, Growth, Noise, Role, Stage, Tone, effect, library};
 
-/// What the hooks are asked about.
+/// Arguments of the hooks.
 #[derive(Debug, Clone)]
 struct Probe {
     camera: Camera,
@@ -64,7 +64,7 @@ fn same_pose(a: CameraPose, b: CameraPose) -> bool {
         && turned.to_cols_array().iter().all(|value| value.abs() < 1e-9)
 }
 
-/// The stages whose hooks change what they are asked about.
+/// Returns the stages whose hooks change their arguments.
 fn changed_stages(effect: &dyn Effect, p: &[f64], probe: &Probe) -> BTreeSet<Stage> {
     let field = scene::field();
     let hooks = [
@@ -109,7 +109,7 @@ proptest! {
     #[test]
     fn an_effect_changes_its_own_stage_and_no_other(probe in any_probe()) {
         for effect in library() {
-            // Half of what is plausible, in the time of the recording.
+            // Half of the plausible range, within the time of the recording.
             let size = |range: [f64; 2]| if range[1].is_finite() { 0.5 * range[1] } else { probe.time_s };
             let p: Vec<f64> = effect.parameters().iter().map(|parameter| size(parameter.range)).collect();
             let changed = changed_stages(*effect, &p, &probe);
@@ -200,7 +200,7 @@ fn a_camera_keeps_the_limit_that_it_was_given_and_no_other() {
     for (id, p) in [("radial_distortion", [0.01]), ("focal_length", [0.1]), ("principal_point", [1.0])] {
         assert_eq!(known(id).lens(&p, limited.clone()).unwrap().max_angle_rad(), 1.2);
     }
-    // A lens that bends back at its rim sees farther when it bends less.
+    // A lens whose mapping turns back at its rim sees farther when it bends less.
     let bent = |k1: f64, camera: &Camera| known("radial_distortion").lens(&[k1], camera.clone()).unwrap();
     let barrel = bent(-0.2, &scene::barrel([64, 48], 40.0));
     assert!(bent(0.1, &barrel).max_angle_rad() > barrel.max_angle_rad());
@@ -219,7 +219,8 @@ fn times_are_those_of_rows_and_clock() {
 
 #[test]
 fn vignetting_follows_the_cosine_to_the_fourth_of_a_wide_lens() {
-    // Its corner is seen at 45 degrees: there a quarter of the light is left. Shape and bend from ρ² = 1/2 and 1/4.
+    // The picture's corner is at 45 degrees: there a quarter of the light is left. Shape and bend follow from ρ² = 1/2 and
+    // 1/4.
     let cos4 = |radius: f64| (1.0 + radius * radius).powi(-2);
     let strength = 0.75;
     let shape = 4.0 * (0.5 * strength - (1.0 - cos4(0.5_f64.sqrt())));

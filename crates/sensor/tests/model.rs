@@ -1,4 +1,4 @@
-//! `model.toml`, read and written.
+//! Reading and writing of `model.toml`.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 

@@ -1,4 +1,4 @@
-//! What is where in the picture.
+//! Positions and colours in the drawn picture.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -27,7 +27,7 @@ fn green(picture: &RgbImage, pixel: DVec2) -> u8 {
     picture.get_pixel(pixel.x.round() as u32, pixel.y.round() as u32).0[1]
 }
 
-/// As a robot sees the field.
+/// Pose of a robot's camera that sees the field.
 fn pose() -> CameraPose {
     scene::pose([-1.7, 0.3, 0.4], [0.5, 0.42, 0.02])
 }
@@ -48,7 +48,7 @@ fn lines_are_bright_where_they_are_projected_and_the_carpet_beside_is_not() {
     let (mut on_line, mut beside) = (0, 0);
     for pose in sequence.reference_poses().step_by(10).map(|pose| pose.unwrap()) {
         let picture = renderer.draw(pose).unwrap();
-        // From 3 pixels on, the whole pixel at the centre is on the line.
+        // From a width of 3 pixels, the whole pixel at the centre is on the line.
         for visible in lines_in_view(camera, &field, pose).iter().filter(|v| v.half_width_px > 1.5) {
             assert_eq!(green(&picture, visible.pixel), line);
             on_line += 1;
@@ -69,7 +69,7 @@ fn lines_are_bright_where_they_are_projected_and_the_carpet_beside_is_not() {
     assert!(on_line > 500 && beside > 500, "{on_line} {beside}");
 }
 
-/// Value of the green channel between pixels.
+/// Interpolates the green channel between pixels.
 fn interpolated(picture: &RgbImage, place: DVec2) -> f64 {
     let (corner, rest) = (place.floor(), place - place.floor());
     let at = |x, y| f64::from(green(picture, corner + DVec2::new(x, y)));
@@ -77,11 +77,11 @@ fn interpolated(picture: &RgbImage, place: DVec2) -> f64 {
     row(0.0) * (1.0 - rest.y) + row(1.0) * rest.y
 }
 
-/// How far from the projected edge, along the normal, the profile passes halfway between line and carpet.
+/// Returns the distance from the projected edge, along the normal, at which the profile is halfway between line and carpet.
 fn edge_offset_px(picture: &RgbImage, edge: DVec2, outwards: DVec2) -> f64 {
     let [line, carpet] = [scene::colors().line_linear_rgb, scene::colors().carpet_linear_rgb]
         .map(|color| 255.0 * f64::from(color.y));
-    // The area under the profile is where the edge is, whatever its shape.
+    // The area under the profile gives the edge's position, whatever the profile's shape.
     let (reach, step) = (2.5, 0.05);
     let places = (0..(2.0 * reach / step) as u32).map(|i| -reach + step * (f64::from(i) + 0.5));
     let bright = |offset: f64| (interpolated(picture, edge + offset * outwards) - carpet) / (line - carpet);
@@ -106,7 +106,7 @@ fn edges_of_lines_are_where_the_camera_projects_them() {
     }
 }
 
-/// Of all edges that no other line is near to.
+/// Returns the offsets of all edges that no other line is close to.
 fn edge_offsets_px(camera: &Camera, field: &FieldDimensions, pose: CameraPose) -> Vec<f64> {
     let picture = draw(camera, field, pose);
     let mut offsets_px = Vec::new();
@@ -159,7 +159,7 @@ fn the_nearer_goal_hides_the_farther_one() {
         (5.0, std::f64::consts::PI, scene::colors().goal_positive_x_linear_rgb),
     ] {
         let post = field.goals()[usize::from(x_m > 0.0)].posts[0].center;
-        // In line with the posts of one side.
+        // Position in line with the posts of one side.
         let pose = scene::pose([x_m, post.y, yaw_rad], [0.4, 0.0, 0.0]);
         let pixel = camera.project(pose.camera_from_world(post.extend(0.4))).unwrap().round().as_uvec2();
         assert_eq!(draw(&camera, &field, pose).get_pixel(pixel.x, pixel.y).0, scene::pixel_of(color));
@@ -194,7 +194,7 @@ fn pixel_values_follow_the_gamma_of_the_photometry() {
         let renderer = Renderer::new(&setup, &scene::field(), scene::colors());
         renderer.draw(looking_down).unwrap().get_pixel(4, 3).0[1]
     };
-    // A fifth of full scale, by hand.
+    // A fifth of full scale, calculated by hand.
     assert_eq!(green(Some(1.0)), 51);
     assert_eq!(green(Some(2.0)), 114);
     assert_eq!(green(None), 123);

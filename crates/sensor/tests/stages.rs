@@ -27,7 +27,7 @@ fn renderer(setup: &CameraSetup, field: &FieldDimensions, effects: &[(&str, &[f6
     Renderer::with_model(setup, field, scene::colors(), &with(effects)).unwrap()
 }
 
-/// As a robot sees the field, while it walks and turns its head.
+/// Trajectory of a robot's camera that sees the field while the robot walks and turns its head.
 fn walk() -> Trajectory {
     let pose = |time_s: f64| {
         let planar = [1.4 + 0.3 * time_s, -0.6 + 0.1 * time_s, 0.3 + 0.8 * time_s];
@@ -36,7 +36,7 @@ fn walk() -> Trajectory {
     Trajectory::new(&[-0.4, -0.2, 0.0, 0.2, 0.4].map(pose)).unwrap()
 }
 
-/// Shot and read noise, black level and blur as a real camera has them.
+/// Camera with realistic shot and read noise, black level and blur.
 fn measured_setup(camera: Camera) -> CameraSetup {
     let photometry = Photometry {
         gamma: 2.2,
@@ -97,7 +97,7 @@ fn poses_from_which_nothing_can_be_drawn_are_refused_at_any_row() {
     }
 }
 
-/// Values of a channel between pixels.
+/// Interpolates a channel between pixels.
 fn interpolated(picture: &RgbImage, channel: usize, place: DVec2) -> f64 {
     let (corner, rest) = (place.floor(), place - place.floor());
     let at = |x: f64, y: f64| {
@@ -108,16 +108,16 @@ fn interpolated(picture: &RgbImage, channel: usize, place: DVec2) -> f64 {
     row(0.0) * (1.0 - rest.y) + row(1.0) * rest.y
 }
 
-/// A place on a field line, as it is projected.
+/// Projected point of a field line.
 struct Projected {
-    /// Between the two edges.
+    /// Midpoint between the two edges.
     middle: DVec2,
-    /// Across the line in the picture.
+    /// Normal of the line in the picture.
     normal: DVec2,
     half_width_px: f64,
 }
 
-/// How far beside its projected middle, along the normal, the drawn line is.
+/// Returns the distance along the normal from the projected midpoint to the drawn line.
 fn line_offset_px(picture: &RgbImage, channel: usize, line: &Projected) -> f64 {
     let dark = f64::from(scene::pixel_of(scene::colors().carpet_linear_rgb)[channel]);
     let count = ((line.half_width_px + 4.0) / 0.1).ceil() as i32;
@@ -130,8 +130,8 @@ fn line_offset_px(picture: &RgbImage, channel: usize, line: &Projected) -> f64 {
     first / sum
 }
 
-/// Of all straight lines that nothing else is near to, and that are neither thin nor wide. Circles may be seen as narrow
-/// bends, of which a pixel's mean does not show the middle.
+/// Returns points of all straight lines that nothing else is close to, and that are neither thin nor wide. Circles may
+/// appear as narrow bends, whose midpoint a pixel's mean does not show.
 fn projected_lines(chain: &Chain, frame: &Frame<'_>, channel: usize) -> Vec<Projected> {
     let field = chain.field();
     let is_alone = |sample: &LineSample| {
@@ -144,7 +144,7 @@ fn projected_lines(chain: &Chain, frame: &Frame<'_>, channel: usize) -> Vec<Proj
         let seen = |offset: DVec2| frame.project((sample.point_in_world + offset).extend(0.0), channel);
         let (center, along) = (seen(DVec2::ZERO)?, seen(0.001 * sample.tangent_in_world)?);
         let (direction, px_per_m) = ((along - center).try_normalize()?, 1000.0 * along.distance(center));
-        // Lines are seen at an angle: the edges' points on the normal are others than those beside the sample.
+        // Lines are seen at an angle: the edges' points on the normal differ from those beside the sample.
         let on_normal = |side: f64| {
             let across = side * 0.5 * field.line_width_m * sample.normal_in_world();
             let mut shift_m = 0.0;
@@ -204,7 +204,7 @@ fn check_lines(camera: &Camera, field: &FieldDimensions, effects: &[(&str, &[f64
     }
 }
 
-/// A metre above the middle line, looking straight down: 300 pixels a metre, the image's up is +x.
+/// Pose a metre above the middle line, looking straight down: 300 pixels a metre, with the image's up along +x.
 fn above(x_m: f64) -> CameraPose {
     scene::pose([x_m, 1.5, 0.0], [1.0, FRAC_PI_2, 0.0])
 }
@@ -213,13 +213,13 @@ fn down_camera() -> Camera {
     scene::pinhole([160, 120], 300.0)
 }
 
-/// Moves along +x, across the middle line, this fast.
+/// Trajectory along +x, across the middle line, at this speed.
 fn across(speed_m_per_s: f64) -> Trajectory {
     let pose = |time_s: f64| (time_s, above(speed_m_per_s * time_s));
     Trajectory::new(&[-0.2, -0.1, 0.0, 0.1, 0.2].map(pose)).unwrap()
 }
 
-/// Row of the middle line's centre in a column, and the variance of its light along the column, pixels².
+/// Returns the row of the middle line's centre in a column, and the variance of its light along the column, pixels².
 fn line_profile(picture: &RgbImage, column: u32) -> (f64, f64) {
     let dark = f64::from(scene::pixel_of(scene::colors().carpet_linear_rgb)[1]);
     let bright = |row: u32| f64::from(picture.get_pixel(column, row).0[1]) - dark;
@@ -268,7 +268,7 @@ fn defocus_widens_lines_by_its_variance_in_every_direction() {
         assert!((blurred - sharp - variance).abs() < 0.02 * variance + 0.02, "{sharp} {blurred}");
         assert!((blurred_row - sharp_row).abs() < 0.02);
     }
-    // Turned by a quarter, lines along the columns.
+    // With the camera turned by a quarter, lines run along the columns.
     let turned = Trajectory::still(CameraPose { yaw_rad: FRAC_PI_2, ..above(0.0) });
     let setup = scene::linear_setup(down_camera());
     let field = scene::field_without_goals();
@@ -283,7 +283,7 @@ fn defocus_widens_lines_by_its_variance_in_every_direction() {
 #[test]
 fn rows_that_are_read_one_by_one_shear_a_line_along_the_columns() {
     let (speed, readout_s) = (0.5, 0.06);
-    // The camera moves along +x, to its right: the line moves to the left.
+    // The camera moves along +x, to its right, so that the line moves to the left.
     let pose = |time_s: f64| {
         (time_s, CameraPose { yaw_rad: FRAC_PI_2, y_m: 1.5, x_m: speed * time_s, ..above(0.0) })
     };
@@ -292,7 +292,7 @@ fn rows_that_are_read_one_by_one_shear_a_line_along_the_columns() {
     let field = scene::field_without_goals();
     let drawn = |effects| renderer(&setup, &field, effects).draw_at(&trajectory, 0.0, None).unwrap();
     let (straight, sheared) = (drawn(&[]), drawn(&[("rolling_shutter", &[readout_s])]));
-    // Turned back, columns are rows, counted from the right.
+    // With the camera turned back, columns become rows, counted from the right.
     let column =
         |picture: &RgbImage, row: u32| 159.0 - line_profile(&image::imageops::rotate270(picture), row).0;
     for row in [5, 40, 60, 100, 115] {
@@ -302,7 +302,7 @@ fn rows_that_are_read_one_by_one_shear_a_line_along_the_columns() {
     }
 }
 
-/// Pixels around which the picture is all of one colour.
+/// Returns pixels in whose surroundings the picture has a single colour.
 fn even_pixels(picture: &RgbImage) -> Vec<(u32, u32)> {
     let (width, height) = picture.dimensions();
     let is_even = |&(u, v): &(u32, u32)| {
@@ -370,7 +370,7 @@ fn walls_and_goals_keep_their_light_where_the_ground_is_uneven() {
     }
 }
 
-/// Mean and variance of a channel, in linear values, of a picture that shows plain carpet only.
+/// Returns mean and variance of a channel, in linear values, of a picture that shows only carpet.
 fn carpet_noise(effects: &[(&str, &[f64])], seed: Option<u64>) -> (f64, f64) {
     let setup = scene::linear_setup(scene::pinhole([160, 120], 300.0));
     let colors = SceneColors { carpet_linear_rgb: Vec3::splat(0.4), ..scene::colors() };
@@ -399,7 +399,7 @@ fn a_black_level_has_no_noise_of_its_own() {
     let (_, plain) = carpet_noise(&[("sensor_noise", &[0.005])], Some(5));
     let (mean, raised) = carpet_noise(&[("sensor_noise", &[0.005]), ("black_level", &[0.2])], Some(5));
     assert!((mean - 0.52).abs() < 0.001, "{mean}");
-    // Full scale stays: what the light makes is scaled by 0.8.
+    // Full scale stays: the black level scales the light's part by 0.8.
     assert!((raised / plain - 0.64).abs() < 0.02, "{}", raised / plain);
 }
 

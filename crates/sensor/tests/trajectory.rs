@@ -1,4 +1,4 @@
-//! The way of a camera between its poses.
+//! Interpolated trajectories of a camera.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use reality_sim_core::pose::{CameraPose, wrap_angle};
 use reality_sim_sensor::{Trajectory, TrajectoryError};
 
-/// Poses with their times, of a camera that turns and sways as it likes.
+/// Generates stamped poses of a camera that moves and turns at random.
 fn any_way(longest_step_s: f64) -> impl Strategy<Value = Vec<(f64, CameraPose)>> {
     let pose = ([-3.0..3.0, -2.0..2.0, -3.1..3.1], [0.3..0.8, -1.2..1.2, -3.1..3.1])
         .prop_map(|(planar, rest)| scene::pose(planar, rest));
@@ -32,7 +32,7 @@ fn difference(a: CameraPose, b: CameraPose) -> f64 {
     turned.max(a.position_in_world().distance(b.position_in_world()))
 }
 
-/// Of `R' = R [ω]`, by differences.
+/// Computes ω of `R' = R [ω]` by finite differences.
 fn angular_velocity_in_camera(trajectory: &Trajectory, time_s: f64) -> DVec3 {
     let step_s = 1e-6;
     let rotation = |time_s: f64| trajectory.at(time_s).rotation_world_from_camera();
@@ -72,7 +72,7 @@ proptest! {
             prop_assert!(speed(time_s - 1e-9).distance(speed(time_s + 1e-9)) < 1e-4);
             let before = (speed(*time_s) - speed(time_s - step_s)) / step_s;
             let after = (speed(time_s + step_s) - speed(*time_s)) / step_s;
-            // Over one step the acceleration itself changes by its own slope, which grows with its size over the steps.
+            // Over one step, the acceleration changes by its own slope, which grows with its size over the steps.
             prop_assert!(before.distance(after) < 2e-3 * (1.0 + before.length()) / 0.05, "{before} {after}");
         }
     }
@@ -96,7 +96,7 @@ proptest! {
 #[test]
 fn far_apart_poses_are_joined_by_a_straight_line() {
     let at = |x_m: f64| scene::pose([x_m, 0.0, 0.0], [0.5, 0.4, 0.0]);
-    // A curve through all of these would overshoot by metres.
+    // A single curve through all of these would overshoot by metres.
     let times_s = [0.0, 0.1, 0.2, 2.2, 2.3, 2.4];
     let places_m = [0.0, 0.5, 1.0, 1.0, 0.5, 0.0];
     let way: Vec<_> = times_s.into_iter().zip(places_m.map(at)).collect();

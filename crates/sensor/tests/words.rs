@@ -1,4 +1,4 @@
-//! What effects say of themselves: sizes, names and limits over the whole library, against `words.txt`.
+//! Wording of the effects, sizes, names and limits over the whole library, compared with `words.txt`.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -16,7 +16,7 @@ use reality_sim_sensor::{
 
 type Values = Vec<(&'static str, Uncertain)>;
 
-/// Estimates that were made up, of one effect.
+/// Made-up estimates of one effect.
 struct Case {
     label: String,
     values: Values,
@@ -27,7 +27,7 @@ fn fitted(effect: &dyn Effect) -> Vec<&'static Parameter> {
     effect.parameters().iter().filter(|parameter| parameter.role != Role::Fixed).collect()
 }
 
-/// Large values with these signs in turn, those that `stands_out` tells with small errors.
+/// Returns large values with alternating signs; those selected by `stands_out` have small errors.
 fn made_up(effect: &dyn Effect, signs: [f64; 2], stands_out: impl Fn(&str) -> bool) -> Values {
     let value = |(index, parameter): (usize, &Parameter)| {
         let end = parameter.range[usize::from(signs[index % 2] > 0.0)];
@@ -38,7 +38,7 @@ fn made_up(effect: &dyn Effect, signs: [f64; 2], stands_out: impl Fn(&str) -> bo
     fitted(effect).into_iter().enumerate().map(value).collect()
 }
 
-/// Values of either sign and of both: all stand out, one does, none does; without errors; unknown; none at all.
+/// Cases with positive, negative and mixed values: all significant, one, none; without errors; unknown; none at all.
 fn cases(effect: &dyn Effect) -> Vec<Case> {
     let mut cases = Vec::new();
     for (sign_name, signs) in [("+", [1.0, 1.0]), ("-", [-1.0, -1.0]), ("+-", [1.0, -1.0])] {
@@ -62,7 +62,7 @@ fn cases(effect: &dyn Effect) -> Vec<Case> {
     cases
 }
 
-/// Everything that an effect says, a line each.
+/// Returns everything that an effect says, a line each.
 fn said(effect: &dyn Effect) -> String {
     let mut text = format!("\n{}\n", effect.id());
     for parameter in fitted(effect).into_iter().filter(|parameter| parameter.role == Role::Size) {
@@ -131,7 +131,7 @@ fn size(id: &str, values: &[(&'static str, f64, f64)], correlation: f64) -> Stri
 
 #[test]
 fn noise_is_told_where_it_is_best_known() {
-    // 0.0004 where the light is 0.4, and which part of it comes with light is not known.
+    // The noise changes by 0.0004 at a light of 0.4; which part depends on the light is not known.
     let values = [("shot", 0.0005, 0.0005), ("read_variance", 0.0002, 0.0002)];
     let text = "at 40 % of full light, 2.00 % of full scale is missing (± 0.14 %)";
     assert_eq!(size("sensor_noise", &values, -0.99), text);
@@ -197,7 +197,7 @@ fn numbers_that_are_none_do_no_harm() {
     }
 }
 
-/// Rust sources under a folder.
+/// Lists the Rust sources in a folder.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     entries
@@ -206,7 +206,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// The code of a file before its tests and without comments: tests and examples name effects as they like.
+/// Returns the code of a file before its tests and without comments: tests and examples may name effects.
 fn code(source: &str) -> String {
     let before_tests = source.split("#[cfg(test)]").next().unwrap_or(source);
     before_tests.lines().filter(|line| !line.trim_start().starts_with("//")).collect()
@@ -221,7 +221,7 @@ fn no_source_file_but_its_own_names_an_effect() {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let crates = ["sensor", "gap", "viewer", "synthesis", "db", "reality-sim"];
     let folders = crates.map(|name| workspace.join("crates").join(name).join("src"));
-    // A packaged crate stands alone.
+    // A packaged crate has no neighbours.
     let files: Vec<PathBuf> = folders
         .iter()
         .chain([&workspace.join("src")])

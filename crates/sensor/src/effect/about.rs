@@ -1,20 +1,20 @@
-//! What is known of an effect before any data.
+//! Description of an effect, independent of any data.
 
 use super::parameter::Parameter;
 use crate::text::Unit;
 
-/// Stages of the simulated camera, in the order in which light passes them; the odometry is beside them.
+/// Stages of the simulated camera, in the order in which light passes them; the odometry stands apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Stage {
     /// The field and the light on it.
     World,
     /// The camera's pose while each row is exposed.
     Motion,
-    /// The camera's place on the robot.
+    /// Pose of the camera on the robot.
     Mount,
     /// Projection of rays to pixels, the lens's falloff and its blur.
     Lens,
-    /// The amount of light that is collected.
+    /// Gain of the collected light.
     Exposure,
     /// Light to the sensor's linear output.
     Sensor,
@@ -25,7 +25,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// All, in their order.
+    /// All stages, in order.
     pub const ALL: [Self; 8] = [
         Self::World,
         Self::Motion,
@@ -67,7 +67,7 @@ pub enum Covariate {
     Frame,
 }
 
-/// Part of a recording's files without which an effect cannot be seen.
+/// Data that a recording must provide for an effect to be observable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Need {
     /// The odometry of its frames.
@@ -80,12 +80,13 @@ pub enum Need {
     NominalSharpness,
 }
 
-/// Part of a recording that an effect changes, for a fit: what it does to the rest is too little to count.
+/// Part of a recording that an effect changes, as far as a fit is concerned: its influence on the rest is negligible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Changes {
     /// The pictures: positions, brightness, sharpness and noise.
     Pictures,
-    /// The pictures' noise alone. It moves the mean of dark places a little, too little to be told from anything else.
+    /// Only the noise of the pictures. Noise also shifts the mean of dark areas slightly, too little to be told from other
+    /// causes.
     Noise,
     /// The odometry.
     Odometry,
@@ -96,14 +97,14 @@ pub enum Changes {
 /// Name and signature of an effect whose value is negative.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Opposite {
-    /// As [`About::name`].
+    /// Name, as [`About::name`].
     pub name: &'static str,
-    /// As [`About::because`].
+    /// Signature, as [`About::because`].
     pub because: &'static str,
 }
 
-/// What is known of an effect before any data: its numbers, what it needs and changes, and its words. No field has a
-/// default.
+/// Description of an effect, independent of any data: its parameters, its requirements, what it changes, and its wording. No
+/// field has a default.
 #[derive(Debug, Clone, Copy)]
 pub struct About {
     /// Name in files: `vignetting`.
@@ -112,26 +113,26 @@ pub struct About {
     pub name: &'static str,
     /// Its signature, as one clause: "lines and carpet darken towards the corners, with the distance from …".
     pub because: &'static str,
-    /// Name and signature of negative values; `None` where those of positive ones fit both.
+    /// Name and signature of negative values; `None` where those of positive values fit both.
     pub opposite: Option<Opposite>,
-    /// Its name in a list: "a loss of light at the corners".
+    /// Noun phrase in a list: "a loss of light at the corners".
     pub noun: &'static str,
-    /// Its place in a list of effects that would have been found; lower ones come first, no two are equal.
+    /// Position in a list of effects that would have been found; lower ranks come first, and no two are equal.
     pub rank: u32,
-    /// Unit in which a size of it is said.
+    /// Unit in which its size is stated.
     pub unit: Unit,
-    /// The stage that it changes.
+    /// Stage that it changes.
     pub stage: Stage,
-    /// Its numbers.
+    /// Parameters of the forward model.
     pub parameters: &'static [Parameter],
-    /// Quantities that its signature depends on.
+    /// Covariates that its signature depends on.
     pub covariates: &'static [Covariate],
-    /// What the recording's files must provide for it to be seen, in the order in which it is asked for.
+    /// Data that the recording must provide for the effect to be observable, in the order in which they are checked.
     pub needs: &'static [Need],
-    /// What a fit of it compares.
+    /// Data that a fit of the effect compares.
     pub changes: Changes,
-    /// Whether it differs from time to time along a course of its own, rather than at a constant rate.
+    /// Whether the effect follows a course of its own over time, rather than changing at a constant rate.
     pub varies_over_time: bool,
-    /// What to record so that it can be seen: "walk with quick turns of the head".
+    /// Recording that would make the effect observable: "walk with quick turns of the head".
     pub recording_that_would_decide: &'static str,
 }

@@ -1,4 +1,4 @@
-//! Changes of a pose or a lens that several effects make.
+//! Changes to a pose or a lens that several effects share.
 
 use glam::DQuat;
 use reality_sim_core::{
@@ -12,8 +12,8 @@ pub(super) fn turned(pose: CameraPose, true_from_nominal: DQuat) -> CameraPose {
     CameraPose::from_world_from_camera(pose.position_in_world(), rotation)
 }
 
-/// Returns the camera with other intrinsics, as wide as before: up to where its distortion stops growing, or to the
-/// limit that it was given.
+/// Returns the camera with other intrinsics and the same field of view: up to where its distortion stops growing, or up to
+/// the limit that it was given.
 pub(super) fn with_intrinsics(
     camera: &Camera,
     intrinsics: [f64; 4],

@@ -1,4 +1,4 @@
-//! Black level: the sensor puts out a value without light.
+//! Black level: the sensor outputs a positive value without light.
 //!
 //! The output for a linear value `v` is `offset + (1 − offset) · v`: full scale stays full scale.
 

@@ -1,18 +1,18 @@
 //! Exposure drift: the camera's exposure changes during the recording.
 //!
-//! The gain is 2 to the power of `ev`, which runs in straight lines between twelve knots, spread evenly from the
-//! recording's start to its end; before and after, it stays as it is there.
+//! The gain is 2 to the power of `ev`, which is interpolated linearly between twelve knots spread evenly from the
+//! recording's start to its end; outside the recording it is constant.
 
 use crate::{
     effect::{About, Changes, Covariate, Effect, Estimates, Need, Parameter, Stage, values},
     text::{Uncertain, Unit, percent},
 };
 
-/// Spread evenly over the recording.
+/// Number of knots, spread evenly over the recording.
 const KNOTS: usize = 12;
-/// Plus and minus, in steps of a factor of 2.
+/// Plausible values in EV.
 const RANGE: [f64; 2] = [-3.0, 3.0];
-/// One and a half percent of the light.
+/// Material size in EV: three and a half percent of the light.
 const MATERIAL: f64 = 0.05;
 
 const fn knot(name: &'static str) -> Parameter {
@@ -84,12 +84,12 @@ impl Effect for ExposureDrift {
     }
 }
 
-/// How much of the recording has passed, 0 to 1.
+/// Returns how much of the recording has passed, 0 to 1.
 fn progress(from_s: f64, to_s: f64, time_s: f64) -> f64 {
     if to_s > from_s { ((time_s - from_s) / (to_s - from_s)).clamp(0.0, 1.0) } else { 0.0 }
 }
 
-/// Straight lines between knots that are spread evenly over 0 to 1.
+/// Interpolates linearly between knots that are spread evenly over 0 to 1.
 fn interpolated(knots: &[f64], place: f64) -> f64 {
     let position = place * (knots.len() - 1) as f64;
     let before = (position as usize).min(knots.len() - 2);

@@ -1,6 +1,6 @@
-//! Field dimensions: the field is not as large as its rule book says.
+//! Field dimensions: the field's size differs from the rule book.
 //!
-//! The values are added to the dimensions, and clamped where they would leave no valid field.
+//! The values are added to the dimensions and clamped where the field would become invalid.
 
 use reality_sim_core::field::FieldDimensions;
 
@@ -10,9 +10,9 @@ use crate::{
     text::{Uncertain, Unit},
 };
 
-/// Longer fields are a mistake, metres.
+/// Largest plausible length of a field, metres.
 const LARGEST_M: f64 = 200.0;
-/// A length that has to stay below another is at most this share of it.
+/// Largest ratio of a length to another that has to exceed it.
 const ROOM: f64 = 1.0 - 1e-9;
 
 #[derive(Debug)]
@@ -81,7 +81,7 @@ impl Effect for FieldSize {
     }
 }
 
-/// What is marked along the field's length has to fit into its halves.
+/// Returns the shortest length whose halves have room for the marks along the field.
 fn least_length_m(field: &FieldDimensions) -> f64 {
     let deepest_m = field.penalty_mark_distance_m.max(field.penalty_area_length_m.unwrap_or(0.0));
     (2.0 * deepest_m / ROOM).max(least_side_m(field))
@@ -91,7 +91,7 @@ fn least_width_m(field: &FieldDimensions) -> f64 {
     field.goal_width_m.max(field.penalty_area_width_m.unwrap_or(0.0)).max(least_side_m(field))
 }
 
-/// Lines are narrower than a tenth of the field.
+/// Returns the shortest side for which the lines are narrower than a tenth of the field.
 fn least_side_m(field: &FieldDimensions) -> f64 {
     (10.0 * field.line_width_m / ROOM).max(0.5)
 }

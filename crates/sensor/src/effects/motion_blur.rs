@@ -1,6 +1,6 @@
 //! Motion blur: the camera moves while a row is exposed.
 //!
-//! A pixel's value is the mean of the light over the exposure, whose middle is the row's time.
+//! A pixel's value is the mean of the light over the exposure, which is centred on the row's time.
 
 use super::phrases::plain;
 use crate::{

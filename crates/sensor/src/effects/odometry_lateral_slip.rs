@@ -1,4 +1,4 @@
-//! The robot slips sideways as it walks ahead.
+//! Lateral slip: the robot slips sideways as it walks forwards.
 //!
 //! `left += slip · forward`.
 

@@ -1,6 +1,6 @@
-//! Odometry scale: the odometry reports longer or shorter steps than the robot's.
+//! Odometry scale: the odometry reports longer or shorter steps than the robot makes.
 //!
-//! `forward` and `left` are reported times `1 + scale`.
+//! The reported `forward` and `left` are the true ones times `1 + scale`.
 
 use reality_sim_core::pose::Motion2;
 

@@ -1,4 +1,4 @@
-//! Yaw drift: the odometry turns while the robot does not.
+//! Yaw drift: the odometry reports a turn while the robot does not turn.
 //!
 //! `turn += rate · duration`.
 

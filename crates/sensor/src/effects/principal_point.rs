@@ -1,4 +1,4 @@
-//! Principal point: the optical axis meets the sensor beside the calibrated pixel.
+//! Principal point: the optical axis meets the sensor away from the calibrated pixel.
 
 use reality_sim_core::camera::{Camera, InvalidCamera};
 

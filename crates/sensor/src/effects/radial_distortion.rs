@@ -72,13 +72,13 @@ impl Effect for RadialDistortion {
     }
 }
 
-/// The fourth has no counterpart in Brown's model.
+/// The fourth coefficient has no counterpart in Brown's model.
 fn bent(lens: Opencv, [k1, k2, k3, _]: [f64; 4]) -> Opencv {
     Opencv { k1: lens.k1 + k1, k2: lens.k2 + k2, k3: lens.k3 + k3, ..lens }
 }
 
-/// The way in which points move, where that is the same near the middle and far from it: by `k₁r³ + k₂r⁵ + …` in units of
-/// the focal length, for small changes of either lens model.
+/// Names the direction in which points move, where it is the same near the centre and far from it. For small changes of
+/// either lens model, points move by `k₁r³ + k₂r⁵ + …` in units of the focal length.
 fn direction(coefficients: &[(&str, Uncertain)]) -> &'static str {
     let shift = |radius: f64| {
         let terms = coefficients.iter().zip([3, 5, 7, 9]).map(|((_, k), power)| k.value * radius.powi(power));

@@ -1,7 +1,7 @@
-//! Rolling shutter: the sensor's rows are exposed one after the other.
+//! Rolling shutter: the sensor's rows are exposed one after another.
 //!
-//! `delay = readout · (row − ½) + reference`, with the row from 0, the top one, to 1. The reference says which row the
-//! time stamp belongs to: 0 is the middle one, half the readout the first.
+//! `delay = readout · (row − ½) + reference`, where the row runs from 0 at the top to 1 at the bottom. The reference says
+//! which row the time stamp belongs to: the middle row for 0, the first row for half the readout.
 
 use crate::{
     effect::{About, Changes, Covariate, Effect, Estimates, Parameter, Stage, values},
@@ -54,7 +54,7 @@ impl Effect for RollingShutter {
     }
 }
 
-/// Where the row without delay is, if that is known.
+/// Names the row without delay, if it is known.
 fn row_of_time_stamp(estimates: &Estimates<'_>, readout_ms: f64) -> Option<&'static str> {
     let reference = estimates.get("reference_s").filter(|reference| reference.stands_out())?;
     let row = 0.5 - 1e3 * reference.value / readout_ms;

@@ -1,7 +1,7 @@
 //! Sensor noise: the sensor is noisier or quieter than its data sheet says.
 //!
 //! The values are added to `noise_shot` and to the square of `noise_read`, the two terms of Poisson–Gaussian noise
-//! ([`Noise`]); sums below 0 are taken as 0.
+//! ([`Noise`]); negative sums are set to 0.
 
 use crate::{
     effect::{About, Changes, Covariate, Effect, Estimates, Need, Opposite, Parameter, Stage, values},
@@ -63,8 +63,8 @@ impl Effect for SensorNoise {
     }
 }
 
-/// The light, in tenths of full scale, at which the change of the variance is known best, and that change: shot noise and
-/// read noise may be hard to tell apart, not their sum.
+/// Returns the change of the noise variance where it is known best, with the light there in tenths of full scale. Shot noise
+/// and read noise may be hard to separate while their sum is well known.
 fn best_known_variance(estimates: &Estimates<'_>) -> Option<(i32, Uncertain)> {
     let (shot, read) = (estimates.get("shot")?, estimates.get("read_variance")?);
     let correlation = estimates.correlation("shot", "read_variance");

@@ -1,4 +1,4 @@
-//! Tone curve: the camera turns light into pixel values by another curve.
+//! Tone curve: the camera maps light to pixel values by a different curve.
 //!
 //! `gamma_change` is added to the gamma, `contrast` to the S-shaped bend of the curve ([`Tone`]).
 

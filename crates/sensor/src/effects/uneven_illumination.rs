@@ -1,7 +1,7 @@
 //! Uneven illumination: lamps light some parts of the field more than others.
 //!
-//! The light's logarithm is a polynomial of the third degree of the place on the field, in units of half the field's
-//! length and width, without a constant: that would be the exposure.
+//! The light's logarithm is a polynomial of the third degree in the position on the field, in units of half the field's
+//! length and width. It has no constant term: that would be the exposure.
 
 use glam::DVec2;
 use reality_sim_core::field::FieldDimensions;
@@ -11,13 +11,14 @@ use crate::{
     text::{Unit, digits},
 };
 
-/// Of every coefficient.
+/// Plausible values of every coefficient.
 const RANGE: [f64; 2] = [-1.5, 1.5];
-/// Two percent of the light at the field's lines.
+/// Material size: two percent of the light at the field's lines.
 const MATERIAL: f64 = 0.02;
-/// Light is neither more nor less than e³ times the nominal one: far outside the field a cubic has no bounds.
+/// Bound of the exponent, because a cubic is unbounded far outside the field: light is at least e⁻³ and at most e³ times the
+/// nominal one.
 const LARGEST_EXPONENT: f64 = 3.0;
-/// Places looked at along each half axis of the field to find the brightest and the darkest.
+/// Number of positions along each half axis of the field that are searched for the brightest and the darkest.
 const STEPS: i32 = 20;
 
 #[derive(Debug)]
@@ -63,7 +64,7 @@ impl Effect for UnevenIllumination {
         let places = || steps().flat_map(|x| steps().map(move |y| (exponent(factors, x, y), x, y)));
         let brightest = places().max_by(|a, b| a.0.total_cmp(&b.0))?;
         let darkest = places().min_by(|a, b| a.0.total_cmp(&b.0))?;
-        // The coefficients' errors depend on each other: there is no interval.
+        // The coefficients' errors are correlated: there is no interval to state.
         Some(format!(
             "the light is brightest {} and darkest {}, by a factor of {}",
             part_of_field(brightest.1, brightest.2),
@@ -78,13 +79,13 @@ impl Effect for UnevenIllumination {
     }
 }
 
-/// Logarithm of the light at a place of the field in units of half its length and width.
+/// Returns the logarithm of the light at a position in units of half the field's length and width.
 fn exponent(factors: &[f64], x: f64, y: f64) -> f64 {
     let terms = [x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y];
     factors.iter().zip(terms).map(|(factor, term)| factor * term).sum()
 }
 
-/// A place of the field in units of half its length and width.
+/// Names a position in units of half the field's length and width.
 fn part_of_field(x: f64, y: f64) -> &'static str {
     let third = |value: f64| (1.5 * (value + 1.0)).clamp(0.0, 2.0) as usize;
     [

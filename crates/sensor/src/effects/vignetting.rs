@@ -1,15 +1,15 @@
 //! Vignetting: less light reaches the corners of the sensor.
 //!
 //! `falloff = 1 − strength ρ² − shape ρ² (ρ² − 1) − bend ρ² (ρ² − 1) (2 ρ² − 1)`: an even polynomial of the sixth degree, as
-//! Goldman and Chen ("Vignette and exposure calibration and compensation", ICCV 2005) fit falloffs, in a basis in which
-//! shape and bend leave the corner and the middle as they are.
+//! Goldman and Chen ("Vignette and exposure calibration and compensation", ICCV 2005) fit falloffs, in a basis whose shape
+//! and bend terms vanish at the centre and at the corner.
 
 use crate::{
     effect::{About, Changes, Covariate, Effect, Estimates, Need, Parameter, Stage, values},
     text::Unit,
 };
 
-/// Some light reaches every pixel.
+/// Least falloff: some light reaches every pixel.
 const DARKEST: f64 = 0.02;
 
 #[derive(Debug)]

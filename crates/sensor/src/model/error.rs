@@ -1,4 +1,4 @@
-//! What can be wrong with a model: where, what, and what to do about it, in one line.
+//! Faults of a model: each message says in one line where it is, what it is, and how to correct it.
 
 use std::{
     fmt, io,
@@ -9,81 +9,81 @@ use reality_sim_core::{camera::InvalidCamera, field::InvalidField, sequence::Pri
 
 use crate::effects::library;
 
-/// A model that cannot be used.
+/// Error of a model that cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[error("{}{fault}", Place(.path.as_deref(), *.line))]
 pub struct ModelError {
-    /// The file, where the model comes from one.
+    /// File of the model, if it comes from one.
     pub path: Option<PathBuf>,
-    /// Line in the file, from 1, where the fault has one.
+    /// Line in the file, from 1, if the fault belongs to one.
     pub line: Option<usize>,
-    /// What is wrong.
+    /// The fault.
     pub fault: ModelFault,
 }
 
-/// What is wrong with a model. Every message says what to do.
+/// Fault of a model. Every message says how to correct it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelFault {
-    /// There is no such file.
+    /// The file does not exist.
     #[error("there is no such file: check the name, or put the file there")]
     Missing,
-    /// A folder, pipe or device where a file is needed.
+    /// The path is a folder, pipe or device.
     #[error("is not a regular file: put a file there")]
     NotAFile,
-    /// More bytes than any sensible model.
+    /// The file is larger than any sensible model.
     #[error("is larger than {limit_bytes} bytes: it cannot be a model, check what it is")]
     TooLarge {
-        /// The limit.
+        /// Largest size.
         limit_bytes: u64,
     },
-    /// The operating system does not give the bytes.
+    /// The operating system cannot read the file.
     #[error("cannot be read ({0}): check the permissions and the disk")]
     Unreadable(io::Error),
-    /// Not text.
+    /// The file is not text.
     #[error("is not UTF-8 text: save the file as UTF-8")]
     NotUtf8,
-    /// Not TOML.
+    /// The text is not TOML.
     #[error("{message}: correct the line")]
     Toml {
-        /// What the parser says.
+        /// Message of the parser.
         message: String,
     },
-    /// Something else than effects.
+    /// The text has a table other than the effects.
     #[error("the key `{key}` is not known: a model holds tables [[effect]] only")]
     UnknownTable {
-        /// As given.
+        /// Key as given.
         key: String,
     },
     /// `effect` is not a list of tables.
     #[error("`effect` is not a list of tables: begin each effect with a line [[effect]]")]
     NotTables,
-    /// An effect without a name.
+    /// An effect has no id.
     #[error("the key `id` is missing: add the effect's name, one of {}", Ids)]
     MissingId,
-    /// An effect that is not in the library.
+    /// An effect is not in the library.
     #[error("the effect {id:?} is not known: use one of {}", Ids)]
     UnknownEffect {
-        /// As given.
+        /// Id as given.
         id: String,
     },
-    /// An effect that is there twice.
+    /// An effect is listed twice.
     #[error("the effect {id} is there twice: keep one")]
     Twice {
         /// The effect.
         id: &'static str,
     },
-    /// A number that the effect does not have.
+    /// A key is not one of the effect's parameters.
     #[error("the key `{key}` is not known: {id} has {known}")]
     UnknownKey {
         /// The effect.
         id: &'static str,
-        /// As given.
+        /// Key as given.
         key: String,
         /// The effect's keys.
         known: String,
     },
-    /// A value that is no number.
+    /// A value is not a number.
     #[error("`{key}` of {id} is not a number: correct it")]
     NotANumber {
         /// The effect.
@@ -91,7 +91,7 @@ pub enum ModelFault {
         /// Its key.
         key: &'static str,
     },
-    /// A number that is NaN or infinite.
+    /// A number is NaN or infinite.
     #[error("`{key}` of {id} is not a finite number: correct it")]
     NotFinite {
         /// The effect.
@@ -99,32 +99,32 @@ pub enum ModelFault {
         /// Its key.
         key: &'static str,
     },
-    /// An effect whose values leave no camera.
+    /// The effect's values leave no valid camera.
     #[error("with {id}, {error}: bring its values nearer to 0")]
     Camera {
         /// The effect.
         id: &'static str,
-        /// What is wrong with the camera.
+        /// Fault of the camera.
         error: InvalidCamera,
     },
-    /// A field that cannot be drawn.
+    /// The field is not valid.
     #[error("{0}: correct the field's dimensions")]
     Field(InvalidField),
-    /// A tone curve that is none.
+    /// The tone curve's gamma is not valid.
     #[error("the gamma would be {gamma}: bring gamma_change of tone_curve nearer to 0")]
     Gamma {
-        /// With the effects.
+        /// Gamma including the effects.
         gamma: f64,
     },
 }
 
 impl ModelError {
-    /// A fault at a line (from 1), where it is known.
+    /// Returns the error for a fault at a line, from 1, if it is known.
     pub(super) fn at(line: impl Into<Option<usize>>, fault: ModelFault) -> Self {
         Self { path: None, line: line.into(), fault }
     }
 
-    /// The same error of a model that comes from this file.
+    /// Returns the error with the file that the model comes from.
     pub fn in_file(self, path: &Path) -> Self {
         Self { path: Some(path.to_path_buf()), ..self }
     }
@@ -136,7 +136,7 @@ impl From<ModelFault> for ModelError {
     }
 }
 
-/// "model.toml, line 5: ".
+/// Location of the fault, written as "model.toml, line 5: ".
 struct Place<'a>(Option<&'a Path>, Option<usize>);
 
 impl fmt::Display for Place<'_> {
@@ -151,7 +151,7 @@ impl fmt::Display for Place<'_> {
     }
 }
 
-/// All ids of the library, with commas.
+/// All ids of the library, separated by commas.
 struct Ids;
 
 impl fmt::Display for Ids {

@@ -1,4 +1,4 @@
-//! The text of a model, both ways.
+//! Reading and writing the text of a model.
 
 use std::{
     fmt::Write,
@@ -19,7 +19,7 @@ use crate::{
     effects::effect,
 };
 
-/// No model is larger, bytes.
+/// Largest size of a model file, bytes.
 const MAX_BYTES: u64 = 1 << 20;
 
 const HEADER: &str = "# Effects of the simulated camera beside what camera.toml says, as positive values have them; neutral values: no effect.\n";
@@ -30,19 +30,19 @@ impl Model {
         read(path).and_then(|text| Self::from_toml(path, &text))
     }
 
-    /// A model from the text of a `model.toml`. Errors name `origin`: the file, or what else the text comes from. Values
-    /// left out are neutral; those outside the plausible range are taken as they are.
+    /// Parses the text of a `model.toml`. Errors name `origin`: the file or other source of the text. Omitted values are
+    /// neutral; values outside the plausible range are accepted.
     pub fn from_toml(origin: &Path, text: &str) -> Result<Self, ModelError> {
         parse(text).map_err(|error| error.in_file(origin))
     }
 
-    /// The text of a `model.toml` with this model: it reads back as the same values.
+    /// Returns the text of a `model.toml` that reads back as the same values.
     pub fn to_toml(&self) -> String {
         print(self)
     }
 }
 
-/// All text of a regular file that is no larger than a model can be.
+/// Reads the text of a regular file of at most the size of a model.
 fn read(path: &Path) -> Result<String, ModelError> {
     let bytes = read_bytes(path).map_err(|fault| ModelError::from(fault).in_file(path))?;
     let text = String::from_utf8(bytes).map_err(|error| {
@@ -69,7 +69,7 @@ fn read_fault(error: io::Error) -> ModelFault {
     if error.kind() == io::ErrorKind::NotFound { ModelFault::Missing } else { ModelFault::Unreadable(error) }
 }
 
-/// The model that a text holds.
+/// Parses the text of a model.
 fn parse(text: &str) -> Result<Model, ModelError> {
     let at = |span: Range<usize>, fault| ModelError::at(line_of_offset(text.as_bytes(), span.start), fault);
     let document = DeTable::parse(text).map_err(|error| {
@@ -93,7 +93,7 @@ fn parse(text: &str) -> Result<Model, ModelError> {
     Ok(model)
 }
 
-/// A fault and where it is in the text.
+/// Fault with its byte range in the text.
 type Faulty = (Range<usize>, ModelFault);
 
 fn parse_effect(table: &Spanned<DeValue<'_>>) -> Result<Used, Faulty> {
@@ -129,16 +129,16 @@ fn number(effect: &dyn Effect, key: &'static str, value: &DeValue<'_>) -> Result
     if number.is_finite() { Ok(number) } else { Err(ModelFault::NotFinite { id, key }) }
 }
 
-/// The line, from 1, in which a byte lies.
+/// Returns the line, from 1, that contains a byte.
 fn line_of_offset(bytes: &[u8], offset: usize) -> usize {
     1 + bytes.iter().take(offset).filter(|byte| **byte == b'\n').count()
 }
 
-/// The text of a model: names and units as comments.
+/// Writes the text of a model, with names and units as comments.
 fn print(model: &Model) -> String {
     let mut text = HEADER.to_owned();
     for Used { effect, values } in &model.effects {
-        // Writing into a string cannot fail.
+        // Writing to a string cannot fail.
         let _ = write!(text, "\n[[effect]]\nid = \"{}\"  # {}\n", effect.id(), effect.name());
         for (parameter, value) in effect.parameters().iter().zip(values) {
             let _ = writeln!(text, "{}", line(parameter, *value));
@@ -147,7 +147,8 @@ fn print(model: &Model) -> String {
     text
 }
 
-/// `{:?}` is the shortest text that reads back as the same number, with a point or an exponent as TOML wants it.
+/// Writes one value: `{:?}` is the shortest text that reads back as the same number, with the point or exponent that TOML
+/// requires.
 fn line(parameter: &Parameter, value: f64) -> String {
     let number = if value.is_nan() { "nan".to_owned() } else { format!("{value:?}") };
     format!("{} = {number}  # {}", parameter.name, parameter.unit)

@@ -1,12 +1,12 @@
-//! Numbers with as many digits as they deserve.
+//! Numbers with the digits that their uncertainty justifies.
 
-/// Half the width of a 95 % interval, in standard deviations.
+/// Half width of a 95 % interval, in standard deviations.
 pub(super) const INTERVAL: f64 = 1.96;
 /// Significant digits of a number whose error is not known.
 const DIGITS: i32 = 3;
-/// Below this an uncertainty is none.
+/// Least uncertainty; smaller ones count as none.
 const LEAST_UNCERTAINTY: f64 = 1e-9;
-/// More digits after the point are never written.
+/// Largest number of digits after the point.
 const MOST_DECIMALS: i32 = 9;
 
 /// A number with its standard deviation.
@@ -19,7 +19,7 @@ pub struct Uncertain {
 }
 
 impl Uncertain {
-    /// The number times a factor.
+    /// Multiplies the number and its standard deviation by a factor.
     pub fn scaled(self, factor: f64) -> Self {
         Self { value: factor * self.value, sigma: factor.abs() * self.sigma }
     }
@@ -30,7 +30,7 @@ impl Uncertain {
     }
 }
 
-/// A number and its uncertainty, if it is known, with the digits that it leaves.
+/// Rounds a number and its uncertainty, if it is known, to the digits that the uncertainty justifies.
 pub fn with_interval(value: f64, uncertainty: f64) -> (String, Option<String>) {
     if !value.is_finite() || !uncertainty.is_finite() || uncertainty < LEAST_UNCERTAINTY {
         return (digits(value, DIGITS), None);
@@ -39,14 +39,14 @@ pub fn with_interval(value: f64, uncertainty: f64) -> (String, Option<String>) {
     (rounded(value, decimals), Some(rounded(uncertainty, decimals)))
 }
 
-/// "0.520 ± 0.011": a number with its standard deviation.
+/// Writes a number with its standard deviation: "0.520 ± 0.011".
 pub fn with_sigma(value: f64, sigma: f64) -> String {
     let (value, sigma) = with_interval(value, sigma);
     sigma.map_or(value.clone(), |sigma| format!("{value} ± {sigma}"))
 }
 
-/// Digits after the point: two significant ones of the uncertainty while its leading ones are below 0.355, else one (the
-/// rule of the Particle Data Group); none that would be 0.
+/// Returns the number of digits after the point: two significant digits of the uncertainty while its leading digits are
+/// below 0.355, else one (the rule of the Particle Data Group), but none that would be 0.
 fn decimals_of(uncertainty: f64) -> i32 {
     let magnitude = uncertainty.log10().floor() as i32;
     let leading = uncertainty / 10f64.powi(magnitude);
@@ -57,21 +57,21 @@ fn decimals_of(uncertainty: f64) -> i32 {
     if text.contains('.') { decimals - zeros as i32 } else { decimals }
 }
 
-/// With so many digits after the point and a proper minus sign.
+/// Writes a value with this many digits after the point and a proper minus sign.
 pub fn rounded(value: f64, decimals: i32) -> String {
     if !value.is_finite() {
         return "–".to_owned();
     }
     let text = format!("{value:.*}", decimals.max(0) as usize);
     match text.strip_prefix('-') {
-        // Nothing is left of it.
+        // The number has been rounded to zero.
         Some(rest) if rest.chars().all(|digit| matches!(digit, '0' | '.')) => rest.to_owned(),
         Some(rest) => format!("−{rest}"),
         None => text,
     }
 }
 
-/// With so many significant digits; whole numbers keep all of theirs.
+/// Writes a value with this many significant digits; whole numbers keep all of theirs.
 pub fn digits(value: f64, significant: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return rounded(value, 0);
@@ -80,7 +80,7 @@ pub fn digits(value: f64, significant: i32) -> String {
     rounded(value, decimals)
 }
 
-/// A part of one in percent: "93 %".
+/// Writes a fraction in percent: "93 %".
 pub fn percent(part: f64) -> String {
     format!("{} %", rounded(100.0 * part, 0))
 }

@@ -1,8 +1,8 @@
-//! Units in which a person says sizes.
+//! Units in which sizes are stated.
 
 use super::number::{INTERVAL, Uncertain, digits, with_interval};
 
-/// Unit in which a size is said.
+/// Unit in which a size is stated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Unit {
     /// Angles.
@@ -15,18 +15,18 @@ pub enum Unit {
     Centimeters,
     /// Lengths in the picture.
     Pixels,
-    /// Parts of one.
+    /// Fractions.
     Percent,
     /// Linear values of the sensor.
     PercentOfFullScale,
     /// Exposure, in factors of 2.
     ExposureValues,
-    /// None: a plain number.
+    /// No unit: a plain number.
     Plain,
 }
 
 impl Unit {
-    /// The number of these units in one of the base unit: radian, second, metre, pixel, 1.
+    /// Returns the number of these units in one base unit: radian, second, metre, pixel, 1.
     pub fn factor(self) -> f64 {
         match self {
             Self::Degrees | Self::DegreesPerSecond => 1f64.to_degrees(),
@@ -36,7 +36,7 @@ impl Unit {
         }
     }
 
-    /// Its symbol after a number; empty for a plain one.
+    /// Returns the symbol after a number; empty for a plain number.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Degrees => "°",
@@ -51,7 +51,7 @@ impl Unit {
         }
     }
 
-    /// A number with the symbol: "3 %"; degrees follow without a space.
+    /// Writes a number with the symbol: "3 %"; degrees follow without a space.
     fn after(self, number: &str) -> String {
         match self {
             Self::Degrees | Self::DegreesPerSecond => format!("{number}{}", self.symbol()),
@@ -60,50 +60,51 @@ impl Unit {
         }
     }
 
-    /// A parameter's value, in its base unit, with two digits: "0.080°"; a plain number with its name: "k1 = 0.0031".
+    /// Writes a parameter's value, given in its base unit, with two digits: "0.080°"; a plain number with its name: "k1 =
+    /// 0.0031".
     pub fn limit_in_words(self, parameter: &str, value: f64) -> String {
         let number = self.after(&digits(self.factor() * value, 2));
         if self == Self::Plain { format!("{parameter} = {number}") } else { number }
     }
 }
 
-/// A number, with its uncertainty, in the unit in which it is said.
+/// Number with its uncertainty, in the unit in which it is stated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Amount {
-    /// In that unit.
+    /// Number in that unit.
     pub number: Uncertain,
     /// The unit.
     pub unit: Unit,
 }
 
 impl Uncertain {
-    /// The number, in a base unit (radian, second, metre, pixel, 1), in the unit in which it is said.
+    /// Converts the number from its base unit (radian, second, metre, pixel, 1) to the unit in which it is stated.
     pub fn in_unit(self, unit: Unit) -> Amount {
         Amount { number: self.scaled(unit.factor()), unit }
     }
 }
 
 impl Amount {
-    /// Its size without its sign, as in "1.02°".
+    /// Writes the number without its sign, as "1.02°".
     pub fn size(self) -> String {
         Self { number: Uncertain { value: self.number.value.abs(), ..self.number }, ..self }.signed()
     }
 
-    /// With its sign.
+    /// Writes the number with its sign.
     pub fn signed(self) -> String {
         let (value, _) = with_interval(self.number.value, INTERVAL * self.number.sigma);
         self.unit.after(&value)
     }
 
-    /// The 95 % interval in parentheses after a space, as in " (± 0.05°)"; nothing where it is not known.
+    /// Writes the 95 % interval in parentheses after a space, as " (± 0.05°)"; empty where it is not known.
     pub fn interval(self) -> String {
         let (_, interval) = with_interval(self.number.value, INTERVAL * self.number.sigma);
-        // What a percentage is part of needs no repeating.
+        // The interval need not repeat what the percentage refers to.
         let unit = if self.unit == Unit::PercentOfFullScale { Unit::Percent } else { self.unit };
         interval.map_or_else(String::new, |interval| format!(" (± {})", unit.after(&interval)))
     }
 
-    /// "1.02° too low (± 0.05°)": the first word where it is positive, else the second.
+    /// Writes the size with a direction, "1.02° too low (± 0.05°)": the first word for positive values, else the second.
     pub fn with_direction(self, [positive, negative]: [&str; 2]) -> String {
         let word = if self.number.value < 0.0 { negative } else { positive };
         format!("{} {word}{}", self.size(), self.interval())

@@ -1,20 +1,20 @@
-//! Natural cubic splines through points in time, in pieces where the points are too far apart.
+//! Natural cubic splines over time, split where the points are too far apart.
 
 /// x, y, height, yaw, pitch and roll.
 pub(super) type Coordinates = [f64; 6];
 
-/// Curves through knots: between two knots a cubic, given by their values and second derivatives.
+/// Piecewise cubic curve through knots, given by their values and second derivatives.
 #[derive(Debug, Clone)]
 pub(super) struct Spline {
     times_s: Vec<f64>,
     values: Vec<Coordinates>,
-    /// Second derivatives; 0 at the ends of every piece.
+    /// Second derivatives; 0 at the ends of every spline.
     bends: Vec<Coordinates>,
 }
 
 impl Spline {
-    /// Through at least one value, at increasing times. Where two are more than `longest_step_s` apart, a straight line
-    /// joins two pieces.
+    /// Interpolates at least one value, at increasing times. Where two are more than `longest_step_s` apart, a straight line
+    /// connects two splines.
     pub(super) fn new(times_s: Vec<f64>, values: &[Coordinates], longest_step_s: f64) -> Self {
         let mut bends = vec![[0.0; 6]; values.len()];
         let mut from = 0;
@@ -27,7 +27,8 @@ impl Spline {
         Self { times_s, values: values.to_vec(), bends }
     }
 
-    /// The value at a time; outside the knots it runs on straight for at most `continuation_s`. NaN at no time.
+    /// Returns the value at a time; beyond the knots it extrapolates linearly for at most `continuation_s`. NaN if the time
+    /// is NaN.
     pub(super) fn at(&self, time_s: f64, continuation_s: f64) -> Coordinates {
         let last = self.times_s.len() - 1;
         if time_s.is_nan() {
@@ -43,7 +44,7 @@ impl Spline {
         }
     }
 
-    /// The change of [`Spline::at`] with time.
+    /// Returns the derivative of [`Spline::at`] with respect to time.
     pub(super) fn slope(&self, time_s: f64, continuation_s: f64) -> Coordinates {
         let last = self.times_s.len() - 1;
         if time_s.is_nan() {
@@ -60,7 +61,7 @@ impl Spline {
         }
     }
 
-    /// The knot before a time between the first and the last, the step to the next, and the weights of both.
+    /// Returns the knot before a time between the first and the last, the step to the next, and the weights of both.
     fn piece(&self, time_s: f64) -> (usize, f64, [f64; 2]) {
         let after = self.times_s.partition_point(|knot_s| *knot_s <= time_s).clamp(1, self.times_s.len() - 1);
         let before = after - 1;
@@ -89,7 +90,7 @@ impl Spline {
         })
     }
 
-    /// At the first or the last knot, as on its only side.
+    /// Returns the slope at the first or last knot, from its only side.
     fn knot_slope(&self, knot: usize) -> Coordinates {
         let last = self.times_s.len() - 1;
         if last == 0 {
@@ -105,14 +106,14 @@ fn along(value: &Coordinates, slope: &Coordinates, time_s: f64) -> Coordinates {
     std::array::from_fn(|axis| value[axis] + time_s * slope[axis])
 }
 
-/// Second derivatives of a natural spline: the tridiagonal system for continuous slopes, solved from both ends.
+/// Computes the second derivatives of a natural spline: solves the tridiagonal system for continuous slopes.
 fn bend(times_s: &[f64], values: &[Coordinates], bends: &mut [Coordinates]) {
     let count = times_s.len();
     if count < 3 {
         return;
     }
     let step_s = |knot: usize| times_s[knot + 1] - times_s[knot];
-    // What is left of the upper diagonal once the lower one is eliminated.
+    // Upper diagonal after elimination of the lower one.
     let mut upper = vec![0.0; count];
     for knot in 1..count - 1 {
         let pivot = 2.0 * (step_s(knot - 1) + step_s(knot)) - step_s(knot - 1) * upper[knot - 1];

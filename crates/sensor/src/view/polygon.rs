@@ -1,4 +1,4 @@
-//! The rays in which a convex outline is seen.
+//! Rays in which a convex outline is visible.
 
 use std::mem;
 
@@ -7,18 +7,18 @@ use glam::{DMat3, DVec3, Vec2, Vec3};
 use super::side::Side;
 use crate::lens::RayPatch;
 
-/// A patch clipped by every edge of the largest outline, a post's, has no more corners.
+/// Largest number of corners of a patch after clipping by every edge of the largest outline, a post's.
 const MAX_CORNERS: usize = 32;
 
-/// The rays between the planes through the projection centre and an outline's edges.
+/// Rays between the planes through the projection centre and an outline's edges.
 #[derive(Debug, Clone)]
 pub(super) struct Polygon {
-    /// Unit normals of the planes, pointing inwards, in the camera's axes.
+    /// Unit normals of the planes, pointing inwards, in the camera frame.
     normals: Vec<Vec3>,
 }
 
 impl Polygon {
-    /// The corners of an outline, in order, as seen from a place. `None` for one without area.
+    /// Builds the planes from an outline's corners, in order, for a camera position. `None` for an outline without area.
     pub(super) fn new(corners: &[DVec3], position: DVec3, camera_from_world: DMat3) -> Option<Self> {
         let corner = |index: usize| corners[index % corners.len()] - position;
         let middle: DVec3 = (0..corners.len()).map(corner).sum();
@@ -43,7 +43,7 @@ impl Polygon {
         side
     }
 
-    /// The fraction of a patch inside: the area that is left when every edge has cut off its part.
+    /// Returns the fraction of a patch inside: the area left after clipping by every edge.
     pub(super) fn coverage(&self, patch: &RayPatch) -> f32 {
         let mut rest = ClippedSquare::new();
         for normal in &self.normals {
@@ -59,7 +59,7 @@ impl Polygon {
     }
 }
 
-/// A plane in the coordinates of a patch: inside is where `middle + change · (x, y)` is positive.
+/// Plane in the coordinates of a patch: inside, `middle + change · (x, y)` is positive.
 struct Edge {
     middle: f32,
     change: Vec2,
@@ -71,7 +71,7 @@ impl Edge {
         Self { middle: normal.dot(patch.center), change }
     }
 
-    /// The largest change from the middle to a corner.
+    /// Returns the largest change from the middle to a corner.
     fn reach(&self) -> f32 {
         0.5 * (self.change.x.abs() + self.change.y.abs())
     }
@@ -81,7 +81,7 @@ impl Edge {
     }
 }
 
-/// What is left of the unit square around 0 (Sutherland and Hodgman, "Reentrant polygon clipping", 1974).
+/// Clipped part of the unit square around 0 (Sutherland and Hodgman, "Reentrant polygon clipping", 1974).
 struct ClippedSquare {
     corners: [Vec2; MAX_CORNERS],
     count: usize,

@@ -1,20 +1,20 @@
-//! The rays in which a ring on the ground is seen.
+//! Rays in which a ring on the ground is visible.
 
 use glam::{DMat3, DVec3, Vec2, Vec3};
 
 use super::side::Side;
 use crate::lens::RayPatch;
 
-/// The rays between two circles with one centre.
+/// Rays between two concentric circles.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ring {
     outer: Disc,
-    /// `None` where the ring has no hole.
+    /// Inner circle; `None` for a full disc.
     inner: Option<Disc>,
 }
 
 impl Ring {
-    /// A horizontal ring as seen from a place. `None` for one without area.
+    /// Builds a horizontal ring for a camera position. `None` for a ring without area.
     pub(super) fn new(
         center: DVec3,
         [inner_m, outer_m]: [f64; 2],
@@ -33,20 +33,20 @@ impl Ring {
         }
     }
 
-    /// The fraction of a patch inside, as if the circles were straight within it.
+    /// Returns the fraction of a patch inside, treating the circles as straight within it.
     pub(super) fn coverage(&self, patch: &RayPatch) -> f32 {
         let hole = self.inner.map_or(0.0, |inner| inner.coverage(patch));
         (self.outer.coverage(patch) - hole).max(0.0)
     }
 }
 
-/// Rays to a horizontal circle. With the ray scaled by `s` so that it would end in the circle's plane, the ray is
-/// inside where `|offset| < radius s`; both sides are defined for every ray, those along the plane included.
+/// Rays to a horizontal circle. With `s` the inverse of the factor by which a ray is stretched to end in the circle's
+/// plane, the ray is inside where `s |offset| < s radius`; both sides are defined for every ray, even along the plane.
 #[derive(Debug, Clone, Copy)]
 struct Disc {
-    /// `radius s` is this times the ray.
+    /// Gives `s radius` as its dot product with the ray.
     radius: Vec3,
-    /// The offset from the circle's centre, scaled by `s`, is these times the ray.
+    /// Give the offset from the circle's centre, scaled by `s`, as their dot products with the ray.
     offset: [Vec3; 2],
 }
 
@@ -56,7 +56,7 @@ impl Disc {
         if !(radius_m > 0.0 && from_center.z != 0.0) {
             return None;
         }
-        // The ray meets the plane when it is −from_center.z / ray.z times as long: `s` is the inverse.
+        // The ray meets the plane when scaled by −from_center.z / ray.z: `s` is the inverse.
         let scale = DVec3::new(0.0, 0.0, -1.0 / from_center.z);
         let in_camera = |form: DVec3| (camera_from_world * form).as_vec3();
         Some(Self {
@@ -92,7 +92,7 @@ impl Disc {
     }
 }
 
-/// The fraction of the unit square (x and y between −½ and ½) in which `middle + a x + b y` is positive.
+/// Returns the fraction of the unit square (x and y between −½ and ½) in which `middle + a x + b y` is positive.
 fn positive_fraction(middle: f32, [a, b]: [f32; 2]) -> f32 {
     let (larger, smaller) = (a.abs().max(b.abs()), a.abs().min(b.abs()));
     let reach = 0.5 * (larger + smaller);

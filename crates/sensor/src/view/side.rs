@@ -1,12 +1,12 @@
-//! On which side of an edge a patch of rays lies.
+//! Side of an edge on which a patch of rays lies.
 
-/// Place of a patch of rays relative to the outline of a shape.
+/// Position of a patch of rays relative to the outline of a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Side {
-    /// None of its rays is inside.
+    /// No ray is inside.
     Outside,
-    /// All of them are.
+    /// All rays are inside.
     Inside,
-    /// Perhaps some.
+    /// Some rays may be inside.
     Edge,
 }

@@ -1,4 +1,4 @@
-//! A goal's posts and crossbar: cylinders, by the outlines that they have from where they are seen.
+//! A goal's posts and crossbar: cylinders, drawn as their outlines from the camera position.
 
 use std::f64::consts::TAU;
 
@@ -7,10 +7,10 @@ use reality_sim_core::field::{Goal, GoalPost};
 
 use super::shape::Shape;
 
-/// Straight pieces of the outline around a post's end: half a circle is 0.5 mm off at a post of 10 cm.
+/// Number of straight segments of the outline around a post's end: half a circle is 0.5 mm off at a post of 10 cm.
 const END_PIECES: u32 = 10;
 
-/// The posts and the crossbar of a goal.
+/// Posts and crossbar of a goal.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct GoalBars {
     posts: [GoalPost; 2],
@@ -21,15 +21,15 @@ impl GoalBars {
         Self { posts: goal.posts }
     }
 
-    /// Outlines that look from `position` as the goal does. What `position` is inside of, or right above, is not
-    /// seen.
+    /// Returns outlines that look like the goal from `position`. Posts and bars that contain `position` or are directly
+    /// below it are left out.
     pub(crate) fn outlines_from(&self, position: DVec3) -> Vec<Shape> {
         let posts = self.posts.iter().filter_map(|post| post_outline(post, position));
         posts.chain(self.crossbar_outline(position)).collect()
     }
 
-    /// The crossbar's ends are in the posts: its outline is the rectangle through its axis whose long sides look as
-    /// the cylinder's do.
+    /// Returns the crossbar's outline: the rectangle through its axis whose long sides look like the cylinder's. Its ends
+    /// are hidden inside the posts.
     fn crossbar_outline(&self, position: DVec3) -> Option<Shape> {
         let radius_m = self.posts[0].radius_m;
         let [from, to] = self.posts.map(|post| post.center.extend(post.height_m - post.radius_m));
@@ -39,15 +39,15 @@ impl GoalBars {
         if distance_m <= radius_m {
             return None;
         }
-        // The planes that touch the cylinder cross the axis's distance farther out than the radius.
+        // At the distance of the axis, the planes tangent to the cylinder are farther apart than its diameter.
         let half_width_m = radius_m / (1.0 - (radius_m / distance_m).powi(2)).sqrt();
         let across = half_width_m * along.cross(to_axis / distance_m);
         Some(Shape::Polygon(vec![from - across, to - across, to + across, from + across]))
     }
 }
 
-/// Around the visible rims of foot and top. The lower rim is seen from above: its near side is the outline. So is the
-/// upper rim's from below; from above it is the far side.
+/// Returns the outline around the visible rims of a post's foot and top. The lower rim is seen from above, so that its near
+/// side is the outline. The same holds for the upper rim seen from below; from above, its far side is the outline.
 fn post_outline(post: &GoalPost, position: DVec3) -> Option<Shape> {
     let from_axis = position.truncate() - post.center;
     let distance_m = from_axis.length();
@@ -55,7 +55,7 @@ fn post_outline(post: &GoalPost, position: DVec3) -> Option<Shape> {
         return None;
     }
     let towards = from_axis / distance_m;
-    // Half the angle, about the axis, between the two lines in which planes through the position touch the cylinder.
+    // Half the angle about the axis between the two lines where planes through the position are tangent to the cylinder.
     let touch_rad = (post.radius_m / distance_m).acos();
     let rim = |from_rad: f64, to_rad: f64, z_m: f64| {
         (0..=END_PIECES).map(move |i| {

@@ -1,14 +1,14 @@
-//! White lines and marks on the ground, without overlaps: then the parts of a pixel that they cover add up.
+//! White lines and marks on the ground, without overlaps, so that the fractions of a pixel that they cover add up.
 
 use glam::{DVec2, DVec3};
 use reality_sim_core::field::{Curve, FieldDimensions};
 
 use super::shape::Shape;
 
-/// Half the side of the penalty and centre marks, metres: squares along the lines.
+/// Half the side of the penalty and centre marks, metres: they are squares parallel to the lines.
 const MARK_HALF_SIDE_M: f64 = 0.05;
 
-/// A rectangle along the world's axes, metres.
+/// Rectangle along the world's axes, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rectangle {
     min: DVec2,
@@ -20,7 +20,7 @@ impl Rectangle {
         Self { min: center - half_extent_m, max: center + half_extent_m }
     }
 
-    /// The same, larger by this much on every side.
+    /// Returns the rectangle grown by this much on every side.
     pub(super) fn grown(self, by_m: f64) -> Self {
         Self { min: self.min - by_m, max: self.max + by_m }
     }
@@ -35,7 +35,7 @@ impl Rectangle {
         self.min.cmplt(self.max).all()
     }
 
-    /// What is left without another rectangle: pieces on its four sides.
+    /// Returns the difference from another rectangle: up to four rectangles around it.
     fn without(self, other: Self) -> Vec<Self> {
         let common = Self { min: self.min.max(other.min), max: self.max.min(other.max) };
         if !common.has_area() {
@@ -51,8 +51,8 @@ impl Rectangle {
     }
 }
 
-/// The field's straight lines, which run along its axes, and its marks. Lines meet at their centres: with half a width
-/// more at each end, corners are square.
+/// Returns the field's straight lines, which run along its axes, and its marks. Lines meet at their centres: each is
+/// extended by half a width at both ends, so that corners are square.
 pub(super) fn straight_lines(field: &FieldDimensions) -> Vec<Shape> {
     let half_width_m = field.line_width_m / 2.0;
     let line = |curve: &Curve| match curve {
@@ -66,7 +66,7 @@ pub(super) fn straight_lines(field: &FieldDimensions) -> Vec<Shape> {
     without_overlaps(&all).into_iter().map(|rectangle| rectangle.at_height(0.0)).collect()
 }
 
-/// The field's circular lines.
+/// Returns the field's circular lines.
 pub(super) fn circles(field: &FieldDimensions) -> Vec<Shape> {
     let half_width_m = field.line_width_m / 2.0;
     let circle = |curve: Curve| match curve {

@@ -1,19 +1,19 @@
-//! The shapes that the world is made of.
+//! Shapes of the world.
 
 use glam::DVec3;
 
-/// A shape in the world, metres.
+/// Shape in the world, metres.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Shape {
-    /// What looks convex from where it is seen, by its corners in order; they need not lie in a plane.
+    /// Outline that is convex as seen from the camera, by its corners in order; they need not be coplanar.
     Polygon(Vec<DVec3>),
-    /// What is between two horizontal circles.
+    /// Area between two horizontal circles.
     Ring {
-        /// Their centre.
+        /// Common centre.
         center: DVec3,
-        /// Radius of the smaller; 0 or less for none.
+        /// Inner radius; 0 or less for a full disc.
         inner_m: f64,
-        /// Radius of the larger.
+        /// Outer radius.
         outer_m: f64,
     },
 }

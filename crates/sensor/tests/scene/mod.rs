@@ -13,7 +13,7 @@ pub fn field() -> FieldDimensions {
     FieldDimensions::preset("humanoid-kidsize-2010").unwrap()
 }
 
-/// As [`field`], but nothing stands on it.
+/// Returns [`field`] without goals.
 pub fn field_without_goals() -> FieldDimensions {
     FieldDimensions { goal_height_m: 0.0, goal_post_diameter_m: 0.0, ..field() }
 }
@@ -38,7 +38,7 @@ fn camera([width, height]: [u32; 2], focal_px: f64, distortion: Distortion) -> C
     Camera::new([width, height], intrinsics, distortion).unwrap()
 }
 
-/// A camera whose pixel values are 255 times the linear ones.
+/// Camera whose pixel values are 255 times the linear ones.
 pub fn linear_setup(camera: Camera) -> CameraSetup {
     let photometry = Photometry {
         gamma: 1.0,
@@ -52,7 +52,7 @@ pub fn linear_setup(camera: Camera) -> CameraSetup {
     CameraSetup { camera, mount_height_m: 0.5, photometry: Some(photometry) }
 }
 
-/// Whole pixel values that differ in every channel or two, most of all lines from carpet.
+/// Colours with whole pixel values that differ in one or two channels at least; lines differ most from carpet.
 pub fn colors() -> SceneColors {
     SceneColors {
         line_linear_rgb: Vec3::new(0.8, 1.0, 1.0),
@@ -65,7 +65,7 @@ pub fn colors() -> SceneColors {
     }
 }
 
-/// A pixel value for a linear one, by a camera of [`linear_setup`].
+/// Returns the pixel value of a linear one, for a camera of [`linear_setup`].
 pub fn pixel_of(linear_rgb: Vec3) -> [u8; 3] {
     linear_rgb.to_array().map(|value| (255.0 * value).round() as u8)
 }
