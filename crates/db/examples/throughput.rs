@@ -1,4 +1,5 @@
-//! How fast a database is written and opened: the demonstration walk over and over, 10,000 images or as many as given.
+//! Measures how fast a database is written and opened: the demonstration walk over and over, 10,000 images or as many as
+//! given.
 //!
 //! `cargo run --release -p reality-sim-db --example throughput -- 10000`
 

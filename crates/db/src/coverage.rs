@@ -1,4 +1,4 @@
-//! Where on the field pictures were taken, in which directions, and how far the next one is from any pose.
+//! Coverage of the field: where pictures were taken, in which directions, and how far any pose is from the nearest one.
 
 use std::f64::consts::TAU;
 
@@ -11,14 +11,14 @@ use reality_sim_core::{
 
 use crate::index::PoseIndex;
 
-/// Headings that are told apart.
+/// Number of headings that are distinguished.
 pub const HEADINGS: usize = 8;
 
-/// Distances from here on are all one colour, pixels.
+/// Distance from which on all distances have the same colour, pixels.
 pub const FAR_PX: f64 = 300.0;
 
-/// The colour of a share in pictures of the coverage, sRGB: from nearly white (0) over green to dark blue (1). Lightness
-/// falls all the way, for any kind of colour vision.
+/// Returns the colour for a share in pictures of the coverage, sRGB: from nearly white (0) over green to dark blue (1).
+/// Lightness falls all the way, so that any kind of colour vision can read it.
 pub fn shade_srgb(share: f64) -> [u8; 3] {
     const STOPS: [[f64; 3]; 4] =
         [[247.0, 247.0, 240.0], [161.0, 214.0, 170.0], [42.0, 140.0, 150.0], [20.0, 50.0, 110.0]];
@@ -28,53 +28,54 @@ pub fn shade_srgb(share: f64) -> [u8; 3] {
     std::array::from_fn(|i| (STOPS[first][i] + part * (STOPS[first + 1][i] - STOPS[first][i])).round() as u8)
 }
 
-/// What is known of one cell of the carpet.
+/// Coverage of one cell of the carpet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoverageCell {
-    /// Its middle, world axes, metres.
+    /// Centre of the cell in the world frame, metres.
     pub middle_in_world: DVec2,
-    /// Pictures taken in it, by heading: 0 looks along +x, then counter-clockwise.
+    /// Number of pictures taken in the cell, by heading: 0 looks along +x, then counter-clockwise.
     pub pictures: [u32; HEADINGS],
-    /// How far the nearest picture is from its middle, by heading, root mean square pixels.
+    /// Distance from the cell's centre to the nearest picture, by heading, root mean square pixels.
     pub distance_px: [f64; HEADINGS],
 }
 
 impl CoverageCell {
-    /// Pictures taken in it.
+    /// Number of pictures taken in the cell.
     pub fn count(&self) -> u32 {
         self.pictures.iter().sum()
     }
 
-    /// Mean over the headings of how far the nearest picture is, root mean square pixels.
+    /// Distance to the nearest picture, averaged over the headings, root mean square pixels.
     pub fn mean_distance_px(&self) -> f64 {
         self.distance_px.iter().sum::<f64>() / HEADINGS as f64
     }
 }
 
-/// The carpet in square cells.
+/// Coverage of the carpet in square cells.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Coverage {
     /// Side of a cell, metres.
     pub cell_m: f64,
-    /// Cells along x and along y.
+    /// Number of cells along x and along y.
     pub size: [usize; 2],
-    /// Row by row: y from the smallest on, in each x from the smallest on.
+    /// Cells by rows of equal y; rows in the order of y, cells of a row in the order of x.
     pub cells: Vec<CoverageCell>,
 }
 
-/// A number of cells that is shown and computed in no time.
+/// Number of cells along one side that can be computed and shown without delay.
 const MOST_CELLS_ALONG: f64 = 64.0;
 
 impl Coverage {
-    /// Looks at the carpet of a field in cells of about this size, metres. Distances are those of a camera at this height,
-    /// pitch and roll. Pictures taken beside the carpet count in no cell.
+    /// Computes the coverage of a field's carpet in cells of about this size, metres. Distances are those for a camera at
+    /// this height, pitch and roll. Pictures taken beside the carpet count in no cell.
     pub fn new(index: &PoseIndex, field: &FieldDimensions, usual: CameraPose, cell_m: f64) -> Self {
         let grid = Grid::new(index, field, cell_m);
         let cells = grid.numbers().map(|number| grid.cell(index, usual, number)).collect();
         grid.coverage(cells)
     }
 
-    /// As [`Coverage::new`], as long as `goes_on` says true, which is asked before every cell; `None` where it said false.
+    /// Works like [`Coverage::new`] while `goes_on` returns true; it is asked before every cell. `None` once it returns
+    /// false.
     pub fn new_while(
         index: &PoseIndex,
         field: &FieldDimensions,
@@ -88,18 +89,18 @@ impl Coverage {
         Some(grid.coverage(cells?))
     }
 
-    /// The share of all places and headings with a picture nearer than this, root mean square pixels.
+    /// Share of all places and headings with a picture nearer than this, root mean square pixels.
     pub fn share_within(&self, distance_px: f64) -> f64 {
         let near = self.cells.iter().flat_map(|cell| cell.distance_px).filter(|found| *found < distance_px);
         near.count() as f64 / (HEADINGS * self.cells.len()) as f64
     }
 }
 
-/// Where the cells are, and the pictures taken in each.
+/// Grid of cells, and the pictures taken in each.
 struct Grid {
     cell_m: f64,
     size: [usize; 2],
-    /// The corner with the smallest x and y, world axes, metres.
+    /// Corner with the smallest x and y in the world frame, metres.
     corner: DVec2,
     counts: Vec<[u32; HEADINGS]>,
 }

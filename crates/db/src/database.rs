@@ -1,4 +1,4 @@
-//! Opening and reading.
+//! Opening and reading of a database.
 
 use std::{
     collections::BTreeMap,
@@ -23,17 +23,17 @@ use crate::{
     schema,
 };
 
-/// How long to wait for another program to finish its transaction.
+/// Time to wait for another program to finish its transaction.
 const BUSY_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// A writer's changed pages up to this size stay in memory until they are committed, KiB: readers need not wait.
+/// Size up to which a writer's changed pages stay in memory until they are committed, KiB: readers need not wait.
 const WRITER_CACHE_KIB: i64 = 32 << 10;
 
-/// A pose-indexed image database.
+/// Image database indexed by pose.
 ///
-/// Threads share one through an `Arc`, and then read one after the other, decoding at once; a thread that needs a
-/// connection of its own opens the file itself. Any number of programs may read while one writes. Every method
-/// sees whole transactions only. While nobody writes the database is one file, which can be read wherever it lies.
+/// Threads share a database through an `Arc`; they then read one after the other and decode in parallel. A thread that
+/// needs its own connection opens the file itself. Any number of programs may read while one writes, and every method sees
+/// only whole transactions. While nobody writes, the database is a single file, which can be read wherever it is.
 #[derive(Debug)]
 pub struct Database {
     path: PathBuf,
@@ -42,22 +42,22 @@ pub struct Database {
 }
 
 impl Database {
-    /// Opens a database for reading. Fails where there is no file, or one that is not a whole image database.
+    /// Opens a database for reading. Fails if there is no file, or if the file is not a complete image database.
     pub fn open(path: &Path) -> Result<Self, DbError> {
         Self::try_open(path).map_err(|fault| DbError::new(path, fault))
     }
 
-    /// Opens a database for writing, creates it where there is none, and brings one of an older version to this one's.
+    /// Opens a database for writing, creates it if there is none, and migrates an older version to the current one.
     pub fn create_or_open(path: &Path) -> Result<Self, DbError> {
         Self::try_create_or_open(path).map_err(|fault| DbError::new(path, fault))
     }
 
-    /// The file.
+    /// Returns the path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What is known of the images, in the order of their ids.
+    /// Returns the records of all images, in the order of their ids.
     pub fn images(&self) -> Result<Vec<ImageRecord>, DbError> {
         self.read(|transaction| {
             let query = format!("SELECT {IMAGE_COLUMNS} FROM images ORDER BY id");
@@ -72,12 +72,12 @@ impl Database {
         })
     }
 
-    /// The names of the sequences by their ids. Two recordings may have one name.
+    /// Returns the names of the sequences by id. Two recordings may have the same name.
     pub fn sequences(&self) -> Result<BTreeMap<i64, String>, DbError> {
         self.read(|transaction| texts(transaction, "SELECT id, name FROM sequences"))
     }
 
-    /// The cameras by their ids.
+    /// Returns the cameras by id.
     pub fn cameras(&self) -> Result<BTreeMap<i64, CameraSetup>, DbError> {
         let texts = self.read(|transaction| texts(transaction, "SELECT id, toml FROM cameras"))?;
         let setup =
@@ -85,7 +85,7 @@ impl Database {
         texts.into_iter().map(setup).collect()
     }
 
-    /// The fields by their ids.
+    /// Returns the fields by id.
     pub fn fields(&self) -> Result<BTreeMap<i64, FieldDimensions>, DbError> {
         let texts = self.read(|transaction| texts(transaction, "SELECT id, toml FROM fields"))?;
         let field = |(id, text): (i64, String)| {
@@ -94,7 +94,7 @@ impl Database {
         texts.into_iter().map(field).collect()
     }
 
-    /// The halls that were measured, by the ids of their fields.
+    /// Returns the measured halls, by the ids of their fields.
     pub fn halls(&self) -> Result<BTreeMap<i64, Hall>, DbError> {
         let query = "SELECT field_id, min_x_m, min_y_m, max_x_m, max_y_m, ceiling_m, goal_depth_m FROM halls";
         let hall = |row: &Row<'_>| {
@@ -117,7 +117,7 @@ impl Database {
         Ok(halls)
     }
 
-    /// Stores what was measured of the hall around a field, in place of what was before.
+    /// Stores the measured hall around a field and replaces an earlier one.
     pub fn set_hall(&mut self, field_id: i64, hall: &Hall) -> Result<(), DbError> {
         let fail = |fault| DbError::new(&self.path, fault);
         if !self.is_writer {
@@ -135,7 +135,7 @@ impl Database {
         stored.map(drop).map_err(|error| fail(error.into()))
     }
 
-    /// Where poses come from, by the ids of the sources.
+    /// Returns the sources of poses, by id.
     pub fn pose_sources(&self) -> Result<BTreeMap<i64, PoseSource>, DbError> {
         self.read(|transaction| {
             let query = "SELECT id, kind, description FROM pose_sources";
@@ -149,12 +149,12 @@ impl Database {
         })
     }
 
-    /// The JPEG or PNG file of an image, as it was recorded.
+    /// Returns the JPEG or PNG file of an image, as it was recorded.
     pub fn image_bytes(&self, id: i64) -> Result<Vec<u8>, DbError> {
         Ok(self.stored_image(id)?.bytes)
     }
 
-    /// The picture of an image, in its camera's size.
+    /// Decodes an image, in its camera's size.
     pub fn picture(&self, id: i64) -> Result<RgbImage, DbError> {
         let stored = self.stored_image(id)?;
         let camera = CameraSetup::from_toml(&self.origin("camera", stored.camera_id), &stored.camera)?.camera;
@@ -178,7 +178,7 @@ impl Database {
         })
     }
 
-    /// Runs queries that see one state of the database.
+    /// Runs queries that all see the same state of the database.
     fn read<T>(&self, work: impl FnOnce(&Transaction<'_>) -> Result<T, DbFault>) -> Result<T, DbError> {
         let connection = self.connection.lock().unwrap_or_else(PoisonError::into_inner);
         let transaction =
@@ -186,7 +186,7 @@ impl Database {
         work(&transaction).map_err(|fault| DbError::new(&self.path, fault))
     }
 
-    /// How errors call a part of the database.
+    /// Name of a part of the database in errors.
     fn origin(&self, what: &str, id: i64) -> PathBuf {
         let mut origin = self.path.clone().into_os_string();
         origin.push(format!(", {what} {id}"));
@@ -197,7 +197,8 @@ impl Database {
         if !fs::metadata(path)?.is_file() {
             return Err(DbFault::NotAFile);
         }
-        // A reader may write, where it can, to undo what a killed writer left; where it cannot, SQLite falls back.
+        // A reader may write, where it can, to roll back what a killed writer left; where it cannot, SQLite falls back to
+        // reading.
         let connection = connect(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
         connection.pragma_update(None, "query_only", true)?;
         schema::check(&connection, path)?;
@@ -219,7 +220,7 @@ impl Database {
     }
 }
 
-/// The row of an image with what it takes to decode it.
+/// Row of an image with everything needed to decode it.
 struct StoredImage {
     bytes: Vec<u8>,
     camera_id: i64,
@@ -227,14 +228,14 @@ struct StoredImage {
 }
 
 fn connect(path: &Path, flags: OpenFlags) -> Result<Connection, DbFault> {
-    // An absolute path is never one of the names that SQLite takes for something else than a file.
+    // An absolute path is never one of the special names that SQLite does not treat as a file.
     let connection =
         Connection::open_with_flags(path::absolute(path)?, flags | OpenFlags::SQLITE_OPEN_NO_MUTEX)?;
     connection.busy_timeout(BUSY_TIMEOUT)?;
     Ok(connection)
 }
 
-/// Refuses images whose sequence, camera, field or pose source is not there.
+/// Refuses images whose sequence, camera, field or pose source does not exist.
 fn check_references(transaction: &Transaction<'_>) -> Result<(), DbFault> {
     let query = "SELECT rowid, parent FROM pragma_foreign_key_check('images')";
     let row = |row: &Row<'_>| Ok((row.get(0)?, row.get(1)?));
@@ -249,7 +250,7 @@ fn check_references(transaction: &Transaction<'_>) -> Result<(), DbFault> {
     Err(DbFault::BadRow { table: "image", id, problem })
 }
 
-/// Pairs of an id and a text.
+/// Reads pairs of an id and a text.
 fn texts(transaction: &Transaction<'_>, query: &str) -> Result<BTreeMap<i64, String>, DbFault> {
     all(transaction, query, |row| Ok((row.get(0)?, row.get(1)?)))
 }

@@ -1,4 +1,4 @@
-//! Recordings on their way into the database.
+//! Ingestion of recordings into the database.
 
 use std::{path::Path, sync::PoisonError};
 
@@ -13,30 +13,30 @@ use crate::{
     recording::{Insertion, NewImage, Recording},
 };
 
-/// Frames that are committed together, at most.
+/// Largest number of frames that are committed together.
 const BATCH_FRAMES: usize = 64;
 
-/// A transaction is committed once it holds so much: all of it stays in the writer's memory until then.
+/// Size at which a transaction is committed, bytes: until then all of it stays in the writer's memory.
 const BATCH_BYTES: usize = 16 << 20;
 
-/// What became of a sequence's frames.
+/// Numbers of a sequence's frames by what happened to them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct IngestReport {
-    /// Frames that were added.
+    /// Number of frames that were added.
     pub added: usize,
-    /// Frames that the database already held.
+    /// Number of frames that the database already held.
     pub already_there: usize,
-    /// Frames that were left out because they have no pose.
+    /// Number of frames that were left out because they have no pose.
     pub without_pose: usize,
 }
 
 impl Database {
-    /// Adds a sequence's pictures, as their files are, with one pose a frame; frames without a pose are left out.
+    /// Adds a sequence's pictures, as their files are, with one pose per frame; frames without a pose are left out.
     ///
-    /// Frames are committed in batches: `progress` then gets the number of frames done. After an error, or when the
-    /// program is killed, all batches before stay, and the next call goes on where this one ended. Frames that are in
-    /// the database already are compared: another picture, pose, camera or field is [`DbFault::Changed`]. A sequence is
-    /// recognised, wherever it lies, by its name and the line of its first frame.
+    /// Frames are committed in batches; after each, `progress` gets the number of frames done. After an error, or when the
+    /// program is killed, all committed batches stay, and the next call continues where this one ended. Frames that are
+    /// already in the database are compared: another picture, pose, camera or field is [`DbFault::Changed`]. A sequence is
+    /// recognised, wherever it is, by its name and the record of its first frame.
     pub fn ingest(
         &mut self,
         sequence: &Sequence,
@@ -47,8 +47,9 @@ impl Database {
         self.ingest_batches(sequence, poses, source, |_| true, progress)
     }
 
-    /// As [`Database::ingest`], but `progress` gets the number of frames done after every frame, before it is committed, and
-    /// only as long as it says true: where it does not, the frames done are committed, and the rest is left for another call.
+    /// Works like [`Database::ingest`], but calls `progress` with the number of frames done after every frame, before it
+    /// is committed, and stops when `progress` returns false: the frames done are committed, and the rest is left for
+    /// another call.
     pub fn ingest_while(
         &mut self,
         sequence: &Sequence,
@@ -59,8 +60,8 @@ impl Database {
         self.ingest_batches(sequence, poses, source, progress, |_| {})
     }
 
-    /// Adds one image, in a transaction of its own. One that the database holds already, by the number of its frame in the
-    /// recording, is compared: another picture, pose, time, camera or field is [`DbFault::Changed`].
+    /// Adds one image in its own transaction. An image that the database already holds, recognised by its frame number in
+    /// the recording, is compared: another picture, pose, time, camera or field is [`DbFault::Changed`].
     pub fn insert(&mut self, recording: &Recording, image: &NewImage<'_>) -> Result<Insertion, DbError> {
         let path = self.path().to_path_buf();
         let fail = |fault| DbError::new(&path, fault);
@@ -79,7 +80,7 @@ impl Database {
         insert_now(connection).map_err(fail)
     }
 
-    /// `goes_on` gets the number of frames done after every frame, `committed` after every batch.
+    /// Ingests in batches; `goes_on` gets the number of frames done after every frame, `committed` after every batch.
     fn ingest_batches(
         &mut self,
         sequence: &Sequence,
@@ -124,7 +125,7 @@ fn check_poses(sequence: &Sequence, poses: &[Option<PoseEstimate>]) -> Result<()
     poses.iter().position(is_bad).map_or(Ok(()), |frame_index| Err(DbFault::PoseImpossible { frame_index }))
 }
 
-/// The frames of a folder, and what they share.
+/// Frames of a folder with everything that they share.
 struct Frames<'a> {
     path: &'a Path,
     sequence: &'a Sequence,
@@ -133,7 +134,7 @@ struct Frames<'a> {
 }
 
 impl Frames<'_> {
-    /// Adds frames from this one on, as long as `goes_on` says true after each, and says which is next.
+    /// Adds frames from this one on while `goes_on` returns true after each, and returns the number of the next one.
     fn add_batch(
         &self,
         transaction: &Transaction<'_>,

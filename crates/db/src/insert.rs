@@ -1,4 +1,4 @@
-//! One image into the database.
+//! Insertion of one image into the database.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use crate::{
     recording::{Insertion, NewImage, Recording},
 };
 
-/// Poses nearer than this, metres and radians, are one: a filter computes them anew when work goes on.
+/// Tolerance within which poses are equal, metres and radians: a filter computes them anew when an ingest is resumed.
 const SAME_POSE: f64 = 1e-6;
 
 /// Rows that all images of a recording refer to.
@@ -54,13 +54,13 @@ impl Shared {
     }
 }
 
-/// Checks an image whose bytes come from elsewhere than a recording's folder; `path` is the database's.
+/// Checks an image whose bytes do not come from a recording's folder; `path` is the database's.
 pub(crate) fn check(path: &Path, recording: &Recording, image: &NewImage<'_>) -> Result<(), DbError> {
     image.check().map_err(|fault| DbError::new(path, fault))?;
     Ok(check_image(Path::new(image.file_name), image.bytes, recording.size)?)
 }
 
-/// Adds an image that is not there yet; one that is there is compared.
+/// Adds an image if it is not there yet, and compares it if it is.
 pub(crate) fn insert(
     transaction: &Transaction<'_>,
     recording: &Recording,
@@ -124,7 +124,7 @@ fn add(transaction: &Transaction<'_>, shared: &Shared, image: &NewImage<'_>) -> 
     Ok(())
 }
 
-/// What the database holds of an image.
+/// Stored contents of an image.
 struct StoredImage {
     camera_id: i64,
     field_id: i64,
@@ -135,7 +135,7 @@ struct StoredImage {
 }
 
 impl StoredImage {
-    /// The frame of a sequence, if it is there, compared with the bytes of an image.
+    /// Finds the frame of a sequence, if it is there, and compares its bytes with those of an image.
     fn find(
         transaction: &Transaction<'_>,
         sequence_id: i64,

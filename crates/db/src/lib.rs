@@ -1,18 +1,19 @@
-//! Pictures with the poses they were taken at, in one file: what a simulator looks up instead of rendering.
+//! Pictures with the poses at which they were taken, in one file: a simulator looks them up instead of rendering.
 //!
-//! | type | what |
+//! | type | purpose |
 //! |---|---|
-//! | [`Database`] | the file: [`Database::ingest`] puts recordings in, [`Database::insert`] one image, the other methods read |
-//! | [`Recording`], [`NewImage`] | one image on its way in, and what it shares with others |
-//! | [`ImageRecord`] | what is known of an image without its pixels: pose, covariance, time, camera, field |
-//! | [`PoseEstimate`], [`PoseSource`] | a pose on its way in, and where poses come from |
-//! | [`metric::PixelMetric`] | how far apart two poses are: how far the picture moves between them, pixels |
+//! | [`Database`] | the file: [`Database::ingest`] adds recordings, [`Database::insert`] one image, the other methods read
+//! |
+//! | [`Recording`], [`NewImage`] | an image to be stored, and what it shares with others |
+//! | [`ImageRecord`] | an image without its pixels: pose, covariance, time, camera, field |
+//! | [`PoseEstimate`], [`PoseSource`] | a pose to be stored, and where poses come from |
+//! | [`metric::PixelMetric`] | distance between two poses: how far the picture moves between them, pixels |
 //! | [`index::PoseIndex`] | images by pose: nearest and natural neighbours |
 //! | [`coverage::Coverage`] | which parts of the field were recorded, in which directions |
-//! | [`DbError`] | which file, what is wrong with it, what helps |
+//! | [`DbError`] | which file, what is wrong with it, and the remedy |
 //!
-//! The file is an SQLite database. It holds the pictures' files as they were recorded, and the cameras and fields as the
-//! text of their files. An ingest that is interrupted goes on where it was. Units and frames are those of
+//! The file is an SQLite database. It holds the picture files as they were recorded, and the cameras and fields as the
+//! text of their files. An interrupted ingest continues where it stopped. Units and frames are those of
 //! [`reality_sim_core::pose`].
 //!
 //! ```

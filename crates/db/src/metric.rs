@@ -1,10 +1,10 @@
-//! How far apart two poses are: by how many pixels the picture moves between them.
+//! Distance between two poses: by how many pixels the picture moves between them.
 //!
 //! A small motion δ = (forward, left, turn, rise, pitch, roll) of the camera moves what is seen at a pixel by J δ pixels,
-//! J being the derivative of the projection of the point seen there. The mean over the picture of |J δ|² is δᵀ M δ with
-//! M = mean JᵀJ, and its square root is the distance: root mean square pixels. So no factor between metres and radians
-//! is chosen; lens, height and pitch of the camera decide. The points are those of the ground, and beyond the
-//! field a background at the distance of the carpet's corner from its centre.
+//! where J is the derivative of the projection of the point seen there. The mean of |J δ|² over the picture is δᵀ M δ with
+//! M = mean JᵀJ, and its square root is the distance: root mean square pixels. So there is no arbitrary factor between
+//! metres and radians; the lens, height and pitch of the camera decide. The points lie on the ground and, beyond the
+//! field, on a background at the distance of the carpet's corner from its centre.
 
 use std::f64::consts::PI;
 
@@ -23,24 +23,24 @@ const GRID: [u32; 2] = [32, 24];
 /// Step of the numerical derivative, metres and radians.
 const STEP: f64 = 1e-5;
 
-/// The distance between poses of one camera, root mean square pixels.
+/// Distance between poses of one camera, root mean square pixels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PixelMetric {
-    /// Of forward, left, turn, rise, pitch and roll, pixels² per metre² and radian².
+    /// Matrix M of forward, left, turn, rise, pitch and roll, pixels² per metre² and radian².
     matrix: Matrix6<f64>,
-    /// Least pixels that a metre in the plane moves the picture, whatever else moves with it.
+    /// Smallest number of pixels by which one metre in the plane moves the picture, whatever else moves as well.
     least_px_per_m: f64,
-    /// Least pixels that a radian of heading moves the picture, whatever else moves with it.
+    /// Smallest number of pixels by which one radian of heading moves the picture, whatever else moves as well.
     least_px_per_rad: f64,
-    /// Of the sum of the squares of these two, at least so much is left when the plane and the heading move together.
+    /// Smallest share of the sum of the squares of these two that remains when place and heading change together.
     least_share: f64,
-    /// The picture's diagonal, pixels.
+    /// Diagonal of the picture, pixels.
     diagonal_px: f64,
 }
 
 impl PixelMetric {
-    /// For a camera that is usually at this height, pitch and roll, on this field. `None` where the camera sees too
-    /// little there for every motion to move something.
+    /// Builds the metric of a camera that is usually at this height, pitch and roll, on this field. `None` if the camera
+    /// sees too little of the field for every motion to change the picture.
     pub fn new(camera: &Camera, usual: CameraPose, field: &FieldDimensions) -> Option<Self> {
         let pose = CameraPose { x_m: 0.0, y_m: 0.0, yaw_rad: 0.0, ..usual };
         let background_m = field.carpet_half_extent_m().length();
@@ -51,7 +51,7 @@ impl PixelMetric {
         let matrix: Matrix6<f64> = sum / f64::from(count.max(1));
         let diagonal_px = f64::from(camera.width).hypot(f64::from(camera.height));
         let information = matrix.cholesky()?.inverse();
-        // What a block of the inverse says is what is left of the motion when all others make up for it (Schur).
+        // A block of the inverse gives what remains of the motion when all others compensate for it (Schur complement).
         let plane: Matrix2<f64> = information.fixed_view::<2, 2>(0, 0).into_owned().try_inverse()?;
         let least_px_per_m = plane.symmetric_eigenvalues().min().max(0.0).sqrt();
         let least_px_per_rad = (1.0 / information[(2, 2)]).sqrt();
@@ -59,8 +59,8 @@ impl PixelMetric {
         Some(Self { matrix, least_px_per_m, least_px_per_rad, least_share, diagonal_px })
     }
 
-    /// Root mean square pixels that the picture moves from one pose to the other, to first order: the motion is taken in
-    /// the axes of the mean heading, so that the distance is the same both ways.
+    /// Distance that the picture moves from one pose to the other, root mean square pixels, to first order. The motion is
+    /// expressed in the axes of the mean heading, so that the distance is symmetric.
     pub fn distance_px(&self, a: CameraPose, b: CameraPose) -> f64 {
         let turn_rad = shorter_turn(b.yaw_rad - a.yaw_rad);
         let heading_rad = a.yaw_rad + 0.5 * turn_rad;
@@ -76,42 +76,42 @@ impl PixelMetric {
         (motion.transpose() * self.matrix * motion)[0].max(0.0).sqrt()
     }
 
-    /// No two poses this far apart in the plane, metres, are nearer than this, pixels.
+    /// Lower bound of the distance, pixels, of two poses this far apart in the plane, metres.
     pub fn least_distance_px(&self, distance_m: f64) -> f64 {
         self.least_px_per_m * distance_m
     }
 
-    /// No two poses with headings this far apart, radians, are nearer than this, pixels.
+    /// Lower bound of the distance, pixels, of two poses whose headings differ by this much, radians.
     pub fn least_turn_px(&self, turn_rad: f64) -> f64 {
         self.least_px_per_rad * turn_rad
     }
 
-    /// No two poses this far apart in the plane, metres, and with headings this far apart, radians, are nearer than this,
-    /// pixels.
+    /// Lower bound of the distance, pixels, of two poses this far apart in the plane, metres, whose headings differ by
+    /// this much, radians.
     pub fn least_px(&self, distance_m: f64, turn_rad: f64) -> f64 {
         let (plane_px, turn_px) = (self.least_distance_px(distance_m), self.least_turn_px(turn_rad));
         (self.least_share * (plane_px * plane_px + turn_px * turn_px)).sqrt().max(plane_px).max(turn_px)
     }
 
-    /// How far a camera moves in the plane, metres, until the picture has moved by this, pixels, in the direction in which it
-    /// moves most.
+    /// Distance that a camera moves in the plane, metres, until the picture has moved by this, pixels, in the direction in
+    /// which it moves most.
     pub fn reach_m(&self, distance_px: f64) -> f64 {
         let plane: Matrix2<f64> = self.matrix.fixed_view::<2, 2>(0, 0).into_owned();
         distance_px / plane.symmetric_eigenvalues().max().sqrt()
     }
 
-    /// The picture's diagonal, pixels: pictures farther apart have nothing in common.
+    /// Returns the diagonal of the picture, pixels: pictures farther apart have nothing in common.
     pub fn diagonal_px(&self) -> f64 {
         self.diagonal_px
     }
 
-    /// M, of forward, left, turn, rise, pitch and roll, pixels² per metre² and radian².
+    /// Returns M, of forward, left, turn, rise, pitch and roll, pixels² per metre² and radian².
     pub fn matrix(&self) -> &Matrix6<f64> {
         &self.matrix
     }
 }
 
-/// The largest c with |J δ|² ≥ c Σ (w δ)² over forward, left and turn, whatever height, pitch and roll do.
+/// Largest c with |J δ|² ≥ c Σ (w δ)² over forward, left and turn, whatever height, pitch and roll do.
 fn least_share(information: &Matrix6<f64>, weights: [f64; 3]) -> Option<f64> {
     let left_over: Matrix3<f64> = information.fixed_view::<3, 3>(0, 0).into_owned().try_inverse()?;
     let weights = Vector3::from(weights);
@@ -119,7 +119,7 @@ fn least_share(information: &Matrix6<f64>, weights: [f64; 3]) -> Option<f64> {
     Some(shares.min().max(0.0))
 }
 
-/// [`wrap_angle`], which divides, only where there is something to wrap: a tenth off a search's time.
+/// Calls [`wrap_angle`], which divides, only if there is something to wrap: this saves a tenth of a search's time.
 pub(crate) fn shorter_turn(angle_rad: f64) -> f64 {
     if angle_rad.abs() < PI { angle_rad } else { wrap_angle(angle_rad) }
 }
@@ -134,7 +134,7 @@ fn pixel_grid(camera: &Camera) -> impl Iterator<Item = DVec2> {
     })
 }
 
-/// The point of the ground that is seen at a pixel, or of the background where that is nearer.
+/// Point of the ground that is seen at a pixel, or of the background where that is nearer.
 fn point_seen(camera: &Camera, pose: CameraPose, pixel: DVec2, background_m: f64) -> Option<DVec3> {
     camera.check_inside(pixel).ok()?;
     let ray = pose.rotation_world_from_camera() * camera.unproject(pixel).ok()?;
@@ -142,7 +142,7 @@ fn point_seen(camera: &Camera, pose: CameraPose, pixel: DVec2, background_m: f64
     Some(pose.position_in_world() + ray * to_ground_m.min(background_m))
 }
 
-/// JᵀJ of a point, by central differences.
+/// Computes JᵀJ of a point by central differences.
 fn pixel_motion(camera: &Camera, pose: CameraPose, point_in_world: DVec3) -> Option<Matrix6<f64>> {
     let mut gradients = [DVec2::ZERO; 6];
     for (axis, gradient) in gradients.iter_mut().enumerate() {

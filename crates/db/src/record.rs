@@ -1,4 +1,4 @@
-//! What is known of an image, and its way in and out of a row.
+//! Records of images, and their conversion from and to rows.
 
 use nalgebra::Matrix6;
 use reality_sim_core::{
@@ -9,32 +9,32 @@ use reality_sim_core::{
 use rusqlite::{Row, types::Type};
 use serde_json::json;
 
-/// Bytes of a stored covariance.
+/// Size of a stored covariance, bytes.
 const COVARIANCE_BYTES: usize = 36 * 8;
 
-/// Where a camera was, and how well that is known.
+/// Pose of the camera with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseEstimate {
-    /// The pose.
+    /// Pose of the camera.
     pub pose: CameraPose,
     /// Covariance of x, y, yaw, height, pitch and roll, in metres and radians, where it is known.
     pub covariance: Option<Matrix6<f64>>,
 }
 
 impl From<CameraPose> for PoseEstimate {
-    /// A pose of which it is not known how well it is known.
+    /// Makes an estimate of a pose whose uncertainty is unknown.
     fn from(pose: CameraPose) -> Self {
         Self { pose, covariance: None }
     }
 }
 
 impl PoseEstimate {
-    /// The poses of a localized recording, one a frame: as smoothed, or where they were not, as localized. Frames that the filter
-    /// is not sure of have none, unless `with_unsure`.
+    /// Returns the poses of a localized recording, one per frame: the smoothed ones if there are any, else the filter's.
+    /// Frames of which the filter is not sure have none, unless `with_unsure` is set.
     ///
     /// # Panics
     ///
-    /// Where there are fewer smoothed poses than frames: both are of the same frames.
+    /// Panics if there are fewer smoothed poses than frames: both must belong to the same frames.
     pub fn of_localized(
         frames: &[LocalizedFrame],
         smoothed: Option<&[SmoothedPose]>,
@@ -49,32 +49,32 @@ impl PoseEstimate {
         frames.map(|frame| (frame.1.sure || with_unsure).then(|| estimate(frame))).collect()
     }
 
-    /// Whether a camera can be there, and no number of the covariance is NaN or infinite.
+    /// Whether a camera can have this pose, and the covariance contains neither NaN nor infinity.
     pub(crate) fn is_possible(&self) -> bool {
         let covariance = self.covariance.iter().flat_map(Matrix6::iter);
         self.pose.is_possible() && covariance.copied().all(f64::is_finite)
     }
 }
 
-/// Where poses come from.
+/// Source of poses.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PoseSource {
-    /// The recording's own ground truth.
+    /// Ground truth of the recording itself.
     GroundTruth,
     /// The particle filter.
     Filter {
-        /// Its settings and seed, as JSON.
+        /// Settings and seed of the filter, as JSON.
         settings: String,
     },
-    /// A file of poses.
+    /// File of poses.
     File {
-        /// Its name.
+        /// Name of the file.
         name: String,
     },
 }
 
 impl PoseSource {
-    /// The particle filter with these settings, as a program ran it on a device, with or without smoothing.
+    /// Describes the particle filter with these settings, as run by a program on a device, with or without smoothing.
     pub fn of_filter(program: &str, config: &LocalizerConfig, device: &str, is_smoothed: bool) -> Self {
         let settings = json!({
             "program": program,
@@ -89,7 +89,7 @@ impl PoseSource {
         Self::Filter { settings: settings.to_string() }
     }
 
-    /// `groundtruth`, `filter` or `file`.
+    /// Returns `groundtruth`, `filter` or `file`.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::GroundTruth => "groundtruth",
@@ -98,7 +98,7 @@ impl PoseSource {
         }
     }
 
-    /// The filter's settings, or the file's name; empty for ground truth.
+    /// Returns the filter's settings, or the file's name; empty for ground truth.
     pub fn description(&self) -> &str {
         match self {
             Self::GroundTruth => "",
@@ -107,7 +107,7 @@ impl PoseSource {
         }
     }
 
-    /// The reverse of [`PoseSource::kind`] and [`PoseSource::description`].
+    /// Inverse of [`PoseSource::kind`] and [`PoseSource::description`].
     pub(crate) fn from_columns(kind: &str, description: String) -> Option<Self> {
         match kind {
             "groundtruth" => Some(Self::GroundTruth),
@@ -118,39 +118,39 @@ impl PoseSource {
     }
 }
 
-/// All of an image but its bytes.
+/// Everything about an image except its bytes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImageRecord {
-    /// Number of the image in the database; later ones are larger.
+    /// Id of the image in the database; later images have larger ids.
     pub id: i64,
-    /// Which of [`crate::Database::sequences`] it belongs to.
+    /// Id of its sequence in [`crate::Database::sequences`].
     pub sequence_id: i64,
     /// Number of the frame in its sequence, from 0.
     pub frame_index: usize,
-    /// Which of [`crate::Database::cameras`] took it.
+    /// Id of its camera in [`crate::Database::cameras`].
     pub camera_id: i64,
-    /// Which of [`crate::Database::fields`] it shows.
+    /// Id of its field in [`crate::Database::fields`].
     pub field_id: i64,
-    /// Which of [`crate::Database::pose_sources`] the pose is from.
+    /// Id of the source of its pose in [`crate::Database::pose_sources`].
     pub pose_source_id: i64,
-    /// When it was taken, by its sequence's clock, seconds.
+    /// Time at which it was taken, by its sequence's clock, seconds.
     pub timestamp_s: f64,
-    /// The file it was, relative to its sequence's folder.
+    /// Path of its original file, relative to its sequence's folder.
     pub file_name: String,
     /// Length of its JPEG or PNG file, bytes.
     pub byte_length: u64,
-    /// Where it was taken.
+    /// Pose of the camera when it was taken.
     pub pose: CameraPose,
     /// Covariance of x, y, yaw, height, pitch and roll, in metres and radians, where it is known.
     pub covariance: Option<Matrix6<f64>>,
 }
 
-/// The columns of a record, in the order in which [`ImageRecord::from_row`] takes them.
+/// Columns of a record, in the order in which [`ImageRecord::from_row`] takes them.
 pub(crate) const IMAGE_COLUMNS: &str = "id, sequence_id, frame_index, camera_id, field_id, pose_source_id, \
      timestamp_s, file_name, byte_length, x_m, y_m, yaw_rad, height_m, pitch_rad, roll_rad, covariance";
 
 impl ImageRecord {
-    /// A record from [`IMAGE_COLUMNS`]. Its numbers may be infinite.
+    /// Reads a record from [`IMAGE_COLUMNS`]. Its numbers may be infinite.
     pub(crate) fn from_row(row: &Row<'_>) -> rusqlite::Result<Self> {
         Ok(Self {
             id: row.get(0)?,
@@ -167,7 +167,7 @@ impl ImageRecord {
         })
     }
 
-    /// What is wrong with its numbers, if anything.
+    /// Returns what is wrong with its numbers, if anything.
     pub(crate) fn problem(&self) -> Option<&'static str> {
         let estimate = PoseEstimate { pose: self.pose, covariance: self.covariance };
         if !estimate.is_possible() {
@@ -180,7 +180,7 @@ impl ImageRecord {
     }
 }
 
-/// A pose from six columns, in the order of [`IMAGE_COLUMNS`], of which this is the first.
+/// Reads a pose from six columns in the order of [`IMAGE_COLUMNS`], starting at `first`.
 pub(crate) fn pose_from_row(row: &Row<'_>, first: usize) -> rusqlite::Result<CameraPose> {
     Ok(CameraPose {
         x_m: row.get(first)?,
@@ -192,7 +192,7 @@ pub(crate) fn pose_from_row(row: &Row<'_>, first: usize) -> rusqlite::Result<Cam
     })
 }
 
-/// A covariance as it is stored: row by row, little-endian.
+/// Encodes a covariance as it is stored: row by row, little-endian.
 pub(crate) fn covariance_bytes(covariance: &Matrix6<f64>) -> Vec<u8> {
     covariance.transpose().iter().flat_map(|value| value.to_le_bytes()).collect()
 }

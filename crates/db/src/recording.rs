@@ -1,4 +1,4 @@
-//! What images of one recording share, and one image on its way into the database.
+//! Data that the images of a recording share, and images to be stored.
 
 use std::path::Path;
 
@@ -12,11 +12,11 @@ use crate::{
     record::{PoseEstimate, PoseSource},
 };
 
-/// A recording that images belong to: its name, its camera, its field, and where its poses come from.
+/// Recording that images belong to: its name, its camera, its field, and the source of its poses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     pub(crate) name: String,
-    /// What tells it from others of its name.
+    /// Text that distinguishes it from other recordings of the same name.
     pub(crate) first_frame: String,
     /// Width and height of its pictures, pixels.
     pub(crate) size: [u32; 2],
@@ -28,8 +28,8 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// A recording that is known by its name alone, as one that is made now. Fails where camera or field cannot be written
-    /// as text, as with numbers that are not finite.
+    /// Makes a recording that is identified by its name alone, such as one that is being made now. Fails if camera or
+    /// field cannot be written as text, for example because a number is not finite.
     pub fn new(
         name: &str,
         setup: &CameraSetup,
@@ -47,7 +47,7 @@ impl Recording {
         })
     }
 
-    /// A recording in a folder, known by its name and its first frame, wherever it lies.
+    /// Makes a recording of a folder, identified by its name and its first frame, wherever the folder is.
     pub fn of_sequence(sequence: &Sequence, source: PoseSource) -> Result<Self, DbError> {
         Ok(Self {
             first_frame: first_frame(sequence),
@@ -58,7 +58,8 @@ impl Recording {
     }
 }
 
-/// What tells a sequence from others of its name: all that is known of its first frame but the picture.
+/// Returns everything that is known of the first frame except the picture: it distinguishes a sequence from others of its
+/// name.
 fn first_frame(sequence: &Sequence) -> String {
     let Some(frame) = sequence.frames.first() else { return String::new() };
     let odometry =
@@ -67,23 +68,23 @@ fn first_frame(sequence: &Sequence) -> String {
     format!("{},{image},{odometry},{},{}", frame.timestamp_s, frame.pitch_rad, frame.roll_rad)
 }
 
-/// An image on its way into the database.
+/// Image to be stored in the database.
 #[derive(Debug, Clone, Copy)]
 pub struct NewImage<'a> {
-    /// Number of the frame in its recording, from 0: what recognises it.
+    /// Number of the frame in its recording, from 0, by which the image is recognised.
     pub frame_index: usize,
-    /// When it was taken, by its recording's clock, seconds.
+    /// Time at which it was taken, by its recording's clock, seconds.
     pub timestamp_s: f64,
-    /// The file's name, relative to the recording's folder; any name where there is no file.
+    /// Name of the file, relative to the recording's folder; any name if there is no file.
     pub file_name: &'a str,
-    /// Where it was taken.
+    /// Pose of the camera when it was taken.
     pub estimate: &'a PoseEstimate,
-    /// A whole JPEG or PNG in the camera's size.
+    /// Complete JPEG or PNG file in the camera's size.
     pub bytes: &'a [u8],
 }
 
 impl NewImage<'_> {
-    /// Refuses a pose that no camera can have, and a time that is no number.
+    /// Refuses a pose that no camera can have, and a time that is not a finite number.
     pub(crate) fn check(&self) -> Result<(), DbFault> {
         let frame_index = self.frame_index;
         if !self.estimate.is_possible() {
@@ -96,11 +97,11 @@ impl NewImage<'_> {
     }
 }
 
-/// What became of an image.
+/// Result of inserting an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Insertion {
-    /// It was added.
+    /// The image was added.
     Added,
-    /// The database held it already.
+    /// The database already held the image.
     AlreadyThere,
 }

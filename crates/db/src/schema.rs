@@ -1,4 +1,4 @@
-//! The tables, what marks a file as ours, and how a file of an older version becomes one of this.
+//! Tables of the database, marks that identify its files, and migration of older versions.
 
 use std::{fs, path::Path};
 
@@ -6,17 +6,17 @@ use rusqlite::{Connection, Transaction, TransactionBehavior};
 
 use crate::error::DbFault;
 
-/// In the file's header: "ReSi".
+/// Application id in the file's header: "ReSi".
 const APPLICATION_ID: i64 = 0x5265_5369;
 
-/// The version of the tables that this program reads and writes.
+/// Schema version that this program reads and writes.
 pub const SCHEMA_VERSION: i64 = STEPS.len() as i64;
 
-/// The statements at `STEPS[n]` make a database of version n + 1 of one of version n. A step that was released is never
-/// changed: another one is added.
+/// Migration steps: the statements at `STEPS[n]` turn a database of version n into one of version n + 1. A released step
+/// is never changed; another one is added.
 const STEPS: [&str; 1] = [VERSION_1];
 
-/// The bytes have a table of their own: reading all poses does not touch them.
+/// The bytes have a table of their own, so that reading all poses does not touch them.
 const VERSION_1: &str = "
     CREATE TABLE sequences (
         id INTEGER PRIMARY KEY,
@@ -66,7 +66,7 @@ const VERSION_1: &str = "
     ) STRICT;
 ";
 
-/// Refuses a file that is not a whole database of this version. Changes nothing.
+/// Refuses a file that is not a complete database of this version. Changes nothing.
 pub(crate) fn check(connection: &Connection, path: &Path) -> Result<(), DbFault> {
     let transaction = connection.unchecked_transaction()?;
     if application_id(&transaction)? != APPLICATION_ID {
@@ -81,12 +81,12 @@ pub(crate) fn check(connection: &Connection, path: &Path) -> Result<(), DbFault>
     Ok(())
 }
 
-/// Makes an empty file a database, and one of an older version one of this.
+/// Turns an empty file into a database, and migrates one of an older version.
 pub(crate) fn prepare(connection: &mut Connection, path: &Path) -> Result<(), DbFault> {
     migrate(connection, path, &STEPS)
 }
 
-/// Runs the steps that a database has not seen, all or none of them.
+/// Runs the steps that a database has not had yet, all or none of them.
 fn migrate(connection: &mut Connection, path: &Path, steps: &[&str]) -> Result<(), DbFault> {
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
     if is_empty(&transaction)? {
@@ -116,14 +116,14 @@ fn check_known(found: i64, known: i64) -> Result<(), DbFault> {
     }
 }
 
-/// Whether nothing was ever stored: a file without bytes, or one whose writer was killed before the first commit.
+/// Whether nothing was ever stored: the file has no bytes, or its writer was killed before the first commit.
 fn is_empty(transaction: &Transaction<'_>) -> rusqlite::Result<bool> {
     let tables: i64 = transaction.query_row("SELECT count(*) FROM sqlite_schema", [], |row| row.get(0))?;
     Ok(tables == 0 && application_id(transaction)? == 0 && version(transaction)? == 0)
 }
 
-/// SQLite finds a cut-off file by itself only when it needs what is missing. In a transaction nobody else changes the
-/// length.
+/// Checks the length of the file: SQLite notices a truncated file only when it needs the missing part. In a transaction
+/// nobody else changes the length.
 fn check_length(transaction: &Transaction<'_>, path: &Path) -> Result<(), DbFault> {
     let pages = u64::from(pragma::<u32>(transaction, "page_count")?);
     let page_bytes = u64::from(pragma::<u32>(transaction, "page_size")?);
@@ -152,7 +152,7 @@ mod tests {
 
     use super::*;
 
-    /// Three versions of a database that is not ours.
+    /// Three versions of a database of another kind.
     const FIRST: &str =
         "CREATE TABLE things (id INTEGER PRIMARY KEY, name TEXT); INSERT INTO things (name) VALUES ('a')";
     const SECOND: &str = "ALTER TABLE things ADD COLUMN length_m REAL NOT NULL DEFAULT 2.5";

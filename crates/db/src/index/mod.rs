@@ -1,7 +1,7 @@
-//! Which images were recorded near a pose.
+//! Search for the images that were recorded near a pose.
 //!
-//! What is near is measured by [`PixelMetric`]. The nearest images are found by a tree. Natural neighbours and their
-//! weights (Sibson, 1981) are those of Delaunay triangulations of where the images were taken, one for each sector of
+//! Distances are measured by [`PixelMetric`]. The nearest images are found with a tree. Natural neighbours and their
+//! weights (Sibson, 1981) come from Delaunay triangulations of where the images were taken, one for each sector of
 //! headings; the two sectors on both sides of the heading are mixed in proportion, so that the weights change smoothly
 //! with x, y and yaw. Images of one sector at nearly the same place share a vertex, a *spot*; all of them are kept.
 
@@ -19,19 +19,19 @@ use self::{
 };
 use crate::metric::PixelMetric;
 
-/// Images closer than this share a spot, pixels: no one sees the difference.
+/// Distance within which images share a spot, pixels: the difference is invisible.
 const SPOT_PX: f64 = 1.0;
 
-/// What the natural neighbours of a heading are found in: the Delaunay triangulation of one sector's spots.
+/// Delaunay triangulation of one sector's spots, in which the natural neighbours of a heading are found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectorTriangulation {
-    /// The sector's share at the heading, of 1 over both.
+    /// Share of the sector at the heading; the shares of both sectors sum to 1.
     pub share: f64,
-    /// The edges from spot to spot, world axes, metres.
+    /// Edges between spots in the world frame, metres.
     pub edges_in_world: Vec<[DVec2; 2]>,
 }
 
-/// Finds images by pose.
+/// Index of images by pose.
 #[derive(Debug)]
 pub struct PoseIndex {
     metric: PixelMetric,
@@ -41,7 +41,7 @@ pub struct PoseIndex {
 }
 
 impl PoseIndex {
-    /// An index of images taken at these poses. Poses that are not made of finite numbers are never found.
+    /// Builds an index of images taken at these poses. Poses with numbers that are not finite are never found.
     pub fn new(metric: PixelMetric, poses: Vec<CameraPose>) -> Self {
         let spot_m = metric.reach_m(SPOT_PX);
         let sectors = (0..SECTORS).map(|number| Sector::new(number, &poses, spot_m)).collect();
@@ -49,17 +49,17 @@ impl PoseIndex {
         Self { metric, poses, sectors, tree }
     }
 
-    /// The poses of the images.
+    /// Returns the poses of the images.
     pub fn poses(&self) -> &[CameraPose] {
         &self.poses
     }
 
-    /// What distances are measured by.
+    /// Returns the metric that distances are measured by.
     pub fn metric(&self) -> &PixelMetric {
         &self.metric
     }
 
-    /// Checks that the nearest image is not farther than this, root mean square pixels.
+    /// Returns the nearest image if it is not farther than this, root mean square pixels.
     pub fn check_reach(&self, pose: CameraPose, limit_px: f64) -> Result<Neighbour, NoNeighbours> {
         let nearest = self.nearest(pose, 1)?[0];
         let Neighbour { distance_px, .. } = nearest;
@@ -70,7 +70,7 @@ impl PoseIndex {
         }
     }
 
-    /// The nearest images, nearest first, with equal weights: `count`, or all where there are fewer.
+    /// Returns the nearest images, nearest first, with equal weights: `count` of them, or all if there are fewer.
     pub fn nearest(&self, pose: CameraPose, count: usize) -> Result<Vec<Neighbour>, NoNeighbours> {
         self.check(pose)?;
         let found = self.tree.search(&self.metric, pose, count.max(1));
@@ -78,8 +78,8 @@ impl PoseIndex {
         Ok(found.into_iter().map(|(image, distance_px)| Neighbour { image, distance_px, weight }).collect())
     }
 
-    /// The natural neighbours with their weights, the heaviest first. Outside the hull of a sector's images the nearest of
-    /// them takes their place.
+    /// Returns the natural neighbours with their weights, largest weight first. Outside the convex hull of a sector's
+    /// images, the nearest of them takes their place.
     pub fn natural(&self, pose: CameraPose) -> Result<Vec<Neighbour>, NoNeighbours> {
         self.check(pose)?;
         let mut neighbours: Vec<Neighbour> = Vec::new();
@@ -96,8 +96,8 @@ impl PoseIndex {
         Ok(neighbours)
     }
 
-    /// The triangulations that [`PoseIndex::natural`] mixes at a heading, radians: at most two. Takes time in proportion to
-    /// the images of the two sectors.
+    /// Returns the triangulations that [`PoseIndex::natural`] mixes at a heading, radians: at most two. The time is
+    /// proportional to the number of images in the two sectors.
     pub fn triangulations(&self, yaw_rad: f64) -> Vec<SectorTriangulation> {
         if !yaw_rad.is_finite() {
             return Vec::new();
@@ -115,8 +115,8 @@ impl PoseIndex {
         if self.tree.is_empty() { Err(NoNeighbours::NoImages) } else { Ok(()) }
     }
 
-    /// The sectors between whose middles a heading lies, with their shares: 1 together. An empty one leaves its share to the
-    /// other.
+    /// Returns the two sectors between whose centres a heading lies, with shares that sum to 1. An empty sector leaves its
+    /// share to the other.
     fn sectors_around(&self, yaw_rad: f64) -> impl Iterator<Item = (&Sector, f64)> {
         let [(a, share_a), (b, share_b)] = sector::around(yaw_rad);
         let (a, b) = (&self.sectors[a], &self.sectors[b]);
@@ -127,7 +127,7 @@ impl PoseIndex {
         [(a, shares[0]), (b, shares[1])].into_iter().filter(|(_, share)| *share > 0.0)
     }
 
-    /// The nearest of some images, of which there is at least one.
+    /// Returns the nearest of some images, of which there is at least one.
     fn nearest_of(&self, items: &[ImageIndex], pose: CameraPose) -> (ImageIndex, f64) {
         let distance =
             |&image: &ImageIndex| (image, self.metric.distance_px(self.poses[image as usize], pose));

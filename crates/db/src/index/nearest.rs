@@ -1,9 +1,9 @@
-//! The nearest images by the metric, exactly, without looking at all of them.
+//! Exact search for the nearest images by the metric, without a comparison with all of them.
 //!
-//! A kd-tree: the images are halved, along the side over which the picture moves most, until few are left. What they are
-//! compared by is [`PixelMetric::least_px`], a bound of the distance that needs place and heading alone and no sines:
-//! boxes and images for which it is too large are passed over. Of a million images 80 are compared and 12 measured.
-//! Bounds that take height, pitch and roll into account pass over more, but cost several times as much.
+//! The tree is a kd-tree: the images are halved along the axis over which the picture moves most, until few are left. They
+//! are compared by [`PixelMetric::least_px`], a lower bound of the distance that needs only place and heading and no
+//! sines; boxes and images whose bound is too large are skipped. Among a million images, 80 are compared and the distance
+//! of 12 is computed. Bounds that include height, pitch and roll skip more, but cost several times as much.
 
 use std::f64::consts::TAU;
 
@@ -13,20 +13,21 @@ use reality_sim_core::pose::CameraPose;
 use super::neighbour::ImageIndex;
 use crate::metric::{PixelMetric, shorter_turn};
 
-/// Images of a leaf, at least; nearly twice as many at most.
+/// Smallest number of images in a leaf; the largest is nearly twice that.
 const LEAF_IMAGES: usize = 8;
 
-/// Images by pose.
+/// Kd-tree of images by pose.
 #[derive(Debug)]
 pub(super) struct NearestTree {
-    /// The leaves one after the other. Poses are copied: looked up elsewhere, one in a million, each waits for memory.
+    /// Images of the leaves, one leaf after the other. Poses are copied: looking them up elsewhere among a million would
+    /// wait for memory each time.
     images: Vec<(CameraPose, ImageIndex)>,
-    /// The boxes of the two halves of box n are at 2n + 1 and 2n + 2.
+    /// Boxes of the nodes; the two halves of box n are at 2n + 1 and 2n + 2.
     boxes: Vec<PlanarBox>,
 }
 
 impl NearestTree {
-    /// The images taken at these poses; those that are not made of finite numbers are left out.
+    /// Builds the tree of images taken at these poses, without those whose numbers are not finite.
     pub(super) fn new(metric: &PixelMetric, poses: &[CameraPose]) -> Self {
         let finite = poses.iter().zip(0..).filter(|(pose, _)| pose.is_finite());
         let mut images: Vec<(CameraPose, ImageIndex)> = finite
@@ -42,7 +43,7 @@ impl NearestTree {
         self.images.is_empty()
     }
 
-    /// Images and distances, pixels, nearest first: `count`, or all where there are fewer.
+    /// Returns images and distances, pixels, nearest first: `count` of them, or all if there are fewer.
     pub(super) fn search(
         &self,
         metric: &PixelMetric,
@@ -57,7 +58,7 @@ impl NearestTree {
     }
 }
 
-/// Brings images into the order of the leaves and writes the boxes, from the one at `node` downwards.
+/// Sorts images into the order of the leaves and writes the boxes, from the one at `node` downwards.
 fn split(
     metric: &PixelMetric,
     boxes: &mut [PlanarBox],
@@ -78,12 +79,12 @@ fn split(
     split(metric, boxes, 2 * node + 2, second);
 }
 
-/// x, y and yaw, metres and radians.
+/// Returns x, y and yaw, metres and radians.
 fn planar(pose: &CameraPose) -> [f64; 3] {
     [pose.x_m, pose.y_m, pose.yaw_rad]
 }
 
-/// Places and headings between bounds, metres and radians.
+/// Box of places and headings, metres and radians.
 #[derive(Debug, Clone, Copy, Default)]
 struct PlanarBox {
     middle: [f64; 3],
@@ -103,7 +104,7 @@ impl PlanarBox {
         }
     }
 
-    /// No pose of the box is nearer, pixels.
+    /// Lower bound of the distance to any pose in the box, pixels.
     fn bound_px(&self, metric: &PixelMetric, pose: CameraPose) -> f64 {
         let [x_m, y_m, yaw_rad] = self.middle;
         let outside = |away: f64, axis: usize| (away.abs() - self.half[axis]).max(0.0);
@@ -112,7 +113,7 @@ impl PlanarBox {
     }
 }
 
-/// The nearest so far of a search.
+/// Nearest images that a search has found so far.
 struct Search<'a> {
     boxes: &'a [PlanarBox],
     metric: &'a PixelMetric,
@@ -122,7 +123,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Looks at the images of a box, the half with the smaller bound first.
+    /// Searches the images of a box, the half with the smaller bound first.
     fn enter(&mut self, node: usize, images: &[(CameraPose, ImageIndex)]) {
         let [first, second] = [2 * node + 1, 2 * node + 2];
         if second >= self.boxes.len() {
@@ -143,7 +144,7 @@ impl Search<'_> {
         }
     }
 
-    /// Whether an image this far away, pixels, is one of the nearest so far: while there are too few, any is.
+    /// Whether an image at this distance, pixels, can be one of the nearest: as long as there are too few, any can.
     fn may_take(&self, distance_px: f64) -> bool {
         self.found.get(self.count - 1).is_none_or(|(_, last_px)| distance_px < *last_px)
     }

@@ -1,36 +1,36 @@
-//! An image near a pose, and why there may be none.
+//! Neighbours of a pose, and reasons why there may be none.
 
-/// The index of an image in the list that a [`PoseIndex`](super::PoseIndex) was made of.
+/// Index of an image in the list from which a [`PoseIndex`](super::PoseIndex) was built.
 pub type ImageIndex = u32;
 
-/// An image near a pose.
+/// Image near a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Neighbour {
-    /// Which.
+    /// Index of the image.
     pub image: ImageIndex,
-    /// How far the picture moves from it to the pose asked for, root mean square pixels.
+    /// Distance that the picture moves from the image to the requested pose, root mean square pixels.
     pub distance_px: f64,
-    /// Its share, of 1 over all neighbours.
+    /// Weight of the image; the weights of all neighbours sum to 1.
     pub weight: f64,
 }
 
-/// Why a pose has no neighbours.
+/// Reason why a pose has no neighbours.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum NoNeighbours {
     /// There are no images at all.
     #[error("there is no image: build the database from a recording first")]
     NoImages,
-    /// The pose is not made of finite numbers.
+    /// The pose has a number that is not finite.
     #[error("the pose is not made of finite numbers")]
     NotFinite,
-    /// Nothing recorded is near enough to reconstruct the picture from.
+    /// Nothing was recorded near enough to reconstruct the picture.
     #[error(
         "nothing was recorded near this pose: the nearest picture is {distance_px:.0} px away, the limit is {limit_px:.0} px; record pictures there, or ask for the best effort"
     )]
     OutOfReach {
-        /// The nearest image's distance, root mean square pixels.
+        /// Distance of the nearest image, root mean square pixels.
         distance_px: f64,
-        /// The largest distance allowed.
+        /// Largest distance allowed, root mean square pixels.
         limit_px: f64,
     },
 }

@@ -11,15 +11,15 @@ use spade::{
 
 use super::neighbour::ImageIndex;
 
-/// Sectors of a turn. With an eighth a heading lies at most a quarter of a turn's half from the images of its two sectors:
-/// less than the view of any wide lens.
+/// Number of sectors of headings. With eight, a heading is at most an eighth of a turn from the centres of its two
+/// sectors: less than the view of any wide lens.
 pub(super) const SECTORS: usize = 8;
 
-/// A place and the images taken there.
+/// Place with the images taken there.
 #[derive(Debug, Clone)]
 pub(super) struct Spot {
     position: Point2<f64>,
-    /// First and end in [`Sector::items`].
+    /// First and end index in [`Sector::items`].
     items: [u32; 2],
 }
 
@@ -33,14 +33,14 @@ impl HasPosition for Spot {
 
 type Delaunay = DelaunayTriangulation<Spot, (), (), (), HierarchyHintGenerator<f64>>;
 
-/// The images whose heading lies in one sector.
+/// Images whose heading lies in one sector.
 #[derive(Debug)]
 pub(super) struct Sector {
     delaunay: Delaunay,
     items: Vec<ImageIndex>,
 }
 
-/// The two sectors between whose middles a heading lies, with their shares.
+/// Returns the two sectors between whose centres a heading lies, with their shares.
 pub(super) fn around(yaw_rad: f64) -> [(usize, f64); 2] {
     let turned = (yaw_rad / TAU).rem_euclid(1.0) * SECTORS as f64;
     let first = turned.floor();
@@ -49,13 +49,14 @@ pub(super) fn around(yaw_rad: f64) -> [(usize, f64); 2] {
     [(first, 1.0 - share), ((first + 1) % SECTORS, share)]
 }
 
-/// The sector in which a heading lies.
+/// Returns the sector that contains a heading.
 fn of(yaw_rad: f64) -> usize {
     ((yaw_rad / TAU).rem_euclid(1.0) * SECTORS as f64).round() as usize % SECTORS
 }
 
 impl Sector {
-    /// The images of a sector. Those in one cell of a grid with this diagonal, metres, share a spot.
+    /// Builds the sector of this number. Images in the same cell of a grid with cells of this diagonal, metres, share a
+    /// spot.
     pub(super) fn new(number: usize, poses: &[CameraPose], spot_m: f64) -> Self {
         let cell_m = spot_m / std::f64::consts::SQRT_2;
         let in_sector =
@@ -68,7 +69,8 @@ impl Sector {
             .collect();
         spotted.sort_unstable();
         let vertices = vertices(&spotted, poses);
-        // Cells keep places apart, and none is NaN: all that could be refused are coordinates beyond 10⁶⁰, and below 10⁻⁴³ but not 0.
+        // Cells keep places apart, and none is NaN. Only coordinates beyond 10⁶⁰, or below 10⁻⁴³ but not 0, could be
+        // refused.
         let delaunay = Delaunay::bulk_load_stable(vertices).unwrap_or_default();
         let items = spotted.into_iter().map(|spotted| spotted.image).collect();
         Self { delaunay, items }
@@ -78,11 +80,11 @@ impl Sector {
         self.delaunay.num_vertices() == 0
     }
 
-    /// The images at the natural neighbours of a place, with the weights of these; the nearest alone outside the hull.
+    /// Returns the images at the natural neighbours of a place, with their weights; outside the hull only the nearest one.
     pub(super) fn natural_spots(&self, pose: CameraPose) -> Vec<(&[ImageIndex], f64)> {
         let place = Point2::new(pose.x_m, pose.y_m);
         let mut weights = Vec::new();
-        // With a single vertex there is no edge to begin with, and spade needs one.
+        // With a single vertex there is no edge to start from, and spade needs one.
         if self.delaunay.num_vertices() > 1 {
             self.delaunay.natural_neighbor().get_weights(place, &mut weights);
         }
@@ -92,20 +94,20 @@ impl Sector {
         weights.into_iter().map(|(vertex, weight)| (self.images_at(vertex), weight)).collect()
     }
 
-    /// The edges between spots, world axes, metres.
+    /// Returns the edges between spots in the world frame, metres.
     pub(super) fn edges_in_world(&self) -> Vec<[DVec2; 2]> {
         let ends = self.delaunay.undirected_edges().map(|edge| edge.positions());
         ends.map(|ends| ends.map(|end| DVec2::new(end.x, end.y))).collect()
     }
 
-    /// The images at a spot.
+    /// Returns the images at a spot.
     pub(super) fn images_at(&self, spot: FixedVertexHandle) -> &[ImageIndex] {
         let [first, end] = self.delaunay.vertex(spot).data().items;
         &self.items[first as usize..end as usize]
     }
 }
 
-/// An image and the cell of the grid that it lies in, in the order in which spots are stored.
+/// Image with its cell of the grid, in the order in which spots are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Spotted {
     place_on_curve: u64,
@@ -113,15 +115,15 @@ struct Spotted {
     image: ImageIndex,
 }
 
-/// Where a cell lies on Morton's curve. Spots that are near are then stored near each other: a tenth off the time of
-/// natural neighbours among a million images, most of which is waiting for memory.
+/// Position of a cell on Morton's curve, so that neighbouring spots are stored near each other: this saves a tenth of the
+/// time of natural neighbours among a million images, most of which is spent waiting for memory.
 fn place_on_curve(cell: [i64; 2]) -> u64 {
     let [even, odd] =
         cell.map(|number| (0..32).fold(0, |spread, bit| spread | ((number as u64 >> bit) & 1) << (2 * bit)));
     even | odd << 1
 }
 
-/// A vertex a spot, at the mean of its images' places.
+/// Makes one vertex per spot, at the mean of its images' places.
 fn vertices(spotted: &[Spotted], poses: &[CameraPose]) -> Vec<Spot> {
     let mut first = 0;
     let spots = spotted.chunk_by(|a, b| a.cell == b.cell).map(|images| {

@@ -27,7 +27,7 @@ fn any_pose() -> impl Strategy<Value = CameraPose> {
     )
 }
 
-/// Some at one spot with other headings, some on a line: what triangulations stumble over.
+/// Generates images at one spot with different headings, and images on a line, which are difficult for triangulations.
 fn any_recording() -> impl Strategy<Value = Vec<CameraPose>> {
     let spot = prop::collection::vec(any_pose(), 1..60);
     (spot, 0..3).prop_map(|(mut poses, kind)| {
@@ -76,7 +76,7 @@ proptest! {
         }
     }
 
-    /// Near and far, whatever the four motions besides are.
+    /// Compares near and far poses with any motion in the other four dimensions.
     #[test]
     fn no_distance_is_less_than_its_bound(a in any_pose(), b in any_pose(), share in -6.0..0.0_f64) {
         let metric = metric();
@@ -89,7 +89,7 @@ proptest! {
         prop_assert!(least_px >= metric.least_distance_px(apart_m).max(metric.least_turn_px(turn_rad)));
     }
 
-    /// To first order: the motion is small, and the truth is the lens itself.
+    /// Compares to first order: the motion is small, and the lens itself gives the truth.
     #[test]
     fn the_distance_is_how_far_pixels_move(pose in any_pose(), motion in prop::array::uniform6(-1e-3..1e-3_f64)) {
         let camera = camera();
@@ -142,8 +142,8 @@ proptest! {
     }
 }
 
-/// Truth from geometry: spots with no other spot in the circle over them are joined (Gabriel), no two edges cross, and
-/// there are at most 3 n - 6.
+/// Checks the geometry: spots without another spot in the circle over them are joined (Gabriel graph), no two edges cross,
+/// and there are at most 3 n − 6 edges.
 #[test]
 fn the_triangulation_of_a_heading_is_that_of_the_places_of_its_sector() {
     let places: Vec<DVec2> = (0..60)
@@ -185,7 +185,7 @@ fn the_triangulation_of_a_heading_is_that_of_the_places_of_its_sector() {
     assert!(both.triangulations(f64::NAN).is_empty());
 }
 
-/// Enough for a tree of many levels, many at one place and heading, and headings on both sides of where turns are counted from.
+/// Uses enough images for many levels of the tree, many at one place and heading, and headings on both sides of ±π.
 #[test]
 fn among_many_images_the_nearest_are_those_that_looking_at_all_of_them_finds() {
     let poses: Vec<CameraPose> = (0..5000)

@@ -1,4 +1,4 @@
-//! Adding recordings: again, changed, broken, from two sides.
+//! Adding recordings: again, changed, broken, and from two programs at once.
 
 use std::{thread, time::Duration};
 
@@ -164,7 +164,7 @@ fn a_broken_picture_is_named_and_what_was_committed_stays() {
 fn large_pictures_are_committed_before_they_fill_the_memory() {
     let folder = tempfile::tempdir().unwrap();
     let mut state = 1_u32;
-    // Noise, which no encoder makes smaller.
+    // Noise does not compress.
     let noise = RgbImage::from_fn(2000, 2000, |_, _| {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         Rgb([(state >> 8) as u8, (state >> 16) as u8, (state >> 24) as u8])

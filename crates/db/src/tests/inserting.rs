@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A frame of the walk as an image; its recording is known by the name and the first frame, as a folder's is.
+/// Inserts a frame of the walk as an image; its recording is identified by name and first frame, like one in a folder.
 fn insert(database: &mut Database, sequence: &Sequence, index: usize) -> Result<Insertion, DbError> {
     let recording = Recording::of_sequence(sequence, PoseSource::GroundTruth)?;
     let estimate = estimates(sequence)[index].unwrap();

@@ -1,4 +1,4 @@
-//! Writers that are killed. This program starts itself as the writer.
+//! Writers that are killed. The test program starts itself as the writer.
 
 use std::{
     env,
@@ -12,12 +12,12 @@ use std::{
 
 use super::*;
 
-/// Names the database to the writer.
+/// Environment variable that names the database for the writer.
 const DATABASE: &str = "REALITY_SIM_DB_TEST_DATABASE";
 
 const FRAMES: usize = 640;
 
-/// The file that grows by a byte with every batch that a writer has committed.
+/// Path of the file that grows by one byte with every batch that a writer has committed.
 fn progress_file(database: &Path) -> PathBuf {
     database.with_extension("progress")
 }
@@ -41,12 +41,12 @@ fn start_writer(database: &Path) -> Child {
         .unwrap()
 }
 
-/// Batches that the writer says it has committed, or found there.
+/// Number of batches that the writer reports as committed, or as already present.
 fn batches(database: &Path) -> usize {
     fs::metadata(progress_file(database)).map_or(0, |metadata| metadata.len() as usize)
 }
 
-/// Kills a writer a while after it has committed so many batches. False if it was done before.
+/// Kills a writer a while after it has committed this many batches. Returns false if it had finished before.
 fn kill_after(writer: &mut Child, database: &Path, count: usize, delay: Duration) -> bool {
     while batches(database) < count {
         if writer.try_wait().unwrap().is_some() {
@@ -67,7 +67,7 @@ fn killed_at_any_moment_it_holds_what_was_committed_and_goes_on() {
     for attempt in 0..12 {
         let _ = fs::remove_file(progress_file(&path));
         let mut writer = start_writer(&path);
-        // The batches that are there already are looked at again first.
+        // The batches that are already there are compared first.
         let wanted = (held / 64 + attempt % 2).min(FRAMES / 64);
         kills +=
             usize::from(kill_after(&mut writer, &path, wanted, Duration::from_micros(2700 * attempt as u64)));
@@ -97,7 +97,7 @@ fn killed_at_any_moment_it_holds_what_was_committed_and_goes_on() {
     }
 }
 
-/// A database and its journal as a writer leaves them that dies while it writes pages over.
+/// Makes a database and a journal like those of a writer that dies while it overwrites pages.
 fn torn(sequence: &Sequence) -> (TempDir, PathBuf) {
     let (_origin, path) = database_of(sequence);
     let writer = Database::create_or_open(&path).unwrap();
@@ -144,7 +144,7 @@ mod read_only {
 
     use super::*;
 
-    /// Names the folder of databases to a reader that may not write.
+    /// Environment variable that names the folder of databases for a reader that may not write.
     const FOLDER: &str = "REALITY_SIM_DB_TEST_READ_ONLY";
     const NOBODY: u32 = 65534;
 
@@ -182,13 +182,13 @@ mod read_only {
         reader
             .args(["--exact", "tests::interrupted::read_only::the_reader_that_may_not_write"])
             .env(FOLDER, folder.path());
-        // Nothing is read-only to root.
+        // Nothing is read-only for root.
         if fs::metadata(folder.path()).unwrap().uid() == 0 {
             reader.uid(NOBODY).gid(NOBODY);
         }
         let output = reader.output();
         set_mode(folder.path(), 0o755);
-        // A container may know no user but root.
+        // A container may have no user but root.
         let Ok(output) = output else { return };
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
     }

@@ -1,4 +1,4 @@
-//! The demonstration walk into a database and out again, and what can go wrong on the way.
+//! Round trips of the demonstration walk through the database, and the faults that can occur.
 
 mod ingesting;
 mod inserting;
@@ -19,14 +19,14 @@ fn walk() -> Sequence {
     Sequence::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk")).unwrap()
 }
 
-/// The walk's first frames.
+/// Returns the walk's first frames.
 fn short_walk(frames: usize) -> Sequence {
     let mut sequence = walk();
     sequence.frames.truncate(frames);
     sequence
 }
 
-/// The walk again and again, as one recording.
+/// Returns the walk repeated, as one recording.
 fn long_walk(frames: usize) -> Sequence {
     let once = walk();
     let count = once.frames.len();
@@ -38,7 +38,7 @@ fn long_walk(frames: usize) -> Sequence {
     sequence
 }
 
-/// The ground truth with a covariance that differs from entry to entry.
+/// Returns the ground truth with a covariance whose entries all differ.
 fn estimates(sequence: &Sequence) -> Vec<Option<PoseEstimate>> {
     let covariance = Matrix6::from_fn(|i, j| if i == j { 0.1 } else { 1e-3 / (1 + i + j) as f64 });
     let estimate =
@@ -50,7 +50,7 @@ fn add(database: &mut Database, sequence: &Sequence) -> Result<IngestReport, DbE
     database.ingest(sequence, &estimates(sequence), &PoseSource::GroundTruth, |_| {})
 }
 
-/// A database of a sequence; the folder is empty but for it.
+/// Makes a database of a sequence; its folder is otherwise empty.
 fn database_of(sequence: &Sequence) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("walk.db");
@@ -69,7 +69,7 @@ fn tamper(path: &Path, sql: &str) {
     connection.execute_batch(&format!("PRAGMA foreign_keys = OFF; {sql}")).unwrap();
 }
 
-/// Checks that a message is one line that names the file and says these parts.
+/// Checks that a message is one line that names the file and contains these parts.
 fn assert_message(error: &DbError, path: &Path, parts: &[&str]) {
     let message = error.to_string();
     assert!(message.starts_with(path.to_str().unwrap()), "{message}");
@@ -79,7 +79,7 @@ fn assert_message(error: &DbError, path: &Path, parts: &[&str]) {
     }
 }
 
-/// Reads everything; what is damaged is an error, and no message has more than a line.
+/// Reads everything; damage must be an error whose message is a single line.
 fn read_all(path: &Path) -> Result<usize, DbError> {
     let database = Database::open(path)?;
     database.sequences()?;

@@ -1,4 +1,4 @@
-//! Files that are not a whole image database of this version.
+//! Files that are not a complete image database of this version.
 
 use super::*;
 
@@ -64,7 +64,7 @@ fn a_cut_off_file_is_noticed_when_it_is_opened() {
     let (folder, path) = database_of(&short_walk(3));
     let bytes = fs::read(&path).unwrap();
     let cut = folder.path().join("cut.db");
-    // SQLite takes a file of one byte for an empty one.
+    // SQLite treats a file of one byte as an empty one.
     for length in [2, 50, 100, 1000, 4095, 4096, 5000, bytes.len() / 2, bytes.len() - 4096, bytes.len() - 1] {
         fs::write(&cut, &bytes[..length]).unwrap();
         for error in [Database::open(&cut), Database::create_or_open(&cut)].map(Result::unwrap_err) {
@@ -81,7 +81,7 @@ fn damage_anywhere_is_an_error_or_harmless_and_never_a_panic() {
     let bytes = fs::read(&path).unwrap();
     let damaged = folder.path().join("damaged.db");
     let mut errors = 0;
-    // A prime step visits headers, cells and overflow pages alike.
+    // A step of prime length reaches headers, cells and overflow pages alike.
     for start in (0..30_000).step_by(127).chain((30_000..bytes.len()).step_by(10_007)) {
         let mut copy = bytes.clone();
         let end = bytes.len().min(start + 16);

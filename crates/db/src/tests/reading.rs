@@ -1,4 +1,4 @@
-//! What went in comes out.
+//! Reading back what was stored.
 
 use std::{sync::Arc, thread};
 

@@ -1,4 +1,4 @@
-//! Readers beside a writer, and where nothing can be written.
+//! Readers beside a writer, and places where nothing can be written.
 
 use std::{
     sync::atomic::{AtomicBool, Ordering},
