@@ -1,4 +1,4 @@
-//! Which effects to add to a model, to replace in it, or to name beside those in it, by tests of the linearised model.
+//! Choice of effects to add to a model, to replace in it, or to name as confusable, by tests of the linearised model.
 
 use rayon::prelude::*;
 use reality_sim_sensor::EffectIndex;
@@ -12,9 +12,9 @@ use crate::{
 const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
 
 impl EffectTests<'_> {
-    /// Sets of effects to try adding: first the supported effect with the largest gain, behind it those that may stand for it,
-    /// as a linearised model cannot tell for sure which of them comes closest where they are large. Where none is supported
-    /// alone, a pair that is.
+    /// Returns the sets of effects to try adding. The first is the supported effect with the largest gain; behind it follow
+    /// its alternatives, because a linearised model cannot tell reliably which of several large effects fits best. If no
+    /// effect is supported alone, returns a pair that is, if any.
     pub(crate) fn next_additions(&self, named: &[EffectIndex]) -> Vec<Vec<EffectIndex>> {
         if self.evidence.views() < LEAST_VIEWS {
             return Vec::new();
@@ -35,8 +35,8 @@ impl EffectTests<'_> {
         std::iter::once(best).chain(alternatives).map(|test| vec![test.effect]).collect()
     }
 
-    /// Two of the others that are supported beside each other, where none is alone: two large effects can hide each other. One
-    /// of them has to stand out alone.
+    /// Finds two effects that are supported beside each other although neither is supported alone: two large effects can
+    /// hide each other. At least one of them must have a low p-value alone.
     fn pair_of(
         &self,
         alone: &[EffectTest],
@@ -66,8 +66,8 @@ impl EffectTests<'_> {
         found.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, two)| two)
     }
 
-    /// Effects not in the model that explain clearly more than a named one in its place, as pairs of the old and the new one,
-    /// the largest gain first.
+    /// Returns pairs of a named effect and an effect outside the model that explains clearly more in its place, the largest
+    /// gain first.
     pub(crate) fn replacements(
         &self,
         all: &[EffectIndex],
@@ -91,7 +91,7 @@ impl EffectTests<'_> {
         gains.into_iter().map(|(_, pair)| pair).collect()
     }
 
-    /// Effects not in the model that explain as much as a named one in its place.
+    /// Returns the effects outside the model that explain as much as a named one in its place.
     pub(crate) fn confusable_with(&self, effect: EffectIndex, named: &[EffectIndex]) -> Vec<EffectIndex> {
         let without: Vec<EffectIndex> = named.iter().copied().filter(|other| *other != effect).collect();
         let others: Vec<EffectIndex> =
@@ -107,7 +107,7 @@ impl EffectTests<'_> {
         others.par_iter().copied().filter(is_confusable).collect()
     }
 
-    /// Whether an effect is supported beside another one: then the two are not one and the same in two shapes.
+    /// Whether an effect is supported beside another one. If so, the two are not the same effect in different parameters.
     fn adds(&self, effect: EffectIndex, other: EffectIndex, without: &[EffectIndex], tested: usize) -> bool {
         let beside: Vec<EffectIndex> = without.iter().copied().chain([other]).collect();
         self.test(effect, &beside, tested).is_some_and(|test| test.is_supported())

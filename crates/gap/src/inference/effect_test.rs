@@ -1,4 +1,4 @@
-//! Tests of single effects: whether one is supported by the frames that are fitted, beside others.
+//! Tests of single effects: whether the training frames support one beside others.
 
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -21,17 +21,18 @@ const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
 #[derive(Debug, Clone)]
 pub(crate) struct EffectTest {
     pub(crate) effect: EffectIndex,
-    /// Corrected for the number of effects tested (Bonferroni).
+    /// P-value, corrected for the number of effects tested (Bonferroni).
     pub(crate) p_value: f64,
-    /// On held-out frames, over the same model without it.
+    /// Gain on held-out frames over the same model without the effect.
     pub(crate) gain: Gain,
-    /// Whether it is large enough to matter.
+    /// Whether the effect is large enough to matter.
     pub(crate) material: bool,
     pub(crate) fit: Fit,
 }
 
 impl EffectTest {
-    /// Whether the effect is supported: large enough to matter, no chance, and with a sure gain on held-out frames.
+    /// Whether the effect is supported: large enough to matter, statistically significant, and with a clear gain on held-out
+    /// frames.
     pub(crate) fn is_supported(&self) -> bool {
         let gains =
             self.gain.value > THRESHOLDS.least_gain && self.gain.score() > THRESHOLDS.least_gain_score;
@@ -39,7 +40,7 @@ impl EffectTest {
     }
 }
 
-/// Tests of effects, seen from where a model is.
+/// Tests of effects at the present model.
 #[derive(Debug)]
 pub(crate) struct EffectTests<'a> {
     pub(crate) evidence: Evidence<'a>,
@@ -47,20 +48,21 @@ pub(crate) struct EffectTests<'a> {
 }
 
 impl EffectTests<'_> {
-    /// Columns of some effects.
+    /// Returns the columns of some effects.
     pub(crate) fn columns_of(&self, effects: &[EffectIndex]) -> Vec<ColumnIndex> {
         let all = ColumnIndex::first(self.columns.len());
         all.filter(|column| effects.contains(&self.columns[column.0].effect)).collect()
     }
 
-    /// The effects that have columns.
+    /// Returns the effects that have columns.
     pub(crate) fn effects(&self) -> Vec<EffectIndex> {
         let mut effects: Vec<EffectIndex> = self.columns.iter().map(|column| column.effect).collect();
         effects.dedup();
         effects
     }
 
-    /// Tests an effect beside others; `tested` effects are tested at the same time. None where the fit is singular.
+    /// Tests an effect beside others; `tested` is the number of effects tested at the same time. None if the fit is
+    /// singular.
     pub(crate) fn test(
         &self,
         effect: EffectIndex,
@@ -80,7 +82,8 @@ impl EffectTests<'_> {
         let gain = held_out.over(&others);
         let p_value = if self.is_possible(&fit, &sizes) {
             let together = Some(self.evidence.p_value(&fit, &sizes));
-            // What keeps its place on the field is predicted as well by the carpet's patches, which stay where they are.
+            // An effect that is fixed to the field is predicted as well by the reflectance of carpet patches, which are
+            // fixed too.
             let keeps_place = effect.effect().covariates().contains(&Covariate::FieldPosition);
             let predicted = (!keeps_place).then(|| self.predicted_p_value(held_out.surely_over(&others)));
             best_of([together, self.alone(&without, &sizes), predicted])
@@ -101,8 +104,8 @@ impl EffectTests<'_> {
         effects.par_iter().filter_map(|&effect| self.test(effect, beside, effects.len())).collect()
     }
 
-    /// Fits effects with no parameter outside its range: one that would be is held at the end of its range, and the others
-    /// are fitted with it there.
+    /// Fits effects with all parameters within their ranges: a parameter that would leave its range is held at the limit
+    /// while the others are refitted.
     pub(crate) fn fit_in_range(&self, effects: &[EffectIndex]) -> Option<Fit> {
         let mut free = self.columns_of(effects);
         let mut held = -&self.evidence.base;
@@ -119,20 +122,22 @@ impl EffectTests<'_> {
         }
     }
 
-    /// How far beyond its range a fitted column is.
+    /// Returns how far a fitted column lies beyond its range; 0 inside.
     fn outside(&self, fit: &Fit, column: ColumnIndex) -> f64 {
         let coordinate = self.coordinate(fit, column);
         let inside = self.columns[column.0].coordinate(self.columns[column.0].value(coordinate));
         if (coordinate - inside).abs() > 1e-9 { coordinate - inside } else { 0.0 }
     }
 
-    /// P-value of a gain on held-out frames that is this many standard deviations above zero. Where an effect has more numbers
-    /// than so few frames can test, or another effect is missing, the scatter of a fit tells little; its predictions do.
+    /// P-value of a gain on held-out frames that is `score` standard deviations above zero. Predictions are more informative
+    /// than the scatter of a fit if an effect has too many parameters for so few frames, or if another effect is missing
+    /// from the model.
     fn predicted_p_value(&self, score: f64) -> f64 {
         if score > 0.0 { two_sided(score, self.evidence.degrees() as f64) } else { 1.0 }
     }
 
-    /// Smallest p-value of one of an effect's sizes alone, corrected for their number: only few of them may be at work.
+    /// Smallest p-value of an effect's sizes tested one at a time, corrected for their number: few of the sizes may differ
+    /// from neutral.
     fn alone(&self, beside: &[EffectIndex], sizes: &[ColumnIndex]) -> Option<f64> {
         if !(2..=THRESHOLDS.most_sizes_tested_alone).contains(&sizes.len()) {
             return None;
@@ -145,7 +150,7 @@ impl EffectTests<'_> {
         Some(sizes.len() as f64 * sizes.iter().map(p_value).fold(1.0, f64::min))
     }
 
-    /// Whether the fitted sizes are possible: a blur cannot be less than none.
+    /// Whether the fitted sizes are physically possible; a blur, for example, cannot be negative.
     fn is_possible(&self, fit: &Fit, sizes: &[ColumnIndex]) -> bool {
         let below = |column: &ColumnIndex| {
             let parameter = self.columns[column.0].parameter();
@@ -162,8 +167,9 @@ impl EffectTests<'_> {
         self.columns[column.0].value(self.coordinate(fit, column))
     }
 
-    /// Whether sizes that would matter are surely no chance, together or one alone: of the five dimensions of a field one may
-    /// be sure and too small, another large and hardly seen; of the two numbers of noise neither can be told from the other.
+    /// Whether sizes large enough to matter are significant, jointly or one at a time. One of a field's five dimensions may
+    /// be significant but too small, and another large but barely observable; the two parameters of the noise may be
+    /// indistinguishable.
     fn is_material(
         &self,
         effect: EffectIndex,
@@ -193,13 +199,13 @@ impl EffectTests<'_> {
             || (sizes.len() <= THRESHOLDS.most_sizes_tested_alone && sizes.iter().any(alone))
     }
 
-    /// Gain of one set of effects over another on the same held-out frames.
+    /// Returns the gain of one set of effects over another on the same held-out frames.
     pub(crate) fn gain(&self, set: &[EffectIndex], over: &[EffectIndex]) -> Option<Gain> {
         let [set, over] = self.held_out([set, over])?;
         Some(set.over(&over))
     }
 
-    /// Gains of two sets on the same held-out frames: short runs of them where an effect changes over time.
+    /// Returns the gains of two sets on the same held-out frames. The folds are short runs if an effect changes over time.
     fn held_out(&self, sets: [&[EffectIndex]; 2]) -> Option<[HeldOutGains; 2]> {
         let over_time = sets.into_iter().any(changes_over_time);
         let kind = if over_time { FoldKind::ShortRuns } else { FoldKind::Stretches };
@@ -211,7 +217,7 @@ impl EffectTests<'_> {
     }
 }
 
-/// Smallest p-value of several tests, corrected for their number (Bonferroni).
+/// Returns the smallest p-value of several tests, corrected for their number (Bonferroni).
 fn best_of(tests: [Option<f64>; 3]) -> f64 {
     let made = tests.iter().flatten();
     made.clone().count() as f64 * made.fold(1.0, |least: f64, p_value| least.min(*p_value))
@@ -222,7 +228,7 @@ fn changes_over_time(effects: &[EffectIndex]) -> bool {
     effects.iter().any(|effect| effect.effect().about().varies_over_time)
 }
 
-/// Where a model is, in the coordinates of the columns.
+/// Returns a model in the coordinates of the columns.
 pub(crate) fn base(columns: &[FittedParameter], model: &reality_sim_sensor::Model) -> DVector<f64> {
     DVector::from_iterator(columns.len(), columns.iter().map(|column| column.coordinate_in(model)))
 }

@@ -14,18 +14,19 @@ use crate::{
     thresholds::Thresholds,
 };
 
-/// A linear system seen from where the model is.
+/// Linear system with the present model as its origin.
 #[derive(Debug)]
 pub(crate) struct Evidence<'a> {
     system: &'a LinearSystem,
-    /// Where the model is, in the coordinates of the fitted parameters' columns.
+    /// Present model in the coordinates of the fitted parameters' columns.
     pub(crate) base: DVector<f64>,
     total: ReducedEquations,
     folds: CrossValidation,
 }
 
 impl<'a> Evidence<'a> {
-    /// `base` is where the model is, in the coordinates of the fitted parameters' columns; the nuisances' are behind them.
+    /// Creates the evidence of a system. `base` is the present model in the coordinates of the fitted parameters' columns;
+    /// the columns of the nuisance parameters follow behind them.
     pub(crate) fn new(system: &'a LinearSystem, base: DVector<f64>) -> Self {
         let total = ReducedEquations::of(system.frames.iter(), system.size, base.len());
         let folds = CrossValidation::new(system, base.len());
@@ -37,8 +38,9 @@ impl<'a> Evidence<'a> {
         self.system.views.len()
     }
 
-    /// Degrees of freedom of the scatter from view to view: fewer than views, as neighbouring ones are taken together
-    /// (Kiefer and Vogelsang 2005: of Bartlett's kernel, about one and a half times views by its width).
+    /// Degrees of freedom of the scatter between views. They are fewer than the views because neighbouring views are
+    /// correlated (Kiefer and Vogelsang 2005: for Bartlett's kernel about 1.5 times the number of views over the kernel's
+    /// width).
     pub(crate) fn degrees(&self) -> usize {
         3 * self.views() / (2 * (LAG + 1))
     }
@@ -47,17 +49,19 @@ impl<'a> Evidence<'a> {
         self.total.fit(free, &self.base)
     }
 
-    /// The others changed by what is held.
+    /// Fits the free columns while the others change by `held`.
     pub(crate) fn fit_beside(&self, free: &[ColumnIndex], held: &DVector<f64>) -> Option<Fit> {
         self.total.fit_beside(free, &self.base, held)
     }
 
-    /// What moving the model to a fit gains on the frames that were fitted, whatever the nuisance parameters are.
+    /// Returns the gain in log-likelihood on the training frames from moving the model to a fit, with the nuisance
+    /// parameters refitted.
     pub(crate) fn improvement(&self, fit: &Fit) -> f64 {
         self.total.gain(&fit.delta)
     }
 
-    /// Gains of a set of free columns over the model as it is, on held-out frames. See [`CrossValidation::gains`].
+    /// Returns the gains of freeing a set of columns over the present model, on held-out frames. See
+    /// [`CrossValidation::gains`].
     pub(crate) fn held_out(
         &self,
         free: &[ColumnIndex],
@@ -68,8 +72,8 @@ impl<'a> Evidence<'a> {
         Some(HeldOutGains::new(gains, &self.fit(free)?.delta, self.base.len()))
     }
 
-    /// Cluster-robust covariances of the free columns: by the scatter of scores from view to view, and by that from place to
-    /// place on the field.
+    /// Returns two cluster-robust covariances of the free columns: one from the scatter of scores between views, one from
+    /// their scatter between cells of the field.
     pub(crate) fn covariances(&self, fit: &Fit) -> [DMatrix<f64>; 2] {
         let scores = |sums: &'a [NormalEquations]| -> Vec<DVector<f64>> {
             let score = |sums: &NormalEquations| self.total.projected(&sums.score(&fit.delta), &fit.free);
@@ -84,10 +88,10 @@ impl<'a> Evidence<'a> {
         ]
     }
 
-    /// P-value of Wald's test that the columns `tested`, a part of the free ones, are where the effect vanishes: the larger
-    /// of those by the two covariances.
+    /// P-value of Wald's test that the effect vanishes in the columns `tested`, a subset of the free ones: the larger of the
+    /// p-values by the two covariances.
     pub(crate) fn p_value(&self, fit: &Fit, tested: &[ColumnIndex]) -> f64 {
-        // Of what cannot be seen there is no scatter either.
+        // Columns that cannot be seen have no scatter either.
         let tested: Vec<ColumnIndex> =
             tested.iter().copied().filter(|&column| fit.prior_share(column) < UNSEEN).collect();
         let tested = tested.as_slice();
@@ -97,7 +101,7 @@ impl<'a> Evidence<'a> {
         let counts = [self.degrees() + 1, self.system.cells.len()];
         let covariances = self.covariances(fit);
         let place = |column: &ColumnIndex| fit.place(*column);
-        // What is not seen on the field has no scatter there: the odometry.
+        // Parameters that are not observed on the field, such as those of the odometry, have no scatter between cells.
         let seen = |covariance: &DMatrix<f64>| {
             let on_field =
                 tested.iter().filter_map(place).map(|i| covariance[(i, i)] / covariances[0][(i, i)]);
@@ -115,8 +119,8 @@ impl<'a> Evidence<'a> {
         hotelling_p_value(&part, &value, count)
     }
 
-    /// Standard deviation of a free column. What is held by its prior alone scatters little from frame to frame, and is as
-    /// unknown as before.
+    /// Standard deviation of a free column. A column held only by its prior scatters little between frames, so the prior's
+    /// variance is added.
     pub(crate) fn sigma(&self, fit: &Fit, column: ColumnIndex) -> f64 {
         let Some(place) = fit.place(column) else { return 0.0 };
         let variances = self.covariances(fit).map(|covariance| covariance[(place, place)]);
@@ -124,7 +128,7 @@ impl<'a> Evidence<'a> {
         (variances.into_iter().fold(0.0, f64::max) + of_prior).sqrt()
     }
 
-    /// Correlation of the errors of two free columns: of their scatter from frame to frame, and of what is not known of them.
+    /// Correlation of the errors of two free columns, from their scatter between views and from their priors.
     pub(crate) fn correlation(&self, fit: &Fit, columns: [ColumnIndex; 2]) -> f64 {
         let [Some(i), Some(j)] = columns.map(|column| fit.place(column)) else { return 0.0 };
         let [scatter, _] = self.covariances(fit);
@@ -143,7 +147,7 @@ mod tests {
 
     type Equations = (DMatrix<f64>, DVector<f64>);
 
-    /// Frames with 20 rows each of two columns; all rows of a frame share an error of their own besides.
+    /// Returns frames with 20 measurements each of two columns; all measurements of a frame also share a common error.
     fn frames(seed: u64, truth: [f64; 2], shared: f64) -> Vec<Equations> {
         let mut noise = Noise(seed);
         let mut frame = || {
@@ -174,7 +178,7 @@ mod tests {
             })
             .collect();
         let below = |p: f64| p_values.iter().filter(|value| **value < p).count() as f64 / 400.0;
-        // Rows taken as independent would make about 60 % of them significant at 5 %.
+        // If the measurements were taken as independent, about 60 % of the tests would be significant at 5 %.
         assert!(below(0.05) < 0.12, "{}", below(0.05));
         assert!(below(0.005) < 0.03, "{}", below(0.005));
         assert!((below(0.5) - 0.5).abs() < 0.12, "{}", below(0.5));
@@ -200,7 +204,7 @@ mod tests {
     #[test]
     fn what_hardly_shows_is_as_unknown_as_before() {
         let mut frames = frames(1, [0.5, 0.0], 0.5);
-        // The second column changes next to nothing.
+        // The second column has almost no influence.
         for (a, g) in &mut frames {
             a.row_mut(1).scale_mut(1e-3);
             a.column_mut(1).scale_mut(1e-3);
@@ -231,7 +235,7 @@ mod tests {
     #[test]
     fn an_effect_held_at_neutral_is_taken_out_of_the_model() {
         let mut frames = frames(3, [0.4, 0.0], 0.0);
-        // The model has the effect already: nothing is left of it.
+        // The model has the effect already, so no residual remains.
         let base = DVector::from_vec(vec![0.4, 0.0]);
         for (a, g) in &mut frames {
             *g -= &*a * &base;

@@ -1,4 +1,4 @@
-//! The gap before and after, on frames that no fit has seen, beside the noise floor.
+//! Gap on held-out frames before and after the selection, beside the noise floor.
 
 use std::collections::BTreeMap;
 
@@ -16,38 +16,38 @@ use crate::{
 
 /// Residuals of all frames under a model.
 pub(crate) struct HeldOutResiduals {
-    /// At the reference poses and nominal values, frame by frame, row by row: what a simulator that is given these poses
-    /// gets wrong.
+    /// Residuals at the reference poses and nominal values, by frame and measurement: the errors of a simulator that is
+    /// given these poses.
     pub(crate) residuals: Vec<Vec<f64>>,
-    /// With poses refitted within their errors.
+    /// Residuals after the poses were refitted within their errors.
     refitted: Vec<Vec<f64>>,
 }
 
-/// Sizes of one channel's residuals, root mean square, in the channel's unit.
+/// Root mean squares of one channel's residuals, in the channel's unit.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ChannelGap {
-    /// With the model as it was given.
+    /// Size with the model as it was given.
     pub before: f64,
-    /// With the extended model.
+    /// Size with the extended model.
     pub after: f64,
-    /// What noise alone makes, from neighbouring measurements in one picture, or neighbouring steps of the odometry.
+    /// Noise floor, from differences of neighbouring measurements in one picture or of successive odometry steps.
     pub floor: f64,
 }
 
 impl ChannelGap {
-    /// Whether what was added changes it.
+    /// Whether the added effects change the size.
     pub fn has_moved(&self) -> bool {
         has_moved(self.before, self.after)
     }
 }
 
-/// Whether a gap is another one than before, not the same up to where lines were found anew.
+/// Whether a gap has changed by more than measuring the lines anew can change it.
 pub(crate) fn has_moved(before: f64, after: f64) -> bool {
     (before - after).abs() > MOVED * before
 }
 
 impl HeldOutResiduals {
-    /// Residuals under a model of what was measured with the extended one.
+    /// Computes residuals under `model` of the measurements that were made with the extended model.
     pub(crate) fn new(
         recording: &Recording<'_>,
         found: &SelectedModel,
@@ -68,7 +68,7 @@ impl HeldOutResiduals {
     }
 }
 
-/// The gap of every channel that was measured, on the judged frames.
+/// Returns the gap of every measured channel on the held-out frames.
 pub(crate) fn gaps(
     found: &SelectedModel,
     before: &HeldOutResiduals,
@@ -79,14 +79,14 @@ pub(crate) fn gaps(
     let mut next = 0;
     for frame in found.split.judged() {
         let rows = &found.measured.frames[frame];
-        // Neighbours are measured in one picture; those of a step are the steps before and after it.
+        // Neighbours are measurements in one picture; for the odometry they are successive steps.
         last.retain(|quantity, _| quantity.is_odometry() && frame == next);
         next = frame + 1;
         for (index, row) in rows.measurements.iter().enumerate() {
             let (b, a) = (before.residuals[frame][index], after.residuals[frame][index]);
             let refitted = after.refitted[frame][index];
             let sigma = found.measured.system.sigmas.get(&row.quantity).copied().unwrap_or(0.0);
-            // What is no measurement of a line or of carpet stays out.
+            // Outliers do not count: they are not measurements of a line or of carpet.
             if !(b.is_finite()
                 && a.is_finite()
                 && refitted.abs() < Thresholds::DEFAULT.inference.outlying_sigmas * sigma)
@@ -107,18 +107,18 @@ pub(crate) fn gaps(
     sums.into_iter().map(|(channel, sums)| (channel, sums.gap())).collect()
 }
 
-/// A gap that differs by less than this part is the same.
+/// Relative change of a gap below which it counts as unchanged.
 const MOVED: f64 = 0.02;
 
-/// Sums of squares of a channel.
+/// Sums of squares of a channel's residuals.
 #[derive(Debug, Clone, Copy, Default)]
 struct Squares {
     before: f64,
     after: f64,
     count: f64,
-    /// Of what the reference poses' errors make.
+    /// Sum of the variances due to the reference poses' errors.
     poses: f64,
-    /// Of half the differences between neighbouring rows.
+    /// Sum of half the squared differences between neighbouring measurements.
     steps: f64,
     pairs: f64,
 }
@@ -127,7 +127,7 @@ impl Squares {
     fn gap(&self) -> ChannelGap {
         let mean = |sum: f64| sum / self.count.max(1.0);
         let (before, after) = (mean(self.before).sqrt(), mean(self.after).sqrt());
-        // Where nothing has a neighbour, what is left is all that is known of the noise.
+        // Without neighbours, the remaining residuals are the only estimate of the noise.
         let noise =
             if self.pairs > 0.0 { (self.steps / self.pairs + mean(self.poses)).sqrt() } else { after };
         ChannelGap { before, after, floor: noise.min(after) }

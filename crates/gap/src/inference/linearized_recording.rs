@@ -1,4 +1,4 @@
-//! A recording measured and linearised at a model, with the normal equations of the frames that are fitted.
+//! Recording measured and linearised at a model, with the normal equations of the training frames.
 
 use reality_sim_sensor::{Effect, Model};
 
@@ -17,19 +17,20 @@ use crate::{
     thresholds::Thresholds,
 };
 
-/// A recording measured where a model expects things, and the model linearised there.
+/// Recording measured where a model expects things, with the model's linearisation there.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearizedRecording {
     pub(crate) model: Model,
     pub(crate) looks: Vec<FrameMeasurements>,
     pub(crate) tolerances: Vec<Nuisance>,
     pub(crate) frames: Vec<LinearizedFrame>,
-    /// Equations of the frames that are fitted.
+    /// Normal equations of the training frames.
     pub(crate) system: LinearSystem,
 }
 
 impl LinearizedRecording {
-    /// Looks for lines as far from where they are expected as `search`, a part of the picture's width.
+    /// Measures and linearises a recording. Lines are searched for up to `search` from where they are expected, as a
+    /// fraction of the picture's width.
     pub(crate) fn new(
         recording: &Recording<'_>,
         model: Model,
@@ -41,7 +42,7 @@ impl LinearizedRecording {
         let looks = measure_frames(recording, &model, search_px)?;
         let tolerances = tolerances(&looks);
         let mut frames = linearise(recording, &looks, &model, columns, &tolerances)?;
-        // A step of the odometry to a held-out frame is not fitted.
+        // An odometry step that ends at a held-out frame is not fitted.
         for frame in split.fitted().filter(|frame| split.is_judged(frame + 1)) {
             frames[frame].leave_out(Channel::Motion);
         }
@@ -53,21 +54,21 @@ impl LinearizedRecording {
         Ok(Self { model, looks, tolerances, frames, system })
     }
 
-    /// Tests of effects, seen from where the model is.
+    /// Returns the effect tests at the present model.
     pub(crate) fn effect_tests<'a>(&'a self, columns: &'a [FittedParameter]) -> EffectTests<'a> {
         EffectTests { evidence: Evidence::new(&self.system, base(columns, &self.model)), columns }
     }
 }
 
-/// Source of linearised recordings: measures everything anew where a model expects it.
+/// Source of linearised recordings, which are measured anew at each model.
 pub(crate) trait Linearize {
     fn linearize(&self, model: Model) -> Result<LinearizedRecording, MeasureError>;
 
-    /// Values at which an effect starts that is not in the model yet.
+    /// Returns the starting values of an effect that is not in the model yet.
     fn starting_values(&self, effect: &'static dyn Effect) -> Vec<f64>;
 }
 
-/// A recording with what is fitted to it: lines are looked for near where a model has them.
+/// Recording with the parameters that are fitted to it. Lines are searched for near where a model expects them.
 pub(crate) struct FittedRecording<'a> {
     pub(crate) recording: &'a Recording<'a>,
     pub(crate) columns: &'a [FittedParameter],

@@ -1,4 +1,4 @@
-//! What the effects that were found explain. No model is exact: what it leaves may be off by a part of that.
+//! Model error, which is taken to be a fraction of what the effects found explain, since no model is exact.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::{
     workflow::selection::SelectedModel,
 };
 
-/// Root mean squares of what changed from the model as given to the extended one, by quantity.
+/// Root mean square of the change from the given model to the extended one, by quantity.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ModelError(BTreeMap<Quantity, f64>);
 
@@ -29,12 +29,12 @@ impl ModelError {
         Self(sums.into_iter().map(|(key, (sum, count))| (key, f64::sqrt(sum / count))).collect())
     }
 
-    /// What a quantity may be off by, in its unit.
+    /// Returns the model error of a quantity, in its unit.
     pub(crate) fn off(&self, quantity: Quantity) -> f64 {
         Thresholds::DEFAULT.inference.model_error * self.0.get(&quantity).copied().unwrap_or(0.0)
     }
 
-    /// What a channel may be off by: the most of its quantities.
+    /// Returns the model error of a channel: the largest of its quantities'.
     pub(crate) fn most_off(&self, channel: Channel) -> f64 {
         let quantities = self.0.keys().filter(|quantity| quantity.channel() == channel);
         quantities.map(|quantity| self.off(*quantity)).fold(0.0, f64::max)

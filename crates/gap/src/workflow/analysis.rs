@@ -1,4 +1,4 @@
-//! From a recording and a model to the report.
+//! Analysis of a recording with a model, up to the report.
 
 use std::collections::BTreeMap;
 
@@ -26,21 +26,21 @@ use crate::{
     workflow::verdict::verdict,
 };
 
-/// What the workflow made of a recording.
+/// Result of the workflow for a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Analysis {
-    /// All that was found.
+    /// Report of everything that was found.
     pub report: Report,
-    /// The extended model.
+    /// Extended model.
     pub model: Model,
 }
 
-/// Runs the whole workflow: finds the effects that a model misses, adds them, and judges the result. `progress` hears
-/// of every stage.
+/// Runs the whole workflow: finds the effects that a model lacks, adds them, and evaluates the result on held-out frames.
+/// `progress` is called at every stage.
 ///
 /// # Errors
 ///
-/// A picture that cannot be read, or a model that is no camera.
+/// Returns an error if a picture cannot be read, or if the model does not describe a valid camera.
 pub fn analyse(
     recording: &Recording<'_>,
     model: &Model,
@@ -57,7 +57,7 @@ pub fn analyse(
     effects.sort_by(|a, b| b.held_out_gain.value.total_cmp(&a.held_out_gain.value));
     let in_model = effect_reports(recording, &tests, &found, (&found.given, model), &after)?;
     let unexplained = if tests.evidence.views() < LEAST_VIEWS {
-        // A pattern of one view may be that of the place.
+        // A pattern of a single view may come from that place.
         Vec::new()
     } else {
         findings(recording, &found, &channels, &ModelError::new(&found, &before, &after))
@@ -84,19 +84,19 @@ pub fn analyse(
     Ok(Analysis { report, model: found.measured.model.clone() })
 }
 
-/// The gap of a model as it is, nothing added: what a simulation that has these effects would get wrong, in noise floors; on
-/// the frames that [`analyse`] judges on.
+/// Returns the gap of a model as it is, in noise floors, on the same held-out frames as [`analyse`]: the error of a
+/// simulation with exactly these effects.
 ///
 /// # Errors
 ///
-/// As of [`analyse`].
+/// Returns the same errors as [`analyse`].
 pub fn gap_of(recording: &Recording<'_>, model: &Model, options: &Options) -> Result<Gap, MeasureError> {
     let found = as_given(recording, model, options)?;
     let judged = HeldOutResiduals::new(recording, &found, model)?;
     Ok(whole_gap(gaps(&found, &judged, &judged)))
 }
 
-/// A model less one effect.
+/// Returns a model without one effect.
 fn without(model: &Model, effect: EffectIndex) -> Model {
     let id = effect.effect().id();
     let mut model = model.clone();
@@ -104,7 +104,8 @@ fn without(model: &Model, effect: EffectIndex) -> Model {
     model
 }
 
-/// Part of each channel's distance to the noise floor that is closed, where there is one worth closing.
+/// Returns the fraction of each channel's distance to the noise floor that is closed, for channels with a distance worth
+/// closing.
 fn closed(gaps: &BTreeMap<Channel, ChannelGap>) -> BTreeMap<Channel, f64> {
     let part = |gap: &ChannelGap| {
         let open = gap.before - gap.floor;
@@ -114,7 +115,7 @@ fn closed(gaps: &BTreeMap<Channel, ChannelGap>) -> BTreeMap<Channel, f64> {
     parts.filter(|(_, part)| *part > 0.1).collect()
 }
 
-/// All channels together, each in units of its noise floor.
+/// Combines all channels, each in units of its noise floor.
 fn whole_gap(channels: BTreeMap<Channel, ChannelGap>) -> Gap {
     let count = channels.len().max(1) as f64;
     let mean = |of: fn(&ChannelGap) -> f64| {
@@ -130,7 +131,7 @@ fn poses(recording: &Recording<'_>, found: &SelectedModel) -> PosesReport {
     PosesReport { source: recording.source, rotation_sigma_rad: [a, b, c], position_sigma_m: [d, e, f] }
 }
 
-/// Effects of the model, each with what would be closed less without it.
+/// Reports the effects of the model, each with the part of the gap that would stay open without it.
 fn effect_reports(
     recording: &Recording<'_>,
     tests: &EffectTests<'_>,
@@ -175,12 +176,12 @@ fn effect_report(
     }
 }
 
-/// Estimates of an effect's parameters, by their names.
+/// Returns estimates of an effect's parameters by their names.
 fn estimates(tests: &EffectTests<'_>, case: &EffectTest) -> BTreeMap<String, Estimate> {
     let estimate = |index: ColumnIndex| {
         let column = &tests.columns[index.0];
         let sigma = tests.evidence.sigma(&case.fit, index);
-        // As in the model's file: the last fit's step from there is less than matters.
+        // The value is the one in the model's file; the last fit moves from there by less than matters.
         let coordinate = tests.evidence.base[index.0];
         let (value, sigma) = (column.value(coordinate), column.value_sigma(coordinate, sigma));
         let parameter = column.parameter();
@@ -189,7 +190,7 @@ fn estimates(tests: &EffectTests<'_>, case: &EffectTest) -> BTreeMap<String, Est
     tests.columns_of(&[case.effect]).into_iter().map(estimate).collect()
 }
 
-/// Correlations of these estimates' errors, each pair of parameters once, in their order.
+/// Returns correlations of these estimates' errors; each pair of parameters appears once, in their order.
 fn correlations(tests: &EffectTests<'_>, case: &EffectTest) -> BTreeMap<String, BTreeMap<String, f64>> {
     let columns = tests.columns_of(&[case.effect]);
     let name = |column: ColumnIndex| tests.columns[column.0].parameter().name.to_owned();
@@ -203,7 +204,7 @@ fn correlations(tests: &EffectTests<'_>, case: &EffectTest) -> BTreeMap<String, 
     correlations
 }
 
-/// Effects that are not in the model: with their limits, or unseen.
+/// Reports the effects outside the model: those with a detection limit, and those that are unobservable.
 fn others(
     recording: &Recording<'_>,
     tests: &EffectTests<'_>,
@@ -230,7 +231,7 @@ fn others(
     (not_found, unobservable)
 }
 
-/// What no effect explains of the fitted frames, with nothing but poses and nuisance parameters fitted.
+/// Returns what no effect explains in the training frames, with only poses and nuisance parameters fitted.
 fn findings(
     recording: &Recording<'_>,
     found: &SelectedModel,
@@ -254,7 +255,7 @@ fn findings(
     DETECTORS.iter().flat_map(|detector| detector.detect(&fit)).collect()
 }
 
-/// The fit of the nuisance parameters; the model has settled, and effects stay where they are.
+/// Fits the nuisance parameters. The model has settled, so the effects keep their values.
 fn settled(found: &SelectedModel) -> DVector<f64> {
     let tests = found.effect_tests();
     let mut delta = tests.evidence.fit(&tests.columns_of(&found.all())).map_or_else(
@@ -287,7 +288,7 @@ fn frame_residuals<'a>(
         .collect()
 }
 
-/// The judged frame with the largest gap before.
+/// Returns the held-out frame with the largest gap before the selection.
 fn shown_frame(recording: &Recording<'_>, found: &SelectedModel, before: &HeldOutResiduals) -> usize {
     let size = |frame: usize| -> f64 {
         let rows = found.measured.frames[frame].measurements.iter().zip(&before.residuals[frame]);

@@ -1,5 +1,5 @@
-//! Where lines are, if they are not where the model has them: there, or where one of its effects would put them. This finds
-//! lines and names nothing: what is found is compared with all effects.
+//! Coarse alignment: searches for a model whose expected lines are near the real ones, by trying the values of one effect
+//! after another. It only makes lines measurable and supports no effect: its result is afterwards compared with all effects.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,8 @@ use crate::{
 
 const THRESHOLDS: WorkflowThresholds = Thresholds::DEFAULT.workflow;
 
-/// The model that has lines where they are; none where the one that is given has.
+/// Returns a model whose lines are where the pictures show them. None if the given model needs no alignment or no tried
+/// model is better.
 pub(crate) fn placing(
     recording: &Recording<'_>,
     model: &Model,
@@ -39,7 +40,7 @@ pub(crate) fn placing(
         let tries = pictures.tries(better.as_ref().unwrap_or(model), columns);
         let placed: Vec<(Placed, Model)> =
             tries.into_par_iter().filter_map(|model| Some((pictures.placed(&model)?, model))).collect();
-        // A piece that is found where it was missed counts twice.
+        // A piece found instead of missed changes the score by two.
         let least = best.score() + 2.0 * THRESHOLDS.alignment_gain * wanting;
         let found = placed.into_iter().max_by(|a, b| a.0.score().total_cmp(&b.0.score()));
         let Some((found, model)) = found.filter(|(found, _)| found.score() >= least) else { break };
@@ -48,7 +49,7 @@ pub(crate) fn placing(
     Ok(better)
 }
 
-/// Pieces of line, found and expected, by the field's curves.
+/// Numbers of line pieces found and expected, for each curve of the field.
 #[derive(Debug, Clone, Default)]
 struct Placed(BTreeMap<usize, [f64; 2]>);
 
@@ -57,13 +58,13 @@ impl Placed {
         self.0.values().fold([0.0; 2], |sum, curve| [sum[0] + curve[0], sum[1] + curve[1]])
     }
 
-    /// Found less missed: places from which no line is seen are no good ones.
+    /// Returns the number of pieces found minus the number missed. Poses from which no line is visible therefore score low.
     fn score(&self) -> f64 {
         let [found, expected] = self.sums();
         2.0 * found - expected
     }
 
-    /// Pieces that should be found and are not: of all lines where too few are found, else of those that are lost.
+    /// Returns the number of missing pieces: of all lines if too few pieces are found, else only of curves that are lost.
     fn wanting(&self) -> f64 {
         let [found, expected] = self.sums();
         if found < THRESHOLDS.alignment_found * expected {
@@ -76,15 +77,15 @@ impl Placed {
     }
 }
 
-/// Some pictures of a recording.
+/// Sample of a recording's pictures.
 struct Pictures<'a> {
     recording: &'a Recording<'a>,
-    /// When, and what.
+    /// Time in seconds and luma of each picture.
     pictures: Vec<(f64, Texture)>,
 }
 
 impl<'a> Pictures<'a> {
-    /// Of those that are fitted: no others are looked at before the end.
+    /// Samples the training frames; held-out frames are not used before the end.
     fn of(recording: &'a Recording<'a>, split: &HeldOutSplit) -> Result<Self, MeasureError> {
         let every = split.fitted().count().div_ceil(THRESHOLDS.alignment_pictures).max(1);
         let picture = |index: usize| {
@@ -95,7 +96,7 @@ impl<'a> Pictures<'a> {
         Ok(Self { recording, pictures })
     }
 
-    /// The model with other values of one parameter, or of both of an effect that has two.
+    /// Returns variants of the model with other values of one parameter, or of both parameters of an effect that has two.
     fn tries(&self, model: &Model, columns: &[FittedParameter]) -> Vec<Model> {
         let mut movers: BTreeMap<EffectIndex, Vec<&FittedParameter>> = BTreeMap::new();
         for column in columns.iter().filter(|column| column.is_size()) {
@@ -132,7 +133,8 @@ impl<'a> Pictures<'a> {
         with_value(model, effect, &values, column.parameter, value)
     }
 
-    /// None where there is no such lens, or no such field: an end of one range may not go with the rest.
+    /// Returns the camera chain of a model. None if the lens or the field is impossible: the limit of one parameter's range
+    /// may not be compatible with the other parameters.
     fn chain(&self, model: &Model) -> Option<Chain> {
         Chain::new(&self.recording.sequence.setup, &self.recording.sequence.field, model).ok()
     }
@@ -153,14 +155,14 @@ impl<'a> Pictures<'a> {
         Some(placed)
     }
 
-    /// How far apart two models have the same point of a line, at most.
+    /// Returns the largest distance, in pixels, between the projections of the same line point by two models.
     fn farthest_px(&self, model: &Model, other: &Model) -> Option<f64> {
         let chains = [self.chain(model)?, self.chain(other)?];
         let mut farthest_px: f64 = 0.0;
         for (time_s, _) in &self.pictures {
             let view = |chain| FrameCamera::new(chain, &self.recording.trajectory, *time_s);
             let [one, other] = chains.each_ref().map(view);
-            // A line's point is that of the same curve, however long the model has it.
+            // Points correspond by their fraction of the curve, whatever its length in each model.
             for (curve, same) in one.curves.iter().zip(&other.curves) {
                 for fraction in [0.0, 0.25, 0.5, 0.75, 1.0] {
                     let pixels =

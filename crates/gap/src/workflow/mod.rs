@@ -1,4 +1,4 @@
-//! From a recording and a model to the report: coarse alignment, the selection of effects, and the analysis of the result.
+//! Workflow from a recording and a model to the report: coarse alignment, selection of effects, and analysis of the result.
 
 pub(crate) mod analysis;
 pub(crate) mod coarse_alignment;

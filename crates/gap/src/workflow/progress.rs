@@ -1,6 +1,6 @@
-//! What the workflow is doing, for who waits.
+//! Progress of the workflow, for display while it runs.
 
-/// What the workflow is doing.
+/// Stage of the workflow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Progress {
     /// Measuring lines and carpet in the pictures.
@@ -9,6 +9,6 @@ pub enum Progress {
     Testing,
     /// Fitting all effects of the extended model together.
     Fitting,
-    /// Judging on frames that no fit has seen.
+    /// Evaluating the model on held-out frames.
     Judging,
 }

@@ -1,4 +1,4 @@
-//! The selection of effects: one after the other is added to the model, until no more is supported.
+//! Selection of effects: adds one after another to the model until no further one is supported.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ use crate::{
 const SEARCH_FIRST: f64 = Thresholds::DEFAULT.inference.search_first;
 const SEARCH_AGAIN: f64 = Thresholds::DEFAULT.inference.search_again;
 
-/// How a recording is analysed.
+/// Options of an analysis.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
     /// Seed that chooses the frames that are held out.
@@ -33,41 +33,41 @@ pub struct Options {
 pub(crate) struct SelectedModel {
     pub(crate) columns: Vec<FittedParameter>,
     pub(crate) split: HeldOutSplit,
-    /// The recording at the final model.
+    /// Recording measured and linearised at the final model.
     pub(crate) measured: LinearizedRecording,
     /// Effects that the model had from the start.
     pub(crate) given: Vec<EffectIndex>,
-    /// Effects that were added, in the order of adding.
+    /// Effects that were added, in the order in which they were added.
     pub(crate) named: Vec<EffectIndex>,
-    /// P-values of named effects when they were not yet in the model.
+    /// P-values of named effects before they were added to the model.
     p_values: BTreeMap<EffectIndex, f64>,
-    /// Pairs of a named effect and another that leaves as little in its place.
+    /// Pairs of a named effect and another one that fits as well in its place.
     confusable: Vec<(EffectIndex, EffectIndex)>,
 }
 
 impl SelectedModel {
-    /// All effects of the extended model.
+    /// Returns all effects of the extended model.
     pub(crate) fn all(&self) -> Vec<EffectIndex> {
         self.given.iter().chain(&self.named).copied().collect()
     }
 
-    /// Tests of effects at the final model.
+    /// Returns the effect tests at the final model.
     pub(crate) fn effect_tests(&self) -> EffectTests<'_> {
         self.measured.effect_tests(&self.columns)
     }
 
-    /// P-value of a named effect: the smaller of those before and after it was added.
+    /// P-value of a named effect: the smaller one of those before and after it was added.
     pub(crate) fn p_value(&self, test: &EffectTest) -> f64 {
         self.p_values.get(&test.effect).copied().unwrap_or(1.0).min(test.p_value)
     }
 
-    /// Effects not in the model that a named one is confusable with.
+    /// Returns the effects outside the model that a named one is confusable with.
     pub(crate) fn confusable_with(&self, effect: EffectIndex) -> Vec<EffectIndex> {
         self.confusable.iter().filter(|(of, _)| *of == effect).map(|(_, other)| *other).collect()
     }
 }
 
-/// Selects the effects that a recording supports beside those of a model. `progress` is told of every stage.
+/// Selects the effects that a recording supports in addition to those of a model. `progress` is called at every stage.
 pub(crate) fn find(
     recording: &Recording<'_>,
     model: &Model,
@@ -86,12 +86,12 @@ pub(crate) fn find(
     if !given.is_empty() {
         measured = search.settle(measured, &given)?;
     }
-    // Lines that are not where the model has them are looked for elsewhere; all is compared from there.
+    // If lines are not where the model expects them, they are searched for elsewhere, and everything is compared from there.
     let as_given = measured.model.clone();
     if let Some(placed) = placing(recording, &as_given, &columns, &split)? {
         measured = LinearizedRecording::new(recording, placed, &columns, &split, SEARCH_FIRST)?;
     }
-    // Sets that were tried: swapping must not go round in circles.
+    // Sets that were tried, so that swapping does not go round in circles.
     let mut tried: Vec<Vec<EffectIndex>> = vec![Vec::new()];
     let mut ties = Vec::new();
     let mut p_values = BTreeMap::new();
@@ -110,7 +110,7 @@ pub(crate) fn find(
         let mut closest = search.closest(&measured, sets)?.into_iter();
         let Some((set, settled)) = closest.next() else { break };
         tried.push(sorted(&set));
-        // What looked better may not be, now that it has settled.
+        // A set that looked better before it settled may not be better afterwards.
         if swaps && search.left(&settled, &measured.system) > search.left(&measured, &measured.system) {
             continue;
         }
@@ -129,12 +129,12 @@ pub(crate) fn find(
     Ok(SelectedModel { columns, split, measured, given, named, p_values, confusable })
 }
 
-/// The effects of a model that the library has.
+/// Returns the effects of a model that are in the library.
 fn effects_of(model: &Model) -> Vec<EffectIndex> {
     model.effects.iter().filter_map(|used| EffectIndex::find(used.effect.id())).collect()
 }
 
-/// A recording measured with a model as it is.
+/// Measures a recording with a model as it is, without a selection.
 pub(crate) fn as_given(
     recording: &Recording<'_>,
     model: &Model,
@@ -148,7 +148,7 @@ pub(crate) fn as_given(
     Ok(SelectedModel { columns, split, measured, given, named, p_values, confusable })
 }
 
-/// The one effect of a set that another set has something else for.
+/// Returns an effect of the first set that the other set lacks, with the one that the other set has instead.
 fn differing(set: &[EffectIndex], other: &[EffectIndex]) -> Option<(EffectIndex, EffectIndex)> {
     let of = set.iter().find(|effect| !other.contains(effect))?;
     let instead = other.iter().find(|effect| !set.contains(effect))?;

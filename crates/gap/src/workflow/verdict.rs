@@ -1,12 +1,12 @@
-//! The verdict, from what was found.
+//! Verdict on a recording, from what was found.
 
 use crate::{
     diagnostics::finding::Finding,
     report::data::{EffectReport, Unobservable, Verdict},
 };
 
-/// Returns the answer in one word: what is left unexplained outweighs what was named, and a name that might be another one
-/// outweighs one that is sure.
+/// Returns the answer in one word. Unexplained findings outweigh supported effects, and a confusable effect outweighs one
+/// that is certain.
 pub(crate) fn verdict(
     effects: &[EffectReport],
     unexplained: &[Finding],

@@ -1,4 +1,4 @@
-//! What `EffectTests` decides.
+//! Tests of the decisions of `EffectTests`.
 
 use reality_sim_sensor::{EffectIndex, Model};
 
@@ -8,7 +8,7 @@ use crate::inference::{
     evidence::Evidence,
 };
 
-/// Runs a check on the tests of a world at the model without effects.
+/// Runs a check on the effect tests of a simulated recording, at the model without effects.
 fn with_tests<T>(world: &World, check: impl FnOnce(&EffectTests<'_>) -> T) -> T {
     let model = Model::default();
     let frames = world.frames(&model);
@@ -24,9 +24,9 @@ fn test_of(world: &World, id: &str) -> EffectTest {
 const FIRST: Signature = |_, numbers| numbers[0];
 const SECOND: Signature = |_, numbers| numbers[1];
 const THIRD: Signature = |_, numbers| numbers[2];
-/// Nearly what [`FIRST`] is.
+/// Signature almost equal to [`FIRST`].
 const LIKE_FIRST: Signature = |_, numbers| numbers[0] + 0.05 * numbers[3];
-/// Half of what [`FIRST`] is, and half something else.
+/// Signature partly correlated with [`FIRST`].
 const PARTLY_FIRST: Signature = |_, numbers| 0.8 * numbers[0] + 0.6 * numbers[3];
 
 #[test]
@@ -86,8 +86,8 @@ fn an_effect_that_leaves_the_best_one_nothing_to_add_is_an_alternative() {
     assert_eq!(additions(&world, &[]), [[effect("mount_pitch")]]);
 }
 
-/// Strong in stretches of the recording that take turns, with one sign and the other: what one stretch shows of an effect, the
-/// next one contradicts while the other effect is missing.
+/// Signature that agrees with [`HIDES`] in one stretch of the recording and opposes it in the next. What one stretch shows
+/// of an effect, the next contradicts while the other effect is missing from the model.
 const TURNS: Signature = |_, numbers| numbers[0];
 const HIDES: Signature = |frame, numbers| {
     let sign = if frame / 10 % 2 == 0 { 1.0 } else { -1.0 };

@@ -1,4 +1,4 @@
-//! The decisions about effects, on made-up linear systems.
+//! Tests of the decisions about effects, on simulated linear systems.
 
 mod effect_tests;
 mod model_search;
@@ -18,21 +18,21 @@ use crate::{
     testing::{Noise, measurement},
 };
 
-/// Frames of a made-up recording, each a view of its own.
+/// Number of frames of a simulated recording; each frame is a view of its own.
 const FRAMES: usize = 60;
-/// Measurements in a frame.
+/// Number of measurements in a frame.
 const ROWS: usize = 20;
 
-/// How each column changes a measurement in a frame, from independent numbers of that measurement.
+/// Derivative of a measurement by a column, from the frame and from independent random numbers of that measurement.
 type Signature = fn(frame: usize, numbers: &[f64]) -> f64;
 
-/// A made-up world: measurements of one quantity that depend on columns of real effects in a made-up way. Sizes are in
-/// multiples of what is material.
+/// Simulated recording: measurements of one quantity that depend on columns of real effects by invented signatures. Sizes
+/// are in multiples of the material size.
 #[derive(Clone)]
 struct World {
     columns: Vec<FittedParameter>,
     signatures: Vec<Signature>,
-    /// Of each column.
+    /// True size of each column.
     truth: Vec<f64>,
     seed: u64,
 }
@@ -42,7 +42,8 @@ fn effect(id: &str) -> EffectIndex {
 }
 
 impl World {
-    /// Every effect is given by its id, the signature of its first size, and the true size of that.
+    /// Creates a recording. Each effect is given by its id, the signature of its first size, and the true value of that
+    /// size.
     fn new(effects: &[(&str, Signature, f64)]) -> Self {
         let column = |id: &str| {
             let effect = effect(id);
@@ -59,14 +60,15 @@ impl World {
         }
     }
 
-    /// The fitted number of a column that is this many times what is material.
+    /// Returns the coordinate of a column whose size is `size` times the material size.
     fn coordinate(&self, column: usize, size: f64) -> f64 {
         let parameter = self.columns[column].parameter();
         let value = self.columns[column].coordinate(parameter.neutral + size.abs() * parameter.material);
         value * size.signum()
     }
 
-    /// What a model leaves of the measurements, linearised. A column's change with a material size is its signature.
+    /// Returns the residuals of a model with its linearisation. A change of a column by its material size changes the
+    /// measurements by its signature.
     fn frames(&self, model: &Model) -> Vec<LinearizedFrame> {
         let mut noise = Noise(self.seed);
         let units: Vec<f64> = (0..self.columns.len()).map(|column| self.coordinate(column, 1.0)).collect();
@@ -114,7 +116,7 @@ impl World {
         LinearSystem::new(frames, self.columns.len(), ReferenceKind::Whole, &views)
     }
 
-    /// Where a model is, in the columns' coordinates.
+    /// Returns a model in the columns' coordinates.
     fn base(&self, model: &Model) -> DVector<f64> {
         crate::inference::effect_test::base(&self.columns, model)
     }

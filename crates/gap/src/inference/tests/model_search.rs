@@ -1,4 +1,4 @@
-//! What `ModelSearch` decides.
+//! Tests of the decisions of `ModelSearch`.
 
 use reality_sim_sensor::{Effect, EffectIndex, Model};
 
@@ -29,7 +29,7 @@ fn split() -> HeldOutSplit {
     HeldOutSplit::new(FRAMES, 0)
 }
 
-/// Runs a check on a search in a world, from the model with some effects, settled.
+/// Runs a check on a search in a simulated recording, starting from a settled model with some effects.
 fn with_search<T>(
     world: &World,
     given: &[EffectIndex],
