@@ -1,4 +1,4 @@
-//! What is in the window: the bars, the panel that is shown, and what is being opened.
+//! Content of the window: the bars, the current panel, and what is being opened.
 
 use std::{
     fmt,
@@ -27,12 +27,12 @@ use crate::{
     walk::WalkPanel,
 };
 
-/// The whole window.
+/// Content of the window.
 pub struct ViewerApp {
     settings: Settings,
     devices: Vec<Device>,
     demonstration: Option<PathBuf>,
-    /// What draws the window, in words.
+    /// Name of the graphics adapter that draws the window.
     adapter: String,
     frame_times: FrameTimes,
     opening: Option<Opening>,
@@ -40,9 +40,9 @@ pub struct ViewerApp {
     screenshot: Screenshot,
     problems: Problems,
     notice: String,
-    /// What Walk and Drive show.
+    /// Path shown in Walk and Drive.
     shown_path: Option<PathBuf>,
-    /// What Gap shows.
+    /// Path shown in Gap.
     report_path: Option<PathBuf>,
     help_is_open: bool,
     shown: PanelKind,
@@ -51,7 +51,7 @@ pub struct ViewerApp {
     gap: Option<GapPanel>,
 }
 
-/// Something on its way in.
+/// Path that is being opened in the background.
 struct Opening {
     purpose: Purpose,
     path: PathBuf,
@@ -65,7 +65,7 @@ impl fmt::Debug for ViewerApp {
 }
 
 impl ViewerApp {
-    /// A window that opens something first.
+    /// Makes the window's content, which first opens the path in the options.
     pub fn new(cc: &CreationContext<'_>, options: ViewerOptions) -> Self {
         let settings = Settings::load(cc.storage);
         cc.egui_ctx.set_theme(settings.theme);
@@ -123,7 +123,7 @@ impl ViewerApp {
     }
 
     fn show_opened(&mut self, ctx: &Context, opened: Opened, path: &Path) {
-        // The demonstration has a place of its own in the list.
+        // The demonstration has its own entry in the list.
         if self.demonstration.as_deref() != Some(path) {
             self.settings.remember(path);
         }
@@ -137,7 +137,7 @@ impl ViewerApp {
             }
             Opened::Database(archive) => {
                 self.leave_drive();
-                // What Walk shows is another recording than this one: it goes.
+                // Walk shows a different recording, which is closed.
                 self.walk = None;
                 self.drive = Some(DrivePanel::of_database(archive));
                 (self.shown_path, self.shown) = (shown_path, PanelKind::Drive);
@@ -152,7 +152,7 @@ impl ViewerApp {
 
     fn leave_drive(&mut self) {
         if let Some(left) = self.drive.take() {
-            // It waits for its threads: the window does not.
+            // Dropping waits for its threads, so the window leaves that to another thread.
             std::thread::spawn(move || drop(left));
         }
     }
@@ -217,7 +217,7 @@ impl ViewerApp {
             ui.horizontal(|ui| {
                 if let Some(opening) = &self.opening {
                     opening.task.ui(ui);
-                    // Opening leaves nothing half done: nobody has to wait until it notices.
+                    // Opening leaves nothing half done, so the window need not wait for a cancelled one to end.
                     if opening.task.is_cancelled() {
                         self.opening = None;
                     }
@@ -286,7 +286,7 @@ impl eframe::App for ViewerApp {
     }
 }
 
-/// Says that what is held over the window can be dropped.
+/// Shows that a dragged file can be dropped on the window.
 fn drop_hint(ctx: &Context) {
     if ctx.input(|input| input.raw.hovered_files.is_empty()) {
         return;
@@ -299,7 +299,7 @@ fn drop_hint(ctx: &Context) {
     painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, font, egui::Color32::WHITE);
 }
 
-/// What draws the window, in words.
+/// Returns the name of the graphics adapter that draws the window.
 fn adapter(cc: &CreationContext<'_>) -> String {
     let Some(state) = &cc.wgpu_render_state else { return String::new() };
     let info = state.adapter.get_info();
@@ -320,7 +320,7 @@ mod tests {
 
     use super::*;
 
-    /// A window, and the other end of an opening that lasts until something is sent there.
+    /// Returns a window that is opening something, and the sender whose message ends the opening.
     fn with_endless_opening() -> (Harness<'static, ViewerApp>, mpsc::Sender<()>) {
         let options =
             ViewerOptions { open: "/no/such/walk".into(), demonstration: None, devices: Vec::new() };

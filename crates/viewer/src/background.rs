@@ -1,4 +1,4 @@
-//! Work that takes longer than a frame: in a thread of its own, with progress and a way to stop it.
+//! Tasks that take longer than a frame: each runs in its own thread, reports its progress and can be cancelled.
 
 use std::{
     sync::{
@@ -11,31 +11,31 @@ use std::{
 
 use eframe::egui;
 
-/// What a piece of work tells the window while it goes on, and what the window tells it.
+/// State shared between a task and the window: the task's progress and the window's request to stop.
 pub struct Progress {
     done: AtomicUsize,
     total: AtomicUsize,
-    /// The part of the work under way, where it has parts.
+    /// Current phase of the task, if it has phases.
     phase: Mutex<Option<&'static str>>,
     is_cancelled: AtomicBool,
     ctx: egui::Context,
 }
 
 impl Progress {
-    /// Another part of the work begins: it is shown in place of the title. How long it takes is not known yet.
+    /// Begins another phase, which is shown in place of the title. Its duration is unknown at first.
     pub fn begin(&self, phase: &'static str) {
         *self.phase.lock().unwrap_or_else(PoisonError::into_inner) = Some(phase);
         self.set(0, 0);
     }
 
-    /// So many of so many steps are done.
+    /// Sets the number of steps done and their total.
     pub fn set(&self, done: usize, total: usize) {
         self.done.store(done, Ordering::Relaxed);
         self.total.store(total, Ordering::Relaxed);
         self.ctx.request_repaint();
     }
 
-    /// Whether the work should stop as soon as it can.
+    /// Whether the task should stop as soon as it can.
     pub fn is_cancelled(&self) -> bool {
         self.is_cancelled.load(Ordering::Relaxed)
     }
@@ -44,24 +44,24 @@ impl Progress {
         *self.phase.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The share that is done; `None` while that is not known.
+    /// Returns the fraction done; `None` while it is unknown.
     fn share(&self) -> Option<f32> {
         let total = self.total.load(Ordering::Relaxed);
         (total > 0).then(|| self.done.load(Ordering::Relaxed) as f32 / total as f32)
     }
 }
 
-/// How a piece of work ended.
+/// Result of a task.
 pub enum Outcome<T> {
     Done(T),
-    /// Why not, in words.
+    /// Reason of the failure, in words.
     Failed(String),
     Cancelled,
 }
 
-/// A piece of work under way. Dropping it asks it to stop.
+/// Task running in the background. Dropping it asks it to stop.
 pub struct Task<T> {
-    /// What is being done, for the window.
+    /// Description of the task, for the window.
     pub title: String,
     progress: Arc<Progress>,
     result: mpsc::Receiver<Result<T, String>>,
@@ -69,7 +69,7 @@ pub struct Task<T> {
 }
 
 impl<T: Send + 'static> Task<T> {
-    /// Starts the work.
+    /// Starts a task.
     pub fn spawn(
         ctx: &egui::Context,
         title: impl Into<String>,
@@ -85,16 +85,16 @@ impl<T: Send + 'static> Task<T> {
         let (sender, result) = mpsc::channel();
         let (its_progress, ctx) = (progress.clone(), ctx.clone());
         let thread = thread::spawn(move || {
-            // Dropped in reverse order, after a panic too: when the window wakes up, the channel is closed.
+            // Locals are dropped in reverse order, after a panic too: when the window wakes up, the channel is closed.
             let _wake = Wake(ctx);
             let sender = sender;
-            // Nobody listens any more once the task was dropped.
+            // The receiver is gone once the task has been dropped.
             let _ = sender.send(work(&its_progress));
         });
         Self { title: title.into(), progress, result, thread: Some(thread) }
     }
 
-    /// The end of it, once.
+    /// Returns the task's outcome, once.
     pub fn poll(&self) -> Option<Outcome<T>> {
         let outcome = match self.result.try_recv() {
             Ok(_) if self.progress.is_cancelled() => Outcome::Cancelled,
@@ -109,19 +109,19 @@ impl<T: Send + 'static> Task<T> {
         Some(outcome)
     }
 
-    /// Whether it was asked to stop.
+    /// Whether the task was asked to stop.
     pub fn is_cancelled(&self) -> bool {
         self.progress.is_cancelled()
     }
 
-    /// Asks it to stop, and waits until it has.
+    /// Asks the task to stop, and waits until it has stopped.
     pub fn finish(mut self) {
         self.progress.is_cancelled.store(true, Ordering::Relaxed);
-        // A panic is told by `poll`, and here nobody asks any more.
+        // `poll` reports a panic, and it is no longer called here.
         self.thread.take().map(thread::JoinHandle::join);
     }
 
-    /// What is being done, how much of it is, and a button that stops it.
+    /// Shows the description, the progress, and a button that cancels the task.
     pub fn ui(&self, ui: &mut egui::Ui) {
         ui.horizontal(|ui| {
             ui.label(self.progress.phase().unwrap_or(&self.title));
@@ -148,11 +148,11 @@ impl<T> Drop for Task<T> {
     }
 }
 
-/// A thread that is waited for when this is dropped.
+/// Thread that is joined when this is dropped.
 pub struct Joined(Option<thread::JoinHandle<()>>);
 
 impl Joined {
-    /// That of a thread.
+    /// Joins this thread when dropped.
     pub fn new(thread: thread::JoinHandle<()>) -> Self {
         Self(Some(thread))
     }
@@ -160,12 +160,12 @@ impl Joined {
 
 impl Drop for Joined {
     fn drop(&mut self) {
-        // That it panicked shows in what it no longer sends.
+        // A panic shows in the messages that are no longer sent.
         self.0.take().map(thread::JoinHandle::join);
     }
 }
 
-/// Asks for a repaint when it is dropped.
+/// Requests a repaint when it is dropped.
 struct Wake(egui::Context);
 
 impl Drop for Wake {
@@ -180,7 +180,7 @@ mod tests {
 
     use super::*;
 
-    /// Waits for the end of a task.
+    /// Waits until a task ends.
     fn end_of<T: Send + 'static>(task: &Task<T>) -> Outcome<T> {
         let started = Instant::now();
         loop {
@@ -192,7 +192,7 @@ mod tests {
         }
     }
 
-    /// A context that counts how often it is asked for a repaint.
+    /// Returns a context that counts its repaint requests.
     fn counting_context() -> (egui::Context, Arc<AtomicUsize>) {
         let (ctx, repaints) = (egui::Context::default(), Arc::new(AtomicUsize::new(0)));
         let count = repaints.clone();

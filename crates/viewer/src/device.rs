@@ -1,20 +1,20 @@
-//! Where filter and pictures can be computed, as the program offers it.
+//! Devices that can run the filter and draw pictures, as the program offers them.
 
 use std::{fmt, sync::Arc};
 
 use eframe::egui::{ComboBox, Response, Ui};
 use reality_sim_core::backend::{Backend, BackendError};
 
-/// A device to choose.
+/// Device that the user can choose.
 #[derive(Clone)]
 pub struct Device {
-    /// What it is called in the list.
+    /// Name in the list.
     pub name: String,
-    /// Opens it; called by a thread that may wait.
+    /// Opens the device; called by a thread that may wait.
     pub open: Arc<dyn Fn() -> Result<Arc<dyn Backend>, BackendError> + Send + Sync>,
 }
 
-/// Devices of one name are one.
+/// Compares devices by name.
 impl PartialEq for Device {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name
@@ -27,12 +27,12 @@ impl fmt::Debug for Device {
     }
 }
 
-/// The device of this name, else the first.
+/// Returns the device with this name, or the first device.
 pub(crate) fn by_name<'a>(devices: &'a [Device], name: &str) -> Option<&'a Device> {
     devices.iter().find(|device| device.name == name).or(devices.first())
 }
 
-/// A list to choose a device from, by its name.
+/// Shows a list for choosing a device by its name.
 pub(crate) fn list_ui(ui: &mut Ui, devices: &[Device], chosen: &mut String, width: f32) -> Response {
     let shown = by_name(devices, chosen).map_or("", |device| &device.name).to_owned();
     let list = ComboBox::from_id_salt("device").selected_text(shown).width(width).truncate();

@@ -1,4 +1,4 @@
-//! The robot on the field and the pictures at its pose.
+//! Driving the robot on the field, and the pictures at its pose.
 
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -27,12 +27,12 @@ use crate::{
     shortcuts::{self, Action, Place},
 };
 
-/// A frame that took longer than this does not carry the robot farther, seconds.
+/// Longest time step of the robot, seconds, when a frame took longer.
 const LONGEST_STEP_S: f64 = 0.1;
-/// What is below the field needs so much room, points.
+/// Height of the controls below the field, points.
 const CONTROLS: f32 = 250.0;
 
-/// Everything that is driven.
+/// State of the panel once there is a database.
 pub struct Driving {
     source: Arc<Source>,
     probes: Option<Probes>,
@@ -42,14 +42,14 @@ pub struct Driving {
     pictures: Pictures,
     around: Option<Around>,
     painted: BTreeMap<View, Painted>,
-    /// Width of all of it in the last frame, points.
+    /// Width of the panel in the last frame, points.
     width: f32,
     /// Width of the field's panel in the last frame, points.
     map_width: f32,
 }
 
 impl Driving {
-    /// Puts the robot where the first picture was taken.
+    /// Places the robot at the pose of the first picture.
     pub fn new(source: Source) -> Self {
         let archive = &source.archive;
         let first = archive.images().first().map(|image| image.pose.planar()).unwrap_or_default();
@@ -68,7 +68,7 @@ impl Driving {
         }
     }
 
-    /// Takes other true pictures to compare with.
+    /// Takes the true pictures of another recording to compare with.
     pub fn compare_with(&mut self, sequence: &Arc<Sequence>) -> Result<(), String> {
         let folder = sequence.folder.display();
         let archive = &self.source.archive;
@@ -87,7 +87,7 @@ impl Driving {
         Ok(())
     }
 
-    /// Shows it. True when a recording to compare with is asked for.
+    /// Shows the panel. Returns true when the user asks for a recording to compare with.
     pub fn ui(
         &mut self,
         ui: &mut Ui,
@@ -113,7 +113,7 @@ impl Driving {
         is_asked
     }
 
-    /// Takes what the painter has sent.
+    /// Receives the painter's answers.
     fn listen(&mut self, problems: &mut Problems) {
         while let Some(answer) = self.painter.as_mut().and_then(Painter::answer) {
             match answer {
@@ -138,7 +138,7 @@ impl Driving {
         });
     }
 
-    /// Keys and path.
+    /// Moves the robot by keys or along its path.
     fn move_robot(&mut self, ui: &Ui) {
         if shortcuts::pressed(ui, Place::Drive).contains(&Action::PlayPause) {
             self.map.follow_or_stop(&mut self.robot);
@@ -150,7 +150,7 @@ impl Driving {
         }
     }
 
-    /// The field at the right, as wide as it was dragged to be: in proportion, for windows of any width.
+    /// Shows the field in a panel at the right whose share of the width is remembered, for windows of any width.
     fn map_panel(&mut self, ui: &mut Ui, settings: &mut DriveSettings, devices: &[Device]) -> bool {
         let width = ui.available_width();
         let panel = egui::Panel::right("drive map")
@@ -158,7 +158,7 @@ impl Driving {
             .size_range(260.0..=(0.55 * width).max(270.0));
         let is_new = std::mem::replace(&mut self.width, width) != width;
         if is_new {
-            // What egui remembers is the width in points.
+            // egui remembers the width in points.
             let id = ui.scope_id().with("drive map");
             ui.data_mut(|data| data.remove::<egui::PanelState>(id));
         }
@@ -171,7 +171,7 @@ impl Driving {
         shown.inner
     }
 
-    /// The field, and below it what it shows.
+    /// Shows the field, and its controls below.
     fn map_ui(&mut self, ui: &mut Ui, settings: &mut DriveSettings, devices: &[Device]) -> bool {
         self.pose_ui(ui);
         let made = match settings.layout {
@@ -203,7 +203,7 @@ impl Driving {
             .inner
     }
 
-    /// Where the robot is, to read and to set.
+    /// Shows the robot's pose, with fields to edit it.
     fn pose_ui(&mut self, ui: &mut Ui) {
         let pose = self.robot.pose();
         let mut wanted = pose;
@@ -224,7 +224,7 @@ impl Driving {
     }
 }
 
-/// How a recording's camera differs from the database's, in words; `None` where it does not.
+/// Returns the difference between a recording's camera and the database's in words; `None` where there is none.
 fn camera_difference(own: &Camera, other: &Camera) -> Option<String> {
     let sizes = [other, own].map(|camera| format!("{} x {} pixels", camera.width, camera.height));
     let [theirs, ours] = &sizes;
@@ -238,7 +238,7 @@ fn camera_difference(own: &Camera, other: &Camera) -> Option<String> {
     }
 }
 
-/// Whether two fields have the same dimensions and colours, whatever they are called.
+/// Whether two fields have the same dimensions and colours, whatever their names.
 fn is_same_field(own: &FieldDimensions, other: &FieldDimensions) -> bool {
     *own == FieldDimensions { name: own.name.clone(), ..other.clone() }
 }
@@ -250,7 +250,7 @@ enum Unit {
     Degree,
 }
 
-/// A number to read, to drag and to type.
+/// Shows a number that can be dragged or typed.
 fn number(ui: &mut Ui, name: &str, value: &mut f64, unit: Unit) {
     let label = ui.weak(name);
     let degrees = value.to_degrees();
@@ -267,7 +267,7 @@ fn number(ui: &mut Ui, name: &str, value: &mut f64, unit: Unit) {
     }
 }
 
-/// How near the next picture is.
+/// Shows the distance to the nearest recorded picture.
 fn near_ui(ui: &mut Ui, source: &Source, around: Option<&Around>) {
     let pictures = counted(source.archive.images().len(), "picture");
     let nearest = around.and_then(|around| around.nearest);
@@ -284,7 +284,7 @@ fn near_ui(ui: &mut Ui, source: &Source, around: Option<&Around>) {
     .on_hover_text("By so many pixels the picture moves from there to here (root mean square)");
 }
 
-/// The true pictures, and others to take; true when that is asked for.
+/// Shows the true pictures' recording. Returns true when the user asks for another one.
 fn compare_ui(ui: &mut Ui, probes: Option<&Probes>) -> bool {
     ui.horizontal_wrapped(|ui| {
         if let Some(probes) = probes {

@@ -1,27 +1,27 @@
-//! The edges of the triangulation, as many as can be told apart.
+//! Edges of the triangulation, thinned to as many as can be distinguished.
 
 use glam::DVec2;
 use reality_sim_db::index::PoseIndex;
 
-/// More lines than this are a grey area.
+/// Largest number of edges to draw: more would merge into a grey area.
 const MOST_EDGES: usize = 6000;
 
-/// A rectangle on the field: its smallest and its largest x and y, world axes, metres.
+/// Rectangle on the field: smallest and largest x and y in the world frame, metres.
 pub type Region = [DVec2; 2];
 
-/// The edges of one sector's triangulation that lie in a region.
+/// Edges of one sector's triangulation within a region.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Edges {
-    /// The sector's share at the heading, of 1 over both.
+    /// Weight of the sector at the heading; the weights of both sectors add up to 1.
     pub share: f64,
-    /// The edges to draw, world axes, metres.
+    /// Edges to draw, in the world frame, metres.
     pub shown_in_world: Vec<[DVec2; 2]>,
-    /// How many there are in the region.
+    /// Number of edges in the region.
     pub count: usize,
 }
 
-/// The edges in a region of the triangulations around a heading, radians. Where there are too many, every so many-th: the
-/// triangulation's order runs over all of the region.
+/// Returns the edges in a region of the triangulations around a heading, radians. Where there are too many, every n-th is
+/// kept: the triangulation's order covers the whole region.
 pub fn edges(index: &PoseIndex, yaw_rad: f64, region: Region) -> Vec<Edges> {
     let sectors = index.triangulations(yaw_rad).into_iter();
     let clipped = sectors.map(|sector| {
@@ -38,7 +38,7 @@ fn thinned(share: f64, edges_in_world: Vec<[DVec2; 2]>) -> Edges {
     Edges { share, shown_in_world: edges_in_world.into_iter().step_by(step).collect(), count }
 }
 
-/// Whether the rectangle around an edge and a region have a place in common.
+/// Whether the bounding box of an edge intersects a region.
 fn may_lie_in([from, to]: [DVec2; 2], [min, max]: Region) -> bool {
     from.min(to).cmple(max).all() && from.max(to).cmpge(min).all()
 }

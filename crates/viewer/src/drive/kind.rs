@@ -1,9 +1,9 @@
-//! The pictures there are of a pose, and what can be shown of one.
+//! Kinds of pictures at a pose, and their views.
 
 use reality_sim_synthesis::{Auto, Blend, Method, Nearest, Plane, Quadratic};
 use serde::{Deserialize, Serialize};
 
-/// A way to the picture at a pose.
+/// Source of the picture at a pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PictureKind {
@@ -17,11 +17,11 @@ pub enum PictureKind {
 }
 
 impl PictureKind {
-    /// All, in the order in which they are listed.
+    /// All kinds, in the order of the list.
     pub const ALL: [Self; 7] =
         [Self::Auto, Self::Nearest, Self::Quadratic, Self::Plane, Self::Blend, Self::Simulated, Self::Truth];
 
-    /// What it is called.
+    /// Returns the name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Simulated => "simulated",
@@ -30,7 +30,7 @@ impl PictureKind {
         }
     }
 
-    /// What it is, in a sentence.
+    /// Returns a description in one sentence.
     pub fn meaning(self) -> &'static str {
         match self {
             Self::Auto => {
@@ -49,7 +49,7 @@ impl PictureKind {
         }
     }
 
-    /// The method that makes it of recorded pictures.
+    /// Returns the synthesis method, for kinds made from recorded pictures.
     pub fn method(self) -> Option<&'static dyn Method> {
         match self {
             Self::Auto => Some(&Auto),
@@ -62,20 +62,20 @@ impl PictureKind {
     }
 }
 
-/// What is shown of a picture.
+/// Aspect of a picture to show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Shown {
-    /// The picture itself.
+    /// The picture.
     #[default]
     Picture,
-    /// Which recorded image each pixel came from.
+    /// The recorded image from which each pixel came.
     Origins,
-    /// How far each pixel can be trusted.
+    /// The trust of each pixel.
     Trust,
 }
 
-/// Something to look at.
+/// Kind of picture and the aspect to show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct View {
     pub kind: PictureKind,
@@ -83,7 +83,7 @@ pub struct View {
 }
 
 impl View {
-    /// The picture itself.
+    /// Shows the picture of a kind.
     pub fn picture(kind: PictureKind) -> Self {
         Self { kind, shown: Shown::Picture }
     }

@@ -1,4 +1,4 @@
-//! How pictures are arranged.
+//! Arrangements of the pictures.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +14,7 @@ pub enum Layout {
 }
 
 impl Layout {
-    /// Each with its name and a sentence about it.
+    /// All arrangements, each with its name and a description.
     pub const ALL: [(Self, &'static str, &'static str); 4] = [
         (Self::One, "One", "One picture"),
         (Self::Side, "Side by side", "Two pictures beside each other"),

@@ -1,4 +1,4 @@
-//! The field from above: the robot to drag, the path to draw, and what is known around it in layers.
+//! The field from above: the robot to drag, the path to draw, and layers with the data around the robot.
 
 mod coverage;
 mod drawing;
@@ -30,14 +30,14 @@ use crate::{
     problems::Problems,
 };
 
-/// The field is shown with so much around it, metres: the robot may go there.
+/// Margin shown around the field, metres: the robot may go there.
 const MARGIN_M: f64 = 1.0;
-/// The arrow's ends are caught from this far, points.
+/// Distance from the arrow's ends within which they can be grabbed, points.
 const CATCH: f32 = 14.0;
-/// What the layer of the neighbours shows.
+/// Explanation of the neighbours' layer.
 const NEIGHBOURS_MEAN: &str = "The natural neighbours with their weights by where pictures were taken (Sibson, 1981). How many pixels a picture gave in the end is another number: it is below the picture, after “made of”.";
 
-/// What was caught with the mouse.
+/// Object grabbed with the mouse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Grip {
     /// The arrow's tail, this far from where it was caught, metres.
@@ -72,7 +72,7 @@ impl Default for Map {
 }
 
 impl Map {
-    /// Shows the field as large as fits into some room, and lets the robot be dragged.
+    /// Shows the field as large as fits into the room, and lets the user drag the robot.
     pub fn ui(&mut self, ui: &mut Ui, room: Vec2, content: &MapContent, robot: &mut Robot) {
         let field = content.source.archive.field();
         let extent = 2.0 * (field.carpet_half_extent_m() + MARGIN_M);
@@ -90,18 +90,18 @@ impl Map {
         write_pointer(&canvas);
     }
 
-    /// The part of the field that was shown last.
+    /// Returns the part of the field that was shown last.
     pub fn seen(&self) -> Region {
         self.seen
     }
 
-    /// Follows the path, or stops; what is dragged then is the robot.
+    /// Follows the path, or stops; dragging then moves the robot.
     pub fn follow_or_stop(&mut self, robot: &mut Robot) {
         self.is_drawing = false;
         robot.follow_or_stop();
     }
 
-    /// Drawing, following and forgetting a path.
+    /// Shows the controls for drawing, following and deleting a path.
     pub fn path_ui(&mut self, ui: &mut Ui, robot: &mut Robot) {
         ui.horizontal_wrapped(|ui| {
             ui.toggle_value(&mut self.is_drawing, "Draw a path").on_hover_text(
@@ -125,12 +125,12 @@ impl Map {
         });
     }
 
-    /// Counts the coverage once it is wanted.
+    /// Starts counting the coverage once it is needed.
     pub fn poll(&mut self, ui: &Ui, source: &Arc<Source>, layers: &mut Layers, problems: &mut Problems) {
         self.coverage.poll(ui, source, layers, problems);
     }
 
-    /// The layers to switch, each with its colour.
+    /// Shows a switch for each layer, in its colour.
     pub fn layers_ui(&mut self, ui: &mut Ui, content: &MapContent, layers: &mut Layers) {
         let used_mean = format!(
             "The images that the picture “{}” is made of, in the colours of its origins",
@@ -226,13 +226,13 @@ impl Map {
                 Grip::Draw => robot.draw_to(place),
             }
         }
-        // A drag may also end where the field is not shown.
+        // A drag may also end while the field is not shown.
         if !canvas.response.dragged() {
             self.grip = None;
         }
     }
 
-    /// What there is to catch at a place.
+    /// Returns the object that can be grabbed at a position.
     fn caught(&self, canvas: &FieldCanvas, planar: Pose2, at: Pos2) -> Option<Grip> {
         if self.is_drawing {
             return Some(Grip::Draw);
@@ -247,13 +247,13 @@ impl Map {
     }
 }
 
-/// The part of the field that is shown.
+/// Returns the visible part of the field.
 fn region(canvas: &FieldCanvas) -> Region {
     let (a, b) = (canvas.in_world(canvas.rect.min), canvas.in_world(canvas.rect.max));
     [a.min(b), a.max(b)]
 }
 
-/// Says where not all edges are drawn.
+/// States how many edges are drawn, if not all are.
 fn edges_ui(ui: &mut Ui, is_on: bool, around: Option<&Around>) {
     let Some(around) = around.filter(|_| is_on) else { return };
     let shown: usize = around.edges.iter().map(|sector| sector.shown_in_world.len()).sum();

@@ -1,7 +1,7 @@
-//! Drive: a robot anywhere on the field, and what its camera would see there, from recorded pictures.
+//! Drive: a robot anywhere on the field, and its camera's picture there, made from recorded pictures.
 //!
-//! A [`source`] holds the pictures, the [`painter`]'s thread draws them, [`robot`], [`map`] and [`pictures`] are what is seen
-//! and dragged; [`driving`] puts them together.
+//! A [`source`] holds the pictures, and the [`painter`]'s thread draws them. [`robot`], [`map`] and [`pictures`] are the
+//! visible parts; [`driving`] connects them.
 
 mod driving;
 mod edges;
@@ -30,27 +30,27 @@ pub use self::settings::DriveSettings;
 use self::{driving::Driving, recorded::Recorded, source::Source};
 use crate::{device::Device, problems::Problems};
 
-/// The panel. Where it is dropped, work under way is stopped and waited for: a temporary database is deleted then.
+/// Drive panel. Dropping it stops work under way and waits for it, so that a temporary database is deleted.
 pub struct DrivePanel(State);
 
 enum State {
-    /// A recording of which no database has been made yet.
+    /// A recording without a database so far.
     Recorded(Recorded),
     Driving(Box<Driving>),
 }
 
 impl DrivePanel {
-    /// For a recording: a database is made of it when the panel is first shown.
+    /// Makes the panel of a recording: its database is made when the panel is first shown.
     pub fn of_recording(sequence: Arc<Sequence>) -> Self {
         Self(State::Recorded(Recorded::new(sequence)))
     }
 
-    /// For a database.
+    /// Makes the panel of a database.
     pub fn of_database(archive: Arc<Archive>) -> Self {
         Self(State::Driving(Box::new(Driving::new(Source::of_archive(archive)))))
     }
 
-    /// Takes the pictures of a recording as the true ones to compare with. The error says why they are not comparable.
+    /// Compares with the pictures of a recording as the truth. The error says why they cannot be compared.
     pub fn compare_with(&mut self, probes: &Arc<Sequence>) -> Result<(), String> {
         match &mut self.0 {
             State::Driving(driving) => driving.compare_with(probes),
@@ -61,7 +61,7 @@ impl DrivePanel {
         }
     }
 
-    /// Shows the panel. True when a recording to compare with is asked for.
+    /// Shows the panel. Returns true when the user asks for a recording to compare with.
     pub fn ui(
         &mut self,
         ui: &mut Ui,

@@ -1,5 +1,5 @@
-//! The thread that draws. It gets wishes, of which only the newest counts, and sends back what it knows of the pose and
-//! one picture after the other.
+//! The drawing thread. It receives requests, of which only the newest counts, and answers with the data around the pose and
+//! one picture after another.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -32,27 +32,28 @@ use crate::{
     picture_view::{color_image, gray_image},
 };
 
-/// The true picture is shown where it was taken this near, root mean square pixels.
+/// Largest distance at which the true picture is shown, root mean square pixels.
 pub const TRUTH_REACH_PX: f64 = 20.0;
-/// Pictures are compared with one that was taken at their pose, to half a pixel.
+/// Largest distance, in pixels, at which a true picture counts as taken at the same pose, so that pictures are compared with
+/// it.
 const SAME_POSE_PX: f64 = 0.5;
 
-/// What is to be drawn.
+/// Request for pictures at a pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wish {
     pub pose: CameraPose,
     pub views: Vec<View>,
-    /// Pictures also where little was recorded.
+    /// Whether pictures are also drawn where little was recorded.
     pub is_best_effort: bool,
-    /// The edges of the triangulation there, too.
+    /// Region in which the triangulation's edges are requested.
     pub edges_in: Option<Region>,
     pub probes: Option<Probes>,
-    /// What draws; the processor where there is none.
+    /// Device that draws; the processor if there is none.
     pub device: Option<Device>,
 }
 
 impl Wish {
-    /// Whether the pictures of another wish are as good.
+    /// Whether the pictures of another request are equally valid.
     fn has_pictures_of(&self, other: &Self) -> bool {
         let Self { pose, is_best_effort, probes, device, views: _, edges_in: _ } = self;
         *pose == other.pose
@@ -62,7 +63,7 @@ impl Wish {
     }
 }
 
-/// What is known around a pose.
+/// Data around a pose.
 #[derive(Debug, Clone)]
 pub struct Around {
     /// The nearest recorded image.
@@ -75,48 +76,49 @@ pub struct Around {
     pub probe: Option<NearProbe>,
 }
 
-/// A picture that was drawn.
+/// Drawn picture.
 #[derive(Debug, Clone)]
 pub struct Drawn {
     pub picture: Arc<ColorImage>,
     pub facts: Facts,
 }
 
-/// What is known of a picture.
+/// Facts about a picture.
 #[derive(Debug, Clone, Default)]
 pub struct Facts {
-    /// The method that was used in the end.
+    /// Method that was actually used.
     pub method: &'static str,
-    /// How long it took, with decoding.
+    /// Time for drawing, including decoding, milliseconds.
     pub milliseconds: f64,
-    /// The share of the pixels that some recorded image shows; `None` where it is not made of such.
+    /// Fraction of the pixels that some recorded image covers; `None` for pictures not made from such images.
     pub covered: Option<f64>,
-    /// The images that it was made of.
+    /// Images from which the picture was made.
     pub used: Vec<UsedImage>,
-    /// How like the true picture it is over the carpet, PSNR, dB, where there is one at the pose.
+    /// PSNR in dB over the carpet against the true picture, if there is one at the pose.
     pub likeness_db: Option<f64>,
-    /// The frame that it is, where it is a true one.
+    /// The frame shown, for a true picture.
     pub probe: Option<NearProbe>,
 }
 
-/// A view at a pose, or why there is none.
+/// View at a pose, or the reason why there is none.
 #[derive(Debug, Clone)]
 pub struct Painted {
     pub pose: CameraPose,
     pub result: Result<Drawn, String>,
 }
 
-/// What the thread says.
+/// Answer of the drawing thread.
 pub enum Answer {
     Around(Around),
     Painted(View, Painted),
-    /// Something that a person should know.
+    /// Problem to show to the user.
     Problem(String),
 }
 
-/// The thread, seen from the window. Dropping this waits until it has ended: at most as long as a picture takes, or a device to open.
+/// Handle of the drawing thread. Dropping it waits until the thread has ended, at most as long as drawing a picture or
+/// opening a device takes.
 pub struct Painter {
-    /// Before the thread: that ends when nobody can wish any more.
+    /// Declared before the thread, which ends when this sender is dropped.
     wishes: mpsc::Sender<Wish>,
     answers: mpsc::Receiver<Answer>,
     wished: Option<Wish>,
@@ -125,7 +127,7 @@ pub struct Painter {
 }
 
 impl Painter {
-    /// Starts the thread. Devices are opened there: that may take a while.
+    /// Starts the thread, which opens the devices: that may take a while.
     pub fn spawn(ctx: &Context, source: Arc<Source>) -> Self {
         let (wishes, its_wishes) = mpsc::channel();
         let (its_answers, answers) = mpsc::channel();
@@ -149,16 +151,16 @@ impl Painter {
         Self { wishes, answers, wished: None, has_failed: false, _thread: Joined::new(thread) }
     }
 
-    /// Asks for pictures, unless they have been asked for.
+    /// Requests pictures, unless they have been requested already.
     pub fn wish(&mut self, wish: Wish) {
         if self.wished.as_ref() != Some(&wish) {
-            // A thread that has ended says so through its answers.
+            // A thread that has ended is reported through its answers.
             let _ = self.wishes.send(wish.clone());
             self.wished = Some(wish);
         }
     }
 
-    /// The next answer, if there is one.
+    /// Returns the next answer, if there is one.
     pub fn answer(&mut self) -> Option<Answer> {
         match self.answers.try_recv() {
             Ok(answer) => Some(answer),
@@ -174,20 +176,20 @@ impl Painter {
     }
 }
 
-/// Wishes on their way to the thread, of which only the newest counts.
+/// Requests on their way to the thread, of which only the newest counts.
 struct Wishes {
     coming: mpsc::Receiver<Wish>,
     newest: Option<Wish>,
 }
 
 impl Wishes {
-    /// The newest, waiting for one where there is none; `None` where nobody wishes any more.
+    /// Returns the newest request, waiting for one if there is none; `None` when the sender is gone.
     fn next(&mut self) -> Option<Wish> {
         let wish = self.newest.take().or_else(|| self.coming.recv().ok())?;
         Some(self.coming.try_iter().last().unwrap_or(wish))
     }
 
-    /// Whether what was wished for last no longer counts.
+    /// Whether a newer request has replaced the last one.
     fn have_changed(&mut self) -> bool {
         match self.coming.try_recv() {
             Ok(wish) => {
@@ -199,20 +201,20 @@ impl Wishes {
     }
 }
 
-/// Whose turn it is: the view's that was drawn the longest ago, so that each gets its turn while wishes change faster than
-/// all of them are drawn.
+/// Order of drawing: the view drawn the longest ago comes first, so that each has its turn while requests change faster than
+/// all views can be drawn.
 #[derive(Default)]
 struct Turns {
     count: u64,
-    /// Views and the number of their last turn.
+    /// Number of each view's last turn.
     last: BTreeMap<View, u64>,
-    /// What was wished for last, and the views that were drawn just so.
+    /// Last request, and the views already drawn for it.
     wish: Option<Wish>,
     drawn: BTreeSet<View>,
 }
 
 impl Turns {
-    /// What was drawn for the wish before stays, where its pictures are as good.
+    /// Begins a request, keeping the views drawn for the previous one if they are equally valid.
     fn begin(&mut self, wish: &Wish) {
         let before = self.wish.replace(wish.clone());
         if !before.is_some_and(|before| before.has_pictures_of(wish)) {
@@ -220,7 +222,7 @@ impl Turns {
         }
     }
 
-    /// The next view to draw; `None` when all are.
+    /// Returns the next view to draw; `None` when all are drawn.
     fn next(&mut self, wish: &Wish) -> Option<View> {
         let left = wish.views.iter().filter(|view| !self.drawn.contains(view));
         let view = *left.min_by_key(|view| self.last.get(view).copied())?;
@@ -231,14 +233,14 @@ impl Turns {
     }
 }
 
-/// Everything that draws.
+/// Everything that the thread needs for drawing.
 struct Studio {
-    /// What it was told to draw by.
+    /// Requested device.
     device: Option<Device>,
     strict: Synthesizer,
     best_effort: Synthesizer,
     renderer: Renderer,
-    /// The true picture decoded last, and the pixels of it that show the carpet.
+    /// True picture decoded last, with its pixels that show the carpet.
     truth: Option<Truth>,
 }
 
@@ -249,7 +251,7 @@ struct Truth {
     mask: Mask,
 }
 
-/// A picture in the making.
+/// Picture with the facts known so far.
 struct Made {
     picture: RgbImage,
     reconstruction: Option<Reconstruction>,
@@ -257,7 +259,7 @@ struct Made {
 }
 
 impl Studio {
-    /// Draws by the processor at first.
+    /// Starts drawing with the processor.
     fn new(source: &Source) -> Self {
         let archive = &source.archive;
         let [strict, best_effort] = synthesizers(archive, &(Arc::new(CpuWarper) as Arc<dyn Warper>));
@@ -272,7 +274,7 @@ impl Studio {
         }
     }
 
-    /// Opens another device, where it is another one.
+    /// Opens the requested device, if it is a different one.
     fn choose_warper(&mut self, device: Option<&Device>, say: &impl Fn(Answer) -> bool) {
         if self.device.as_ref() == device {
             return;
@@ -285,7 +287,7 @@ impl Studio {
         [self.strict, self.best_effort] = synthesizers(self.strict.archive(), &warper);
     }
 
-    /// Draws what is wished for, until something else is; one picture at least. False where nobody listens any more.
+    /// Draws the requested views until the request changes, at least one picture. Returns false when the receiver is gone.
     fn fulfil(
         &mut self,
         wish: &Wish,
@@ -364,10 +366,10 @@ impl Studio {
         Ok(Made { picture, reconstruction: None, facts })
     }
 
-    /// How like the true picture taken at the very pose, if there is one.
+    /// Returns the PSNR against the true picture at the same pose, if there is one.
     fn likeness_db(&mut self, picture: &RgbImage, wish: &Wish, probe: Option<NearProbe>) -> Option<f64> {
         let near = probe.filter(|probe| probe.distance_px <= SAME_POSE_PX)?;
-        // A true picture that cannot be read says so where it is to be shown.
+        // An unreadable true picture is reported where it is shown.
         let truth = self.truth(wish.probes.as_ref()?, near).ok()?;
         psnr_db(picture, &truth.picture, Some(&truth.mask))
     }
@@ -411,7 +413,7 @@ fn drawn(made: &Made, view: View) -> Result<Drawn, String> {
     Ok(Drawn { picture, facts: made.facts.clone() })
 }
 
-/// The strict one, and the one of the best effort.
+/// Returns the strict synthesizer and the best-effort one.
 fn synthesizers(archive: &Arc<Archive>, warper: &Arc<dyn Warper>) -> [Synthesizer; 2] {
     let config = SynthesisConfig::new(archive);
     let camera = &archive.setup().camera;

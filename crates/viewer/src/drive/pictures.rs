@@ -1,4 +1,4 @@
-//! The pictures at the robot's pose: one, two side by side or with a line between them, or all methods.
+//! The pictures at the robot's pose: one, two side by side, two with a line between them, or all methods.
 
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -19,21 +19,21 @@ use super::{
 };
 use crate::picture_view::{PictureCanvas, Uploaded};
 
-/// A line of text above a picture, points.
+/// Height of the text line above a picture, points.
 const HEAD: f32 = 22.0;
-/// Narrower heads, points, have no room for both numbers and the mark of an old picture.
+/// Least width, points, at which the line has room for both numbers and the mark of an outdated picture.
 const ROOM_FOR_FACTS: f32 = 200.0;
-/// What the numbers above a picture mean.
+/// Explanation of the numbers above a picture.
 const FACTS_MEAN: &str = "px away: by how many pixels the picture moves from there to here, root mean square\nPSNR: likeness to the true picture at this very pose, over the carpet; higher is better\nrecorded: the share of the pixels that recorded pictures show; the others are filled in\nms: the time that it took";
-/// Shares below this are not listed.
+/// Least fraction that is listed.
 const LEAST_SHARE: f64 = 0.005;
 
-/// What there is to show.
+/// Data to show.
 pub struct Gallery<'a> {
     pub archive: &'a Archive,
     pub painted: &'a BTreeMap<View, Painted>,
     pub probe: Option<NearProbe>,
-    /// The robot's pose: pictures may still be of one before.
+    /// Pose of the robot: pictures may still belong to an earlier pose.
     pub pose: CameraPose,
 }
 
@@ -45,7 +45,7 @@ pub struct Pictures {
 }
 
 impl Pictures {
-    /// Which pictures, and how.
+    /// Shows the choice of pictures and their arrangement.
     pub fn choice_ui(ui: &mut Ui, settings: &mut DriveSettings) {
         ui.horizontal_wrapped(|ui| {
             for (layout, name, meaning) in Layout::ALL {
@@ -74,7 +74,7 @@ impl Pictures {
         });
     }
 
-    /// Shows them; returns the pose to go to where that was asked for.
+    /// Shows the pictures; returns the pose to go to if the user asks for one.
     pub fn ui(&mut self, ui: &mut Ui, settings: &mut DriveSettings, gallery: &Gallery) -> Option<CameraPose> {
         let views = settings.views();
         let legend = if settings.layout == Layout::All { 0.0 } else { 44.0 };
@@ -91,7 +91,7 @@ impl Pictures {
         there
     }
 
-    /// All of them, in as many columns as make them largest.
+    /// Shows all views, in the number of columns that makes them largest.
     fn grid(&mut self, ui: &mut Ui, views: &[View], room: Vec2, gallery: &Gallery) -> Option<CameraPose> {
         let gap = ui.spacing().item_spacing;
         let pixels = size_of(gallery.archive);
@@ -102,7 +102,7 @@ impl Pictures {
         };
         let scale = |columns: usize| (cell(columns) / vec2(pixels[0] as f32, pixels[1] as f32)).min_elem();
         let largest = (1..=views.len()).max_by(|&a, &b| scale(a).total_cmp(&scale(b))).unwrap_or(1);
-        // Two are compared more easily beside each other.
+        // Two pictures are easier to compare side by side.
         let columns = if views.len() == 2 && scale(2) > 0.7 * scale(1) { 2 } else { largest };
         let mut there = None;
         for row in views.chunks(columns) {
@@ -115,7 +115,7 @@ impl Pictures {
         there
     }
 
-    /// One picture under its name, or why there is none.
+    /// Shows one picture under its name, or the reason why there is none.
     fn pane(&mut self, ui: &mut Ui, view: View, room: Vec2, gallery: &Gallery) -> Option<CameraPose> {
         let painted = gallery.painted.get(&view);
         let pixels = size_of(gallery.archive);
@@ -134,7 +134,7 @@ impl Pictures {
         }
     }
 
-    /// Two pictures with a line between them.
+    /// Shows two pictures with a line between them.
     fn wipe(
         &mut self,
         ui: &mut Ui,
@@ -218,7 +218,7 @@ fn shown_box(ui: &mut Ui, settings: &mut DriveSettings) {
     chosen.response.labelled_by(label.id);
 }
 
-/// What a picture is, what is known of it, and whether it is of another pose than the robot's.
+/// Shows a picture's name and facts, and whether it belongs to another pose than the robot's.
 fn head(ui: &mut Ui, view: View, painted: Option<&Painted>, pose: CameraPose) {
     let is_old = painted.is_some_and(|painted| painted.pose != pose);
     let has_room = !is_old || ui.available_width() > ROOM_FOR_FACTS;
@@ -262,7 +262,7 @@ fn facts_in_words(kind: PictureKind, facts: &Facts) -> String {
     words.join(" · ")
 }
 
-/// A picture in words, for those who do not see it.
+/// Describes a picture in words, for screen readers.
 fn described(view: View, painted: Option<&Painted>) -> String {
     let name = view.kind.name();
     let shown = match view.shown {
@@ -286,14 +286,14 @@ fn waiting(ui: &mut Ui, rect: Rect) -> Option<CameraPose> {
     None
 }
 
-/// Why there is no picture, in its place, and a way to one.
+/// Shows why there is no picture, and a button that leads to one.
 fn words(ui: &mut Ui, rect: Rect, view: View, reason: &str, probe: Option<NearProbe>) -> Option<CameraPose> {
     let inside = rect.shrink(0.06 * rect.width()).round_ui();
     let mut child = ui.new_child(
         UiBuilder::new().max_rect(inside).layout(Flow::top_down(Align::Center)).id_salt(view.kind.name()),
     );
     child.set_clip_rect(rect.intersect(ui.clip_rect()));
-    // In a small picture every line counts, and what has no room is scrolled to.
+    // In a small picture every line counts; what does not fit can be scrolled to.
     let is_small = inside.height() < 140.0;
     child.add_space(if is_small { 0.0 } else { 0.28 * inside.height() });
     let probe = probe.filter(|_| view.kind == PictureKind::Truth);
@@ -301,7 +301,7 @@ fn words(ui: &mut Ui, rect: Rect, view: View, reason: &str, probe: Option<NearPr
         .show(&mut child, |ui| {
             let text = RichText::new(reason).color(Color32::from_gray(205));
             let text = if is_small { text.small() } else { text };
-            // The way out comes before its reason where both have no room.
+            // The button comes before the reason if there is no room for both.
             let go = |ui: &mut Ui| probe.filter(|_| ui.add(Button::new("Go there")).clicked());
             let before = if is_small { go(ui) } else { None };
             ui.add(egui::Label::new(text).wrap());
@@ -311,7 +311,7 @@ fn words(ui: &mut Ui, rect: Rect, view: View, reason: &str, probe: Option<NearPr
         .inner
 }
 
-/// What the colours mean.
+/// Shows the meaning of the colours.
 fn legend_ui(ui: &mut Ui, view: View, gallery: &Gallery) {
     let drawn = gallery.painted.get(&view).and_then(|painted| painted.result.as_ref().ok());
     let Some(drawn) = drawn else { return };
@@ -339,7 +339,7 @@ fn legend_ui(ui: &mut Ui, view: View, gallery: &Gallery) {
     });
 }
 
-/// Words behind a colour, on one row.
+/// Shows words behind a colour swatch, in one row.
 fn swatched(ui: &mut Ui, color: Color32, text: &str) {
     let row = egui::WidgetAtom::new((swatch(color), RichText::new(text).weak()));
     ui.add(row).widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));

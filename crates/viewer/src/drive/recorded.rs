@@ -1,4 +1,4 @@
-//! A recording on its way to a database.
+//! Making a database from a recording.
 
 use std::sync::Arc;
 
@@ -16,10 +16,10 @@ use crate::{
     problems::Problems,
 };
 
-/// Of more pictures than this a database is only made when it is asked for: it takes minutes and a copy of all of them.
+/// Largest number of pictures for which a database is made without asking: it takes minutes, and a copy of all pictures.
 const MOST_UNASKED: usize = 2000;
 
-/// A recording of which no database has been made yet. Where it is dropped, the work is stopped and waited for.
+/// A recording without a database so far. Dropping it stops the work and waits for it.
 pub struct Recorded {
     sequence: Arc<Sequence>,
     is_stopped: bool,
@@ -35,12 +35,12 @@ impl Drop for Recorded {
 }
 
 impl Recorded {
-    /// Work begins when it is first shown, if that is a matter of seconds.
+    /// Prepares a recording; work begins when it is first shown, if that takes only seconds.
     pub fn new(sequence: Arc<Sequence>) -> Self {
         Self { sequence, is_stopped: false, work: None }
     }
 
-    /// Shows how far it is; returns what was made of it.
+    /// Shows the progress; returns the source when it is ready.
     pub fn ui(
         &mut self,
         ui: &mut Ui,
@@ -71,7 +71,7 @@ impl Recorded {
         None
     }
 
-    /// How many pictures have poses of the ground truth.
+    /// Returns the number of pictures with reference poses.
     fn poses(&self) -> usize {
         self.sequence.reference_poses().flatten().count()
     }
@@ -81,7 +81,7 @@ impl Recorded {
         ui.add_space(8.0);
         ui.label(self.explanation());
         ui.add_space(12.0);
-        // Centred rows are as wide as they turn out to be: these are told.
+        // Rows are centred by their width, so the width is fixed here.
         let row = egui::vec2(420.0, 24.0);
         if let Some(task) = &self.work {
             ui.allocate_ui(row, |ui| task.ui(ui));

@@ -1,4 +1,4 @@
-//! The robot that is driven: where it is, and how keys, drawn paths and the mouse move it.
+//! The driven robot: its pose, and how keys, drawn paths and the mouse move it.
 
 use glam::DVec2;
 use reality_sim_core::{
@@ -8,17 +8,17 @@ use reality_sim_core::{
 
 use crate::shortcuts::Action;
 
-/// Walking by keys, metres a second.
+/// Walking speed by keys, metres per second.
 const WALK_M_PER_S: f64 = 0.4;
-/// Turning by keys, radians a second.
+/// Turning speed by keys, radians per second.
 const TURN_RAD_PER_S: f64 = 0.8;
-/// Following a path, metres a second.
+/// Speed along a path, metres per second.
 const FOLLOW_M_PER_S: f64 = 0.3;
-/// The robot may leave the carpet by so much, metres.
+/// Distance by which the robot may leave the carpet, metres.
 const MARGIN_M: f64 = 1.0;
-/// Points of a path are so far apart, metres.
+/// Distance between points of a path, metres.
 const PATH_STEP_M: f64 = 0.05;
-/// The heading on a path is towards what is so far ahead, metres: a hand draws no straight lines.
+/// Look-ahead distance that gives the heading on a path, metres: hand-drawn lines are not straight.
 const LOOK_AHEAD_M: f64 = 0.25;
 
 /// The robot and the path drawn for it.
@@ -26,15 +26,15 @@ const LOOK_AHEAD_M: f64 = 0.25;
 pub struct Robot {
     pose: CameraPose,
     start: CameraPose,
-    /// From the field's centre along x and y, metres.
+    /// Largest distance from the field's centre along x and y, metres.
     reach_m: DVec2,
     path: Vec<DVec2>,
-    /// How far along the path it has come, metres, while it follows it.
+    /// Distance covered on the path, metres, while the robot follows it.
     followed_m: Option<f64>,
 }
 
 impl Robot {
-    /// A robot at a pose.
+    /// Places a robot at a pose.
     pub fn new(start: CameraPose, field: &FieldDimensions) -> Self {
         let reach_m = field.carpet_half_extent_m() + MARGIN_M;
         let mut robot = Self { pose: start, start, reach_m, path: Vec::new(), followed_m: None };
@@ -42,12 +42,12 @@ impl Robot {
         robot
     }
 
-    /// Where the camera is.
+    /// Returns the camera's pose.
     pub fn pose(&self) -> CameraPose {
         self.pose
     }
 
-    /// Puts it somewhere, as near as it may go; nowhere that is not made of numbers.
+    /// Moves the robot to a pose, clamped to where it may go; ignores poses that are not finite.
     pub fn place(&mut self, pose: CameraPose) {
         if !pose.is_finite() {
             return;
@@ -56,23 +56,23 @@ impl Robot {
         self.pose = pose.with_planar(Pose2::new(place.x, place.y, pose.yaw_rad));
     }
 
-    /// Puts it somewhere with the height, pitch and roll that it has.
+    /// Moves the robot to a planar pose, keeping height, pitch and roll.
     pub fn place_planar(&mut self, planar: Pose2) {
         self.place(self.pose.with_planar(planar));
     }
 
-    /// Puts it by hand: what it followed, it no longer does.
+    /// Moves the robot by hand, which ends following the path.
     pub fn take(&mut self, pose: CameraPose) {
         self.followed_m = None;
         self.place(pose);
     }
 
-    /// Back to where it was first.
+    /// Returns the robot to its first pose.
     pub fn reset(&mut self) {
         self.take(self.start);
     }
 
-    /// Walks as the keys held say, for some seconds; true where it moves.
+    /// Walks for some seconds as the held keys direct; returns true if the robot moves.
     pub fn walk(&mut self, held: &[Action], seconds: f64) -> bool {
         let along = |plus: Action, minus: Action| {
             f64::from(u8::from(held.contains(&plus))) - f64::from(u8::from(held.contains(&minus)))
@@ -89,12 +89,12 @@ impl Robot {
         true
     }
 
-    /// The path drawn, world axes, metres.
+    /// Returns the drawn path in the world frame, metres.
     pub fn path(&self) -> &[DVec2] {
         &self.path
     }
 
-    /// Draws the path on to a place.
+    /// Extends the path to a position.
     pub fn draw_to(&mut self, place_in_world: DVec2) {
         let place = place_in_world.clamp(-self.reach_m, self.reach_m);
         if self.path.last().is_none_or(|last| last.distance(place) >= PATH_STEP_M) {
@@ -102,7 +102,7 @@ impl Robot {
         }
     }
 
-    /// Forgets the path.
+    /// Deletes the path.
     pub fn clear_path(&mut self) {
         self.path.clear();
         self.followed_m = None;
@@ -113,7 +113,7 @@ impl Robot {
         self.path.len() > 1
     }
 
-    /// Whether it follows its path.
+    /// Whether the robot follows its path.
     pub fn is_following(&self) -> bool {
         self.followed_m.is_some()
     }
@@ -123,7 +123,7 @@ impl Robot {
         self.followed_m = if self.is_following() || !self.has_path() { None } else { Some(0.0) };
     }
 
-    /// Follows the path for some seconds; true where it does.
+    /// Follows the path for some seconds; returns true if the robot is following it.
     pub fn follow(&mut self, seconds: f64) -> bool {
         let Some(followed_m) = self.followed_m else { return false };
         let followed_m = followed_m + FOLLOW_M_PER_S * seconds;
@@ -140,7 +140,7 @@ fn length_m(path: &[DVec2]) -> f64 {
     path.windows(2).map(|ends| ends[0].distance(ends[1])).sum()
 }
 
-/// The place so far along a path, metres; its end beyond that.
+/// Returns the position at this distance along a path, metres; its end beyond that.
 fn along(path: &[DVec2], distance_m: f64) -> DVec2 {
     let mut left_m = distance_m;
     for ends in path.windows(2) {

@@ -1,4 +1,4 @@
-//! What is remembered of the panel from one start to the next.
+//! Settings of the panel that are kept from one start to the next.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,23 +8,23 @@ use super::{
     map::Layers,
 };
 
-/// Choices that are kept from one start to the next.
+/// Settings that are kept from one start to the next.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct DriveSettings {
     pub layout: Layout,
-    /// The picture alone or on the left, and the one on the right.
+    /// Picture shown alone or on the left, and picture on the right.
     pub left: PictureKind,
     pub right: PictureKind,
-    /// What is shown of the left one.
+    /// Aspect of the left picture to show.
     pub shown: Shown,
-    /// Where the line of a wipe is, 0 to 1 from the left.
+    /// Position of the line of a wipe, 0 to 1 from the left.
     pub wipe_share: f32,
     pub is_best_effort: bool,
     pub layers: Layers,
-    /// Name of the device that draws and finds poses; where there is no such one, the first.
+    /// Name of the device that draws and finds poses; the first device if no device has it.
     pub device: String,
-    /// How much of the window's width the field has.
+    /// Share of the window's width that the field takes.
     pub map_share: f32,
 }
 
@@ -45,14 +45,14 @@ impl Default for DriveSettings {
 }
 
 impl DriveSettings {
-    /// Pictures of the chosen arrangement, from left to right.
+    /// Returns the views of the chosen arrangement, from left to right.
     pub fn views(&self) -> Vec<View> {
         let left = View { kind: self.left, shown: self.shown };
         let right = View::picture(self.right);
         match self.layout {
             Layout::One => vec![left],
             Layout::Side | Layout::Wipe => vec![left, right],
-            // Auto is one of the others.
+            // Auto repeats one of the other methods.
             Layout::All => PictureKind::ALL[1..].iter().map(|&kind| View::picture(kind)).collect(),
         }
     }

@@ -1,4 +1,4 @@
-//! Where the pictures come from: a database that was opened, or one made of a recording for as long as it is looked at.
+//! Source of the pictures: an opened database, or a temporary one made from a recording.
 
 use std::sync::Arc;
 
@@ -11,27 +11,27 @@ use reality_sim_synthesis::Archive;
 use super::work_folder::WorkFolder;
 use crate::{background::Progress, device::Device, opening::CACHE_BYTES};
 
-/// Pictures that are held back to compare with. Recordings with few poses need all of theirs.
+/// Pictures held back to compare with. Recordings with few poses need all of theirs.
 const HOLD_BACK: HoldBack = HoldBack { every: 5, at_least: 10 };
 
-/// An archive and, where it was made for now, the folder of its file: that is deleted when the last thread has gone.
+/// Archive and, for a temporary one, the folder of its file, which is deleted when the last thread has released it.
 #[derive(Debug)]
 pub struct Source {
     pub archive: Arc<Archive>,
     /// True pictures that are not in the archive.
     pub probes: Option<Probes>,
-    /// After the archive, which has a file of it open.
+    /// Declared after the archive, which keeps a file in it open.
     _folder: Option<WorkFolder>,
 }
 
 impl Source {
-    /// A database that was opened.
+    /// Takes a database that was opened.
     pub fn of_archive(archive: Arc<Archive>) -> Self {
         Self { archive, probes: None, _folder: None }
     }
 }
 
-/// Pictures of a recording with the poses at which they were taken.
+/// Pictures of a recording with their camera poses.
 #[derive(Debug, Clone)]
 pub struct Probes {
     sequence: Arc<Sequence>,
@@ -39,24 +39,24 @@ pub struct Probes {
     poses: Arc<[(usize, CameraPose)]>,
 }
 
-/// Whether they are the same ones, not only alike.
+/// Compares by identity.
 impl PartialEq for Probes {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.poses, &other.poses)
     }
 }
 
-/// A probe near a pose.
+/// Probe near a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearProbe {
     pub frame: usize,
     pub pose: CameraPose,
-    /// How far the picture moves from it, root mean square pixels.
+    /// Distance by which the picture moves from the probe, root mean square pixels.
     pub distance_px: f64,
 }
 
 impl Probes {
-    /// Those of a recording's pictures of which the pose is known; `None` where there are none.
+    /// Takes the pictures of a recording that have reference poses; `None` if there are none.
     pub fn of_recording(sequence: &Arc<Sequence>) -> Option<Self> {
         let known = sequence.reference_poses().enumerate();
         Self::new(sequence, known.filter_map(|(frame, pose)| Some((frame, pose?))))
@@ -67,17 +67,17 @@ impl Probes {
         (!poses.is_empty()).then(|| Self { sequence: sequence.clone(), poses })
     }
 
-    /// What the recording is called.
+    /// Returns the recording's name.
     pub fn name(&self) -> &str {
         &self.sequence.name
     }
 
-    /// Frames and poses.
+    /// Returns frames and poses.
     pub fn poses(&self) -> &[(usize, CameraPose)] {
         &self.poses
     }
 
-    /// The one that moves the picture least.
+    /// Returns the probe from which the picture moves least.
     pub fn nearest(&self, metric: &PixelMetric, pose: CameraPose) -> Option<NearProbe> {
         let near = self.poses.iter().map(|&(frame, taken)| NearProbe {
             frame,
@@ -87,15 +87,15 @@ impl Probes {
         near.min_by(|a, b| a.distance_px.total_cmp(&b.distance_px))
     }
 
-    /// The picture of a frame.
+    /// Reads the picture of a frame.
     pub fn picture(&self, frame: usize) -> Result<RgbImage, String> {
         self.sequence.load_image(frame).map_err(|error| error.to_string())
     }
 }
 
-/// Makes a database of a recording in a temporary file: by its reference poses, or by those that the filter finds on a
-/// device and is sure of. Measures the hall, and holds some pictures back as probes. The file is deleted with what is
-/// returned, or before an error is.
+/// Makes a database from a recording in a temporary file, by its reference poses or by those that the filter finds on a
+/// device and is sure of. Measures the hall, and holds some pictures back as probes. The file is deleted with the returned
+/// value, or before an error is returned.
 pub fn build(
     sequence: &Arc<Sequence>,
     device: Option<&Device>,
@@ -135,7 +135,7 @@ fn filter_plan(device: Option<&Device>) -> FilterPlan {
     }))
 }
 
-/// Says what helps here.
+/// Returns the error's message with a remedy for this panel.
 fn words(error: &PipelineError) -> String {
     match error {
         PipelineError::NothingSure { folder } => format!(
@@ -146,12 +146,12 @@ fn words(error: &PipelineError) -> String {
     }
 }
 
-/// Whether pictures are held back to compare with, where so many have poses.
+/// Whether pictures are held back to compare with, for this number of poses.
 pub fn holds_back(poses: usize) -> bool {
     poses >= HOLD_BACK.at_least
 }
 
-/// The words are never seen: who cancels knows.
+/// The message is never shown: the user who cancels knows.
 fn stop_if_cancelled(progress: &Progress) -> Result<(), String> {
     if progress.is_cancelled() { Err("cancelled".to_owned()) } else { Ok(()) }
 }

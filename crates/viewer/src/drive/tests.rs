@@ -1,4 +1,4 @@
-//! Without a window: the database made of a recording, and the thread that draws.
+//! Tests without a window: the database made from a recording, and the drawing thread.
 
 use std::{
     collections::BTreeMap,
@@ -35,7 +35,7 @@ use crate::{
     problems::Problems,
 };
 
-/// Far more than any of this takes.
+/// Time limit, far more than any test takes.
 const LIMIT: Duration = Duration::from_secs(120);
 
 fn walk() -> Sequence {
@@ -61,7 +61,8 @@ fn built(sequence: Sequence) -> Source {
     finished(&task).unwrap()
 }
 
-/// One for all tests that hold it at the same time; its file goes with the last of them, which a static would not let it.
+/// Returns a source shared by tests that run at the same time; its file is deleted with the last of them, unlike with a
+/// static.
 fn source() -> Arc<Source> {
     static SHARED: Mutex<Weak<Source>> = Mutex::new(Weak::new());
     let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -83,7 +84,7 @@ fn wish(source: &Source, pose: CameraPose) -> Wish {
     }
 }
 
-/// What the thread says until it has drawn all that was wished for.
+/// Collects the thread's answers until it has drawn everything requested.
 fn fulfilled(painter: &mut Painter, wish: &Wish) -> (Around, BTreeMap<View, Painted>) {
     painter.wish(wish.clone());
     let (mut around, mut painted) = (None, BTreeMap::new());
@@ -248,7 +249,7 @@ fn while_wishes_change_without_an_end_every_view_gets_its_turn_and_the_first_is_
     let views = wish(&source, probe(&source).1).views;
     let (start, mut step, mut drawn) = (Instant::now(), 0, Vec::new());
     while !views.iter().all(|view| drawn.contains(view)) {
-        // As a hand that does not rest: another pose whenever a picture comes.
+        // The pose changes whenever a picture arrives, as when the mouse never rests.
         step += 1;
         let pose = CameraPose { yaw_rad: 0.0001 * f64::from(step), ..probe(&source).1 };
         painter.wish(wish(&source, pose));
@@ -318,11 +319,10 @@ fn another_device_is_opened_at_once_and_once() {
     assert_eq!(opened.load(Ordering::SeqCst), 1);
 }
 
-/// Only the test below starts with this variable set.
+/// Environment variable that is set only by the test below when it starts itself.
 const ALONE: &str = "REALITY_SIM_VIEWER_TEST_TEMPORARY";
 
-/// The work of a panel that is left while its database is being made, in a process of its own: its temporary folder is its
-/// own, too.
+/// Drops a panel while its database is being made, in a process of its own with its own temporary folder.
 #[test]
 fn the_panel_that_is_left() {
     let Some(parent) = std::env::var_os(ALONE).map(PathBuf::from) else { return };

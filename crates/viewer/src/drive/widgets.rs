@@ -1,11 +1,11 @@
-//! Pieces of the panel that several of its parts show.
+//! Widgets that several parts of the panel share.
 
 use eframe::egui::{self, Color32, Stroke, Ui, Vec2};
 use reality_sim_synthesis::ORIGIN_HUES;
 
 use crate::device::{Device, list_ui};
 
-/// The device of a person's choice, and a list to choose another from.
+/// Shows the chosen device, and a list for choosing another.
 pub fn device_ui(ui: &mut Ui, chosen: &mut String, devices: &[Device]) {
     ui.horizontal(|ui| {
         let label = ui.label("Computed by");
@@ -14,18 +14,18 @@ pub fn device_ui(ui: &mut Ui, chosen: &mut String, devices: &[Device]) {
     });
 }
 
-/// Returns a number of things in words: one needs no plural.
+/// Returns a number of things in words, without a plural for one.
 pub fn counted(count: usize, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
-/// The colour of the image that is so many-th in use.
+/// Returns the colour of the n-th image in use.
 pub fn hue(number: usize) -> Color32 {
     let [red, green, blue] = ORIGIN_HUES[number % ORIGIN_HUES.len()];
     Color32::from_rgb(red, green, blue)
 }
 
-/// A small square of a colour, in a text.
+/// Returns a small coloured square for use in text.
 pub fn swatch(color: Color32) -> egui::Atom<'static> {
     egui::Atom::paint(Vec2::splat(10.0), move |ui, args| {
         let stroke = Stroke::new(1.0, Color32::from_gray(110));

@@ -1,4 +1,4 @@
-//! The folder of a database that is there only for as long as it is looked at.
+//! Folder of a temporary database.
 
 use std::{
     fs::{self, File},
@@ -8,33 +8,33 @@ use std::{
 
 use tempfile::TempDir;
 
-/// What such folders' names begin with; the process and a few letters by chance follow.
+/// Prefix of the folder's name; the process id and random letters follow.
 const PREFIX: &str = "reality-sim-viewer-";
-/// The file in it that its process has locked. The system lets go of the lock however the process ends.
+/// File in the folder that its process has locked. The system releases the lock however the process ends.
 const LOCK: &str = "in-use";
 
-/// A temporary folder that is deleted with this. Where the process is killed before, the next one to make such a folder
-/// deletes it.
+/// Temporary folder that is deleted when this is dropped. If the process is killed before, the next one to make such a
+/// folder deletes it.
 #[derive(Debug)]
 pub struct WorkFolder {
-    /// Before the folder: files that are open cannot be deleted everywhere.
+    /// Declared before the folder: some systems cannot delete open files.
     _lock: File,
     folder: TempDir,
 }
 
 impl WorkFolder {
-    /// A new folder in another one, out of which those that nobody uses any more are swept.
+    /// Makes a new folder inside `parent`, and deletes those that are no longer in use.
     pub fn new_in(parent: &Path) -> io::Result<Self> {
         sweep(parent);
         let prefix = format!("{PREFIX}{}-", std::process::id());
         let folder = tempfile::Builder::new().prefix(&prefix).tempdir_in(parent)?;
         let lock = File::create_new(folder.path().join(LOCK))?;
-        // Where nothing can be locked, nobody else can either: nothing is swept there.
+        // Where files cannot be locked, nothing can be told to be unused, and nothing is deleted.
         let _ = lock.lock();
         Ok(Self { _lock: lock, folder })
     }
 
-    /// Where it is.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         self.folder.path()
     }
@@ -44,7 +44,7 @@ fn sweep(parent: &Path) {
     for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
         let is_such = entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX));
         if is_such && is_abandoned(&entry.path()) {
-            // What cannot be deleted, as another's, stays.
+            // A folder that cannot be deleted, as another user's, stays.
             let _ = fs::remove_dir_all(entry.path());
         }
     }
@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn folders_of_processes_that_were_killed_are_swept_and_no_others() {
         let parent = tempfile::tempdir().unwrap();
-        // As a process leaves it that has no time to clean up: the file is there, and nobody holds its lock.
+        // State left by a killed process: the file is there, and nobody holds its lock.
         let killed = parent.path().join("reality-sim-viewer-1-killed");
         let others = parent.path().join("photographs");
         for folder in [&killed, &others] {

@@ -1,4 +1,4 @@
-//! The coverage as colours on the carpet.
+//! Coverage as colours on the carpet.
 
 use std::sync::Arc;
 
@@ -16,17 +16,17 @@ use crate::{
     problems::Problems,
 };
 
-/// Side of a cell of the coverage, metres.
+/// Side of a cell of the coverage grid, metres.
 const CELL_M: f64 = 0.25;
 
-/// The coverage, counted in the background once it is wanted.
+/// Coverage, counted in the background once it is needed.
 pub struct CoverageMap(Counted);
 
 enum Counted {
     NotYet,
     Counting(Task<Coverage>),
     Done(Coverage),
-    /// Not possible, or not wanted.
+    /// Not possible, or not requested.
     Never,
 }
 
@@ -36,7 +36,7 @@ impl Default for CoverageMap {
     }
 }
 
-/// Counting holds the database, which may be a temporary one: it is waited for.
+/// Counting holds the database, which may be temporary, so the drop waits for it.
 impl Drop for CoverageMap {
     fn drop(&mut self) {
         if let Counted::Counting(task) = std::mem::replace(&mut self.0, Counted::Never) {
@@ -46,7 +46,7 @@ impl Drop for CoverageMap {
 }
 
 impl CoverageMap {
-    /// Counts the coverage once it is wanted.
+    /// Starts counting the coverage once it is needed.
     pub fn poll(&mut self, ui: &Ui, source: &Arc<Source>, layers: &mut Layers, problems: &mut Problems) {
         if layers.coverage == CoverageLayer::Off {
             return;
@@ -77,7 +77,7 @@ impl CoverageMap {
         }
     }
 
-    /// What the colours mean.
+    /// Shows the meaning of the colours.
     pub fn legend_ui(&self, ui: &mut Ui, layer: CoverageLayer) {
         match (&self.0, layer) {
             (_, CoverageLayer::Off) | (Counted::NotYet | Counted::Never, _) => {}
@@ -118,7 +118,7 @@ impl CoverageMap {
     }
 }
 
-/// The colour of a share of the coverage: on the dark carpet the better covered is the brighter.
+/// Returns the colour of a fraction of the coverage: brighter means better covered, as the carpet is dark.
 fn shade(share: f64) -> Color32 {
     let [red, green, blue] = shade_srgb(1.0 - share);
     Color32::from_rgb(red, green, blue)
@@ -128,7 +128,7 @@ fn most(coverage: &Coverage) -> f64 {
     f64::from(coverage.cells.iter().map(CoverageCell::count).max().unwrap_or(0).max(1))
 }
 
-/// A strip of colours.
+/// Shows a colour bar.
 fn scale(ui: &mut Ui, color: impl Fn(f64) -> Color32) {
     const STEPS: u32 = 24;
     let (rect, _) = ui.allocate_exact_size(vec2(96.0, 10.0), egui::Sense::hover());

@@ -1,4 +1,4 @@
-//! Drawing of what is known around the robot.
+//! Drawing of the data around the robot.
 
 use eframe::egui::{Align2, Color32, FontId, Pos2, Shape, Stroke, vec2};
 use glam::DVec2;
@@ -10,12 +10,12 @@ use super::{
 };
 use crate::{colors, field_view::FieldCanvas};
 
-/// More marks than this are not seen one by one: every so many-th is drawn.
+/// Largest number of marks: more cannot be distinguished, so only every n-th is drawn.
 pub const MOST_MARKS: usize = 3000;
-/// Weights below this are not written.
+/// Least weight that is written.
 const LEAST_WEIGHT: f64 = 0.005;
 
-/// The drawn path.
+/// Colour of the drawn path.
 const PATH: Color32 = Color32::WHITE;
 
 /// Draws the layers that are switched on.
@@ -54,7 +54,7 @@ pub fn draw_known(canvas: &FieldCanvas, content: &MapContent, pose: CameraPose) 
     }
 }
 
-/// A dot and where it looks.
+/// Draws a dot with its viewing direction.
 fn mark(canvas: &FieldCanvas, planar: Pose2, radius: f32, color: Color32) {
     let at = canvas.at(planar.position_in_world());
     let direction = vec2(planar.yaw_rad.cos() as f32, -planar.yaw_rad.sin() as f32);
@@ -63,7 +63,7 @@ fn mark(canvas: &FieldCanvas, planar: Pose2, radius: f32, color: Color32) {
     canvas.painter.line_segment([at, end], Stroke::new(0.6 * radius.min(3.0), color));
 }
 
-/// A small hollow diamond.
+/// Draws a small hollow diamond.
 fn draw_probe(canvas: &FieldCanvas, planar: Pose2) {
     let at = canvas.at(planar.position_in_world());
     let corners = [vec2(0.0, -2.5), vec2(2.5, 0.0), vec2(0.0, 2.5), vec2(-2.5, 0.0)];
@@ -90,8 +90,8 @@ fn draw_neighbours(canvas: &FieldCanvas, around: &Around, poses: &[CameraPose], 
         let width = 1.0 + 4.0 * neighbour.weight as f32;
         canvas.painter.line_segment([from, at], Stroke::new(width, Color32::from_white_alpha(150)));
         mark(canvas, planar, 3.0, Color32::WHITE);
-        // Away from the robot, where the lines are not.
-        // Those at the robot's feet one below the other.
+        // Text goes to the side away from the robot, where there are no lines.
+        // The texts at the robot's feet are stacked.
         let is_here = at.distance(from) < 12.0;
         let aside = if is_here { vec2(0.0, 22.0 + below) } else { 16.0 * (at - from).normalized() };
         below += if is_here { 14.0 } else { 0.0 };
@@ -103,7 +103,7 @@ fn draw_neighbours(canvas: &FieldCanvas, around: &Around, poses: &[CameraPose], 
     }
 }
 
-/// The place under the mouse, in numbers.
+/// Writes the coordinates under the pointer.
 pub fn write_pointer(canvas: &FieldCanvas) {
     if let Some(pointer) = canvas.response.hover_pos() {
         let place = canvas.in_world(pointer);

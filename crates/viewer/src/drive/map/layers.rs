@@ -1,4 +1,4 @@
-//! What is drawn on the field, and what there is to draw.
+//! Layers that can be drawn on the field, and their data.
 
 use std::sync::Arc;
 
@@ -11,24 +11,24 @@ use super::super::{
     source::{Probes, Source},
 };
 
-/// Recorded pictures' places.
+/// Colour of the positions of recorded pictures.
 pub const IMAGES: Color32 = Color32::from_rgb(200, 205, 210);
-/// The triangulation.
+/// Colour of the triangulation.
 pub const EDGES: Color32 = Color32::from_rgb(120, 215, 190);
-/// What is drawn on the field.
+/// Layers drawn on the field.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Layers {
-    /// Where pictures were recorded.
+    /// Positions of recorded pictures.
     pub images: bool,
     pub coverage: CoverageLayer,
     /// The Delaunay triangulation of the sectors around the heading.
     pub triangulation: bool,
     /// The natural neighbours and their weights.
     pub neighbours: bool,
-    /// The images that the picture is made of.
+    /// Images from which the picture is made.
     pub used: bool,
-    /// The ground in the picture.
+    /// Footprint of the picture on the ground.
     pub footprint: bool,
     /// True pictures to compare with.
     pub probes: bool,
@@ -48,22 +48,22 @@ impl Default for Layers {
     }
 }
 
-/// What the carpet is coloured by.
+/// Quantity shown by the carpet's colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CoverageLayer {
     #[default]
     Off,
-    /// How many pictures were taken there.
+    /// Number of pictures taken in a cell.
     Pictures,
-    /// How far the nearest picture is.
+    /// Distance to the nearest picture.
     Distance,
 }
 
 impl CoverageLayer {
     pub const ALL: [Self; 3] = [Self::Off, Self::Pictures, Self::Distance];
 
-    /// What it is called.
+    /// Returns the name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Off => "no coverage",
@@ -73,14 +73,14 @@ impl CoverageLayer {
     }
 }
 
-/// What there is to draw.
+/// Data to draw.
 pub struct MapContent<'a> {
     pub source: &'a Arc<Source>,
     pub layers: Layers,
     pub around: Option<&'a Around>,
-    /// The images that a picture is made of.
+    /// Images from which a picture is made.
     pub used: &'a [UsedImage],
-    /// Which picture.
+    /// Name of that picture.
     pub used_by: &'static str,
     pub probes: Option<&'a Probes>,
 }

@@ -3,7 +3,7 @@ use reality_sim_core::field::FieldDimensions;
 
 use super::*;
 
-/// A map that is shown, or not, and its robot.
+/// A map, shown or hidden, and its robot.
 struct Window {
     map: Map,
     robot: Robot,
