@@ -104,8 +104,8 @@ impl ParticleFilter {
         &self.particles
     }
 
-    /// Returns the best particles of the last update's first iteration that lie apart from each other, best first: other poses
-    /// from which the picture may have been taken.
+    /// Returns the best particles of the last update's first iteration that lie apart from each other, best first:
+    /// other poses from which the picture may have been taken.
     pub fn alternatives(&self) -> &[CameraPose] {
         &self.alternatives
     }
@@ -198,8 +198,8 @@ impl ParticleFilter {
         }
     }
 
-    /// Diffuses the particles. The first iteration leaves the planar poses alone, since prediction has spread them already, and
-    /// starts from the mount pose.
+    /// Diffuses the particles. The first iteration leaves the planar poses alone, since prediction has spread them
+    /// already, and starts from the mount pose.
     fn diffuse(&mut self, iteration: u32, scale: f64, sigma: PlanarSigma, mount: MountPose) {
         let stream = self.stream(Purpose::Diffuse, iteration);
         let mount_sigma = self.config.mount_sigma.unwrap_or(MountPoseSigma { height_m: 0.0, angle_rad: 0.0 });

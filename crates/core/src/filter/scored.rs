@@ -13,9 +13,9 @@ use crate::{
     preprocess::Prepared,
 };
 
-/// Particle filter that handles one picture at a time: load it, predict, update. The particles may live on another device, so
-/// that reading them between updates may be slow. If the device fails, the call returns an error, and the state of the filter
-/// is invalid until [`Filter::reset`].
+/// Particle filter that handles one picture at a time: load it, predict, update. The particles may live on another
+/// device, so that reading them between updates may be slow. If the device fails, the call returns an error, and the
+/// state of the filter is invalid until [`Filter::reset`].
 pub trait Filter: Send + Sync {
     /// Loads a new picture. Fails if the device does.
     fn load(&mut self, picture: &Prepared) -> Result<(), BackendError>;
@@ -26,8 +26,8 @@ pub trait Filter: Send + Sync {
     /// Forgets all particles, and starts again as a new filter with this seed would.
     fn reset(&mut self, seed: u64);
 
-    /// Replaces all particles by new ones around several poses, in proportion to the weights of the poses. Fails if the device
-    /// does.
+    /// Replaces all particles by new ones around several poses, in proportion to the weights of the poses. Fails if the
+    /// device does.
     fn initialize(&mut self, modes: &[(Pose2, f64)], sigma: PlanarSigma) -> Result<(), BackendError>;
 
     /// Moves the particles to the next picture, see [`ParticleFilter::predict`]. Fails if the device does.

@@ -35,8 +35,8 @@ pub struct LocalizerConfig {
 }
 
 impl LocalizerConfig {
-    /// Returns the defaults for an observation model: the paper's two models run as in the paper, `contrast` runs with all six
-    /// degrees of freedom and with refinement.
+    /// Returns the defaults for an observation model: the paper's two models run as in the paper, `contrast` runs with
+    /// all six degrees of freedom and with refinement.
     pub fn new(kind: ObservationKind) -> Self {
         let six = kind == ObservationKind::Contrast;
         let mount_sigma = MountPoseSigma::default();
@@ -98,7 +98,8 @@ impl Default for LocalizerConfig {
 pub struct RelocalizationConfig {
     /// Settings of the search itself.
     pub search: SearchConfig,
-    /// Spread of the particles around a place that was found, 6 cm and 0.04 rad: small, since the search has refined it already.
+    /// Spread of the particles around a place that was found, 6 cm and 0.04 rad: small, since the search has refined it
+    /// already.
     pub found_sigma: PlanarSigma,
     /// Margin in log-weight by which the best place must beat the second for a search to be clear, 6 (about 400 to 1).
     pub clear_margin: f64,
@@ -127,14 +128,15 @@ impl Default for RelocalizationConfig {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct TrackConfig {
-    /// Uncertainty after an odometry reset, 1.5 m and 1 rad: somebody carried the robot (the kidnapped robot problem), or the
-    /// recording has a gap.
+    /// Uncertainty after an odometry reset, 1.5 m and 1 rad: somebody carried the robot (the kidnapped robot problem),
+    /// or the recording has a gap.
     pub kidnapped_sigma: PlanarSigma,
     /// Uncertainty of a settled pose, which the lines determine, 2 cm and 0.02 rad.
     pub settled_sigma: PlanarSigma,
     /// Uncertainty of a pose that fits but is not confirmed yet, 0.3 m and 0.2 rad: it is one of several possible places.
     pub likely_sigma: PlanarSigma,
-    /// Minimum uncertainty of a filter that may be lost, 0.5 m and 0.4 rad; multiplied by the number of doubtful pictures so far.
+    /// Minimum uncertainty of a filter that may be lost, 0.5 m and 0.4 rad; multiplied by the number of doubtful
+    /// pictures so far.
     pub lost_sigma: PlanarSigma,
     /// Maximum number of doubtful pictures that are counted, 8: by then the prior is 4.5 m wide.
     pub max_doubtful_frames: u32,
@@ -143,8 +145,8 @@ pub struct TrackConfig {
     /// Uncertainty of a prediction above which it may have led to the wrong one of two places that fit, 0.15 m: half of what
     /// triggers a search.
     pub long_way_sigma_m: f64,
-    /// Minimum distance of a jump back to the origin for the odometry to count as reset, 0.1 m: a robot that has hardly left its
-    /// origin is not taken for one that was carried.
+    /// Minimum distance of a jump back to the origin for the odometry to count as reset, 0.1 m: a robot that has hardly
+    /// left its origin is not taken for one that was carried.
     pub reset_jump_m: f64,
     /// Weight of the newest picture in the slow average of the line fraction, 0.05 (Thrun's α_slow; about 20 pictures).
     pub line_fraction_weight: f64,
@@ -154,8 +156,8 @@ pub struct TrackConfig {
     pub lost_line_fraction: f64,
     /// Line fraction from which a pose fits, 0.25, provided that it also passes [`TrackConfig::fitting_ratio`].
     pub fitting_line_fraction: f64,
-    /// Fraction of the slow average from which a pose fits, 0.55: a little above [`TrackConfig::lost_ratio`], so that no pose
-    /// both fits and is lost.
+    /// Fraction of the slow average from which a pose fits, 0.55: a little above [`TrackConfig::lost_ratio`], so that
+    /// no pose both fits and is lost.
     pub fitting_ratio: f64,
     /// Number of consecutive pictures that must fit before one of several places counts as confirmed, 4.
     pub confirming_frames: u32,

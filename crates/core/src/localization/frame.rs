@@ -22,8 +22,8 @@ pub struct LocalizedFrame {
     pub mount: MountPose,
     /// Motion since the previous picture, by odometry.
     pub motion: Option<Motion2>,
-    /// Fraction of the line in view that the picture shows where the pose projects it. If it is small at the pose itself, the
-    /// fraction at the best-fitting pose next to it.
+    /// Fraction of the line in view that the picture shows where the pose projects it. If it is small at the pose
+    /// itself, the fraction at the best-fitting pose next to it.
     pub line_fraction: f64,
     /// Whether the lines fit at this pose and nowhere else, except at its mirror pose.
     pub settled: bool,

@@ -96,7 +96,8 @@ impl Localizer {
         (self.start, self.track, self.frame) = (start, None, 0);
     }
 
-    /// Hands over early the picture that will be localized after the next one, so that a device can upload it while it computes.
+    /// Hands over early the picture that will be localized after the next one, so that a device can upload it while it
+    /// computes.
     pub fn prefetch(&mut self, next: &Arc<RgbImage>) {
         self.filter.prefetch(next);
     }

@@ -31,8 +31,8 @@ pub struct InvalidPicture {
 }
 
 impl Picture {
-    /// Copies RGB pixels from a buffer, row by row without padding. `size` is width and height, pixels. Fails if the number of
-    /// bytes does not match.
+    /// Copies RGB pixels from a buffer, row by row without padding. `size` is width and height, pixels. Fails if the
+    /// number of bytes does not match.
     pub fn from_rgb(size: [u32; 2], bytes: &[u8]) -> Result<Self, InvalidPicture> {
         let expected = byte_count(size, 3);
         let invalid = InvalidPicture { size, expected, found: bytes.len() };
@@ -42,8 +42,8 @@ impl Picture {
         RgbImage::from_raw(size[0], size[1], bytes.to_vec()).map(Self::from).ok_or(invalid)
     }
 
-    /// Copies grey pixels from a buffer, row by row without padding. `size` is width and height, pixels. Fails if the number of
-    /// bytes does not match.
+    /// Copies grey pixels from a buffer, row by row without padding. `size` is width and height, pixels. Fails if the
+    /// number of bytes does not match.
     pub fn from_grey(size: [u32; 2], bytes: &[u8]) -> Result<Self, InvalidPicture> {
         let expected = byte_count(size, 1);
         let invalid = InvalidPicture { size, expected, found: bytes.len() };

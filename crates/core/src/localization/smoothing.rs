@@ -29,8 +29,9 @@ impl Localizer {
 }
 
 impl Smoother<'_> {
-    /// Returns the most probable poses of all frames together, one per frame. A picture whose own fit was missing or contradicts
-    /// the others is fitted once more, starting from the pose that the others suggest; `picture` loads it by its index.
+    /// Returns the most probable poses of all frames together, one per frame. A picture whose own fit was missing or
+    /// contradicts the others is fitted once more, starting from the pose that the others suggest; `picture` loads it
+    /// by its index.
     ///
     /// Returns `None` if no picture could be fitted at all. Fails only if `picture` does.
     pub fn smooth<E>(

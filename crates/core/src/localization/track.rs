@@ -178,7 +178,8 @@ impl Track {
         is_settled
     }
 
-    /// Updates the slow average. Without a settled picture it fades: what was usual before a search need not be usual after it.
+    /// Updates the slow average. Without a settled picture it fades: what was usual before a search need not be usual
+    /// after it.
     fn average(&mut self, line_fraction: Option<f64>) {
         let weight = self.config.line_fraction_weight;
         match line_fraction {
@@ -195,8 +196,8 @@ impl Track {
         self.mirrored_log_odds != f64::NEG_INFINITY && line_fraction >= self.config.fitting_line_fraction
     }
 
-    /// Adds a picture's log-odds of the mirror pose. If the mirror pose becomes the more probable one, the track turns round and
-    /// this returns true.
+    /// Adds a picture's log-odds of the mirror pose. If the mirror pose becomes the more probable one, the track turns
+    /// round and this returns true.
     pub fn weigh_halves(&mut self, mirrored_log_odds: f64) -> bool {
         self.mirrored_log_odds += mirrored_log_odds;
         let is_mirrored = self.mirrored_log_odds > 0.0;

@@ -4,50 +4,51 @@ use serde::{Deserialize, Serialize};
 
 use crate::field::FieldDimensions;
 
-/// Which observation model weighs the particles.
+/// Observation model that weighs the particles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ObservationKind {
-    /// The paper's Eq. 2: blurred grey values along the projected lines.
+    /// Blurred grey values along the projected lines: the paper's Eq. 2.
     Gauss,
-    /// The paper's Eq. 1: distances from the projected lines to the white lines in the picture.
+    /// Distances from the projected lines to the white lines in the picture: the paper's Eq. 1.
     Distance,
-    /// Lines against their flanks.
+    /// Contrast of the projected lines against the carpet on both sides.
     #[default]
     Contrast,
 }
 
-/// Settings of the observation models. The defaults are one set for all cameras and fields; `docs/paper.md` has the
-/// sweeps they come from.
+/// Settings of the observation models. The same defaults serve all cameras and fields; `docs/paper.md` has the
+/// parameter sweeps behind them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ObservationConfig {
-    /// The model.
+    /// Observation model.
     pub kind: ObservationKind,
     /// Distance between samples on the ground, metres.
     pub spacing_m: f64,
-    /// The same in line widths; the larger of the two is used. Lines of a large field are wide: samples closer than that
-    /// say the same thing twice.
+    /// The same distance in line widths; the larger of the two is used. The lines of a large field are wide, and
+    /// samples closer together than that are redundant.
     pub spacing_line_widths: f64,
-    /// Sigma of the Gaussian blur, pixels.
+    /// Standard deviation of the Gaussian blur, pixels.
     pub blur_sigma_px: f32,
-    /// α of Eq. 1 and Eq. 2, grey levels and pixels; positive, see `docs/paper.md`.
+    /// α of Eq. 1 (pixels) and Eq. 2 (grey levels); positive, see `docs/paper.md`.
     pub alpha: f64,
     /// Whether everything outside the field's border counts as black.
     pub mask_border: bool,
-    /// Distances in the distance model are cut here, pixels. At most 31.
+    /// Maximum distance in the distance model, at which all larger ones are clipped, pixels. At most 31.
     pub max_distance_px: f32,
-    /// Nearness, as a fraction of `max_distance_px`, that speaks neither for nor against a line in the distance model. The
-    /// paper has 0.
+    /// Nearness to a white line, as a fraction of `max_distance_px`, that is neither evidence for nor against a line in
+    /// the distance model. 0 in the paper.
     pub distance_neutral: f64,
     /// Log-weight of a line sample that is found.
     pub contrast_gain: f64,
-    /// Contrast that speaks neither for nor against a line. What is in view and not found counts against a pose by it.
+    /// Contrast that is neither evidence for nor against a line. Every sample in view that is not found therefore
+    /// counts against a pose.
     pub contrast_neutral: f64,
 }
 
 impl ObservationConfig {
-    /// The defaults of a model.
+    /// Returns the defaults of a model.
     pub fn new(kind: ObservationKind) -> Self {
         let common = Self {
             kind,
@@ -68,7 +69,7 @@ impl ObservationConfig {
         }
     }
 
-    /// The contrast model with fewer samples, for searching and for checking what the filter found.
+    /// Returns the contrast model with fewer samples, for searching and for checking the filter's result.
     pub(crate) fn coarse_contrast() -> Self {
         let config = Self::new(ObservationKind::Contrast);
         Self {
@@ -79,8 +80,8 @@ impl ObservationConfig {
         }
     }
 
-    /// A cheap score with a basin wide enough for a grid, for exhaustive search: how near samples are to white pixels,
-    /// minus what chance would give, counted in samples.
+    /// Returns a cheap distance model for exhaustive search, with a basin wide enough for a grid: how near the samples
+    /// are to white pixels, minus what chance would give, in units of samples.
     pub fn grid(field: &FieldDimensions) -> Self {
         const SAMPLES: f64 = 260.0;
         const MAX_DISTANCE_PX: f32 = 24.0;
@@ -94,7 +95,7 @@ impl ObservationConfig {
         }
     }
 
-    /// Distance between samples on a field, metres.
+    /// Returns the distance between samples on a field, metres.
     pub(super) fn spacing_in(&self, field: &FieldDimensions) -> f64 {
         self.spacing_m.max(self.spacing_line_widths * field.line_width_m)
     }

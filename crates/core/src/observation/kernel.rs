@@ -1,7 +1,8 @@
-//! The inner loop of all scoring: ground points through a particle's pose and the lens to values of a texture.
+//! Inner loop of all scoring: ground points are projected by a particle's pose and the lens, and a texture is read
+//! there.
 //!
-//! Sixteen points at a time, in plain arrays that the compiler turns into vector instructions; multiplications and
-//! additions are never fused, so that every processor gives the same bits.
+//! It handles sixteen points at a time, in plain arrays that the compiler turns into vector instructions.
+//! Multiplications and additions are never fused, so that every processor gives the same bits.
 
 use crate::{
     camera::{KernelCamera, LANES, Lanes, Pixels, project_lanes},
@@ -12,9 +13,9 @@ use crate::{
 /// Sixteen ground points: neighbours on a line, hence close together.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Block {
-    /// x and y. A block with fewer points is filled up with NaN, which no camera sees.
+    /// x and y, metres. A block with fewer points is padded with NaN, which no camera sees.
     place: [Lanes; 2],
-    /// A circle that holds all points.
+    /// Centre of a circle that contains all points.
     centre: [f32; 2],
     radius: f32,
 }
@@ -28,7 +29,7 @@ impl Block {
         }
         let centre = points.iter().sum::<glam::DVec2>() / points.len() as f64;
         let radius = points.iter().map(|point| point.distance(centre)).fold(0.0, f64::max);
-        // A little larger than that, for rounding.
+        // The radius is a little larger, to allow for rounding.
         Self { place, centre: [centre.x as f32, centre.y as f32], radius: 1.001 * radius as f32 + 1e-4 }
     }
 }
@@ -46,26 +47,26 @@ impl GroundPoints {
         Self { blocks }
     }
 
-    /// All points.
+    /// Returns all points.
     pub fn points(&self) -> impl Iterator<Item = [f32; 2]> {
         let lanes = self.blocks.iter().flat_map(|block| block.place[0].into_iter().zip(block.place[1]));
         lanes.filter(|(x, _)| !x.is_nan()).map(|(x, y)| [x, y])
     }
 }
 
-/// `camera = linear · ground + offset`: a pose for points with z = 0.
+/// Pose for points with z = 0: `camera = linear · ground + offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraFromGround {
-    /// A row for each of the camera's axes.
+    /// One row for each of the camera's axes.
     pub linear: [[f32; 2]; 3],
-    /// Of each of the camera's axes, metres.
+    /// One component for each of the camera's axes, metres.
     pub offset: [f32; 3],
-    /// Of the camera above the ground, metres.
+    /// Height of the camera above the ground, metres.
     pub height_m: f32,
 }
 
 impl CameraFromGround {
-    /// The same pose in single precision.
+    /// Converts a pose to single precision.
     pub fn new(pose: CameraPose) -> Self {
         let rotation = pose.rotation_world_from_camera();
         let position = pose.position_in_world();
@@ -77,7 +78,7 @@ impl CameraFromGround {
         }
     }
 
-    /// Whether a block lies outside the lens's largest angle as a whole, told from its circle alone.
+    /// Returns whether a whole block lies outside the lens's largest angle, judged by the block's circle alone.
     #[inline(always)]
     fn is_beyond(&self, camera: &KernelCamera, block: &Block) -> bool {
         let [a, b] = block.centre;
@@ -85,13 +86,13 @@ impl CameraFromGround {
             self.linear[axis][0] * a + self.linear[axis][1] * b + self.offset[axis]
         });
         let distance = (x * x + y * y + z * z).sqrt();
-        // The point of the circle that is seen at the smallest angle has at most this z, at least this distance.
+        // The circle's point with the smallest angle has at most this z, and at least this distance.
         let least_distance = distance - block.radius.copysign(camera.min_cos);
         z + block.radius < camera.min_cos * least_distance
     }
 }
 
-/// Projects a block; `None` where the camera sees none of it.
+/// Projects a block; `None` if the camera sees none of it.
 #[inline(always)]
 pub(crate) fn project_block(camera: &KernelCamera, pose: &CameraFromGround, block: &Block) -> Option<Pixels> {
     if pose.is_beyond(camera, block) {
@@ -109,10 +110,10 @@ pub(crate) fn project_block(camera: &KernelCamera, pose: &CameraFromGround, bloc
     project_lanes(camera, &place)
 }
 
-/// Bilinear values (0–255) at sixteen pixels; 0 where a point is not seen.
+/// Returns bilinear values (0–255) at sixteen pixels; 0 for points that are not seen.
 #[inline(always)]
 pub(crate) fn sample_block(texture: &Texture, pixels: &Pixels) -> Lanes {
-    /// 1.5 · 2²³: adding it leaves a float's nearest integer in the low bits of its mantissa.
+    /// 1.5 · 2²³: adding it leaves the nearest integer of a float in the low bits of its mantissa.
     const SHIFT: f32 = 12_582_912.0;
     const INTEGER_BITS: u32 = 0x003f_ffff;
     let mut index = [0u32; LANES];
@@ -125,8 +126,8 @@ pub(crate) fn sample_block(texture: &Texture, pixels: &Pixels) -> Lanes {
         let (column, row) = (column.to_bits() & INTEGER_BITS, row.to_bits() & INTEGER_BITS);
         index[i] = row.wrapping_mul(texture.width).wrapping_add(column);
     }
-    // The texels' number is a power of two: the mask costs less than a test for each load, and makes the place of a
-    // point that is not seen harmless.
+    // The number of texels is a power of two: a mask costs less than a bounds test for each load, and makes the index
+    // of a point that is not seen harmless.
     let mask = texture.texels.len() - 1;
     let mut texel = [0u32; LANES];
     for i in 0..LANES {
@@ -145,7 +146,7 @@ pub(crate) fn sample_block(texture: &Texture, pixels: &Pixels) -> Lanes {
     value
 }
 
-/// Sum over all points seen: texture value, and how many were seen.
+/// Returns the sum of the texture's values over all points seen, and the number of these points.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 pub(crate) fn sum_along_lines(
     texture: &Texture,
@@ -156,7 +157,7 @@ pub(crate) fn sum_along_lines(
     sum_on_any_processor(texture, camera, pose, points)
 }
 
-/// What every build of [`sum_along_lines`] computes.
+/// Computes [`sum_along_lines`] in every build.
 #[inline(always)]
 pub(super) fn sum_on_any_processor(
     texture: &Texture,
@@ -184,28 +185,29 @@ pub(crate) struct LinePoints {
     pub right: GroundPoints,
 }
 
-/// What the contrast model needs to know of the picture.
+/// Parameters of the contrast model that depend on the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContrastScale {
     /// One over the Michelson contrast of lines and carpet in this picture.
     pub per_contrast: f32,
-    /// Added to the brightness that contrast is relative to, so that noise in the dark is no line, grey levels.
+    /// Offset added to the brightness in the denominator of the contrast, so that noise in the dark is no line, grey
+    /// levels.
     pub dark_level: f32,
-    /// A line this narrow in the picture, or narrower, does not count: the pixels do not resolve it.
+    /// Width in the picture up to which a line does not count, pixels: the sensor does not resolve it.
     pub min_width_px: f32,
-    /// One over by how much wider it must be to count fully, per pixel.
+    /// One over the additional width from which a line counts fully, per pixel.
     pub per_width_px: f32,
-    /// Area in the picture of one sample's piece of line, seen from 1 m above and 1 m away, over the area that counts
-    /// fully. It falls with the third power of the distance: twice for the distance, once for the flat view.
+    /// Area in the picture of one sample's piece of line, seen from 1 m above and 1 m away, divided by the area that
+    /// counts fully. It falls with the third power of the distance: two for the distance, one for the foreshortening.
     pub relative_area: f32,
 }
 
-/// Something dark where a line should be, an obstacle's edge say, is no worse than no line.
+/// Minimum contrast: something dark in place of a line, such as the edge of an obstacle, is no worse than no line.
 const MIN_CONTRAST: f32 = -0.25;
 
-/// Over all samples seen with both flanks: Σ weight · contrast and Σ weight. Contrast is Michelson's, of the centre and
-/// the brighter flank, in units of the picture's line contrast, cut to [[`MIN_CONTRAST`], 1]: light that changes over the field does
-/// not change it.
+/// Returns Σ weight · contrast and Σ weight over all samples seen with both flanks. Contrast is the Michelson contrast
+/// of the centre and the brighter flank, in units of the picture's line contrast, clipped to [[`MIN_CONTRAST`], 1].
+/// Light that varies over the field does not change it.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 pub(crate) fn contrast_along_lines(
     texture: &Texture,
@@ -217,7 +219,7 @@ pub(crate) fn contrast_along_lines(
     contrast_on_any_processor(texture, camera, pose, points, scale)
 }
 
-/// What every build of [`contrast_along_lines`] computes.
+/// Computes [`contrast_along_lines`] in every build.
 #[inline(always)]
 pub(super) fn contrast_on_any_processor(
     texture: &Texture,

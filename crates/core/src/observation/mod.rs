@@ -1,9 +1,9 @@
-//! How well a picture fits a pose: log-weights of the paper's two observation models and of our own.
+//! Observation models: how well a picture fits a pose, as the log-weights of the paper's two models and of our own.
 //!
 //! | model | log-weight of a pose |
 //! |---|---|
 //! | [`ObservationKind::Gauss`] | Σ blurred grey value / α along all projected lines (Eq. 2) |
-//! | [`ObservationKind::Distance`] | Σ (cap − distance to the next white line) / α (Eq. 1, its sign turned) |
+//! | [`ObservationKind::Distance`] | Σ (cap − distance to the nearest white line) / α (Eq. 1 with the sign reversed) |
 //! | [`ObservationKind::Contrast`] | gain · Σ weight · (contrast of line against flanks − neutral) |
 
 mod config;
@@ -27,21 +27,21 @@ use crate::{
     preprocess::{Prepared, Texture, WhiteLevels},
 };
 
-/// Poses scored by one task: enough work to outweigh handing it over.
+/// Number of poses scored by one task: enough work to outweigh the cost of starting it.
 const POSES_PER_TASK: usize = 16;
 
-/// Scores poses against the picture that was loaded last. The particle filter knows only this, so that the same filter
-/// runs with any model.
+/// Scores poses against the picture that was loaded last. The particle filter depends on this trait alone, so that the
+/// same filter runs with any model.
 ///
-/// A device that fails is an error of the call that failed; the processor never does.
+/// A call fails if its device does; the CPU never fails.
 pub trait Scorer: Send + Sync {
-    /// Takes over a new picture.
+    /// Loads a new picture. Fails if the device does.
     fn load(&mut self, picture: &Prepared) -> Result<(), BackendError>;
-    /// Log-weight of every pose, up to one constant for the whole picture.
+    /// Returns the log-weight of every pose, up to one constant for the whole picture. Fails if the device does.
     fn log_weights(&self, poses: &[CameraPose]) -> Result<Vec<f64>, BackendError>;
 }
 
-/// The observation models on the CPU.
+/// Observation models on the CPU.
 #[derive(Debug, Clone)]
 pub struct CpuScorer {
     model: LineModel,
@@ -57,25 +57,25 @@ impl CpuScorer {
         Self { model, texture: Texture::default(), scale }
     }
 
-    /// Number of line samples scored for each pose.
+    /// Returns the number of line samples scored for each pose.
     pub fn samples(&self) -> usize {
         self.model.places().len()
     }
 
-    /// Fraction of the line in view that the picture shows where the pose puts it: 1 where every line is found, 0 for a
-    /// pose chosen at random. `None` where no line is in view. Contrast model only.
+    /// Returns the fraction of the line in view that the picture shows where the pose projects it: 1 if every line is
+    /// found, about 0 for a random pose. Returns `None` if no line is in view. Contrast model only.
     pub fn line_fraction(&self, pose: CameraPose) -> Option<f64> {
         let [contrast, weight] = self.sums(&pose);
         (weight >= 1.0).then(|| f64::from(contrast / weight))
     }
 
-    /// The picture loaded last, as the model reads it.
+    /// Returns the picture loaded last, as the model reads it.
     pub fn texture(&self) -> &Texture {
         &self.texture
     }
 
-    /// Two sums along the lines of a pose: Σ value and the number of samples seen, or for contrast Σ weight · contrast and
-    /// Σ weight.
+    /// Returns two sums along the lines of a pose: Σ value and the number of samples seen, or for the contrast model Σ
+    /// weight · contrast and Σ weight.
     pub fn sums(&self, pose: &CameraPose) -> [f32; 2] {
         let LineModel { config, camera, points, .. } = &self.model;
         let pose = CameraFromGround::new(*pose);
@@ -87,18 +87,18 @@ impl CpuScorer {
         }
     }
 
-    /// Takes over a new picture, as [`Scorer::load`]; the processor never fails.
+    /// Loads a new picture, as [`Scorer::load`]; the CPU never fails.
     pub fn set_picture(&mut self, picture: &Prepared) {
         self.texture = Texture::pack(&self.model.image(picture));
         self.scale = self.model.contrast_scale(&picture.levels);
     }
 
-    /// Log-weights of poses, as [`Scorer::log_weights`]; the processor never fails.
+    /// Returns the log-weights of poses, as [`Scorer::log_weights`]; the CPU never fails.
     pub fn log_weights_of(&self, poses: &[CameraPose]) -> Vec<f64> {
         poses.par_iter().with_min_len(POSES_PER_TASK).map(|pose| self.log_weight(pose)).collect()
     }
 
-    /// Log-weight of one pose.
+    /// Returns the log-weight of one pose.
     pub(crate) fn log_weight(&self, pose: &CameraPose) -> f64 {
         self.model.log_weight(self.sums(pose))
     }

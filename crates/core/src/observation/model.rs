@@ -1,4 +1,4 @@
-//! What an observation model reads along the lines, and what it makes of it: the part that is the same on every device.
+//! What an observation model reads along the lines, and how it becomes a log-weight: the part common to all devices.
 
 use image::GrayImage;
 
@@ -12,25 +12,25 @@ use crate::{
     preprocess::{DISTANCE_UNITS_PER_PX, Prepared, WhiteLevels, distance_field, gaussian_blur},
 };
 
-/// Flanks lie this many line widths from the line's centre.
+/// Distance of the flanks from the line's centre, in line widths.
 const FLANK_WIDTHS: f64 = 1.0;
-/// Contrast samples nearer than this to another line, in line widths, are left out: their flanks would be white.
+/// Minimum distance of contrast samples from any other line, in line widths: nearer ones would have white flanks.
 const CLEARANCE_WIDTHS: f64 = 1.8;
-/// Sums of two values below this are noise, grey levels.
+/// Sum of two values below which they are noise, grey levels.
 pub(super) const DARK_LEVEL: f32 = 16.0;
-/// Lines narrower than this in the picture, pixels, are not resolved and do not count.
+/// Width in the picture below which lines are not resolved and do not count, pixels.
 const MIN_WIDTH_PX: f32 = 0.7;
-/// Lines wider than this, pixels, count fully.
+/// Width in the picture from which lines count fully, pixels.
 const FULL_WIDTH_PX: f32 = 3.0;
-/// A sample whose piece of line covers this area in the picture, square pixels, counts fully.
+/// Area of a sample's piece of line in the picture from which the sample counts fully, square pixels.
 const FULL_AREA_PX: f64 = 8.0;
 
-/// A camera and the samples of a field's lines, with the settings of an observation model.
+/// Camera and line samples of a field, with the settings of an observation model.
 #[derive(Debug, Clone)]
 pub struct LineModel {
-    /// The settings.
+    /// Settings of the observation model.
     pub config: ObservationConfig,
-    /// The camera as the scoring loops see it.
+    /// Camera in the form that the scoring loops use.
     pub camera: KernelCamera,
     pub(super) points: LinePoints,
     relative_area: f32,
@@ -49,14 +49,14 @@ impl LineModel {
         Self { config, camera: KernelCamera::new(camera), points, relative_area }
     }
 
-    /// Centres of the line samples on the ground, metres, and beside each of them the place on its left flank; the right
-    /// flank mirrors it. Models that look at no flanks have the centre there too.
+    /// Returns the centre of each line sample on the ground, metres, together with its left flank; the right flank is
+    /// its mirror image about the centre. For models without flanks, the centre takes the flank's place.
     pub fn places(&self) -> Vec<[[f32; 2]; 2]> {
         let flanks = if self.points.left.blocks.is_empty() { &self.points.centre } else { &self.points.left };
         self.points.centre.points().zip(flanks.points()).map(|(centre, flank)| [centre, flank]).collect()
     }
 
-    /// What the contrast model needs to know of a picture with these levels.
+    /// Returns the contrast model's parameters for a picture with these levels.
     pub fn contrast_scale(&self, levels: &WhiteLevels) -> ContrastScale {
         ContrastScale {
             per_contrast: 1.0 / levels.michelson(DARK_LEVEL),
@@ -67,7 +67,7 @@ impl LineModel {
         }
     }
 
-    /// Factors of the two sums along a pose's lines that add up to its log-weight.
+    /// Returns the factors by which the two sums along a pose's lines are multiplied to give its log-weight.
     pub fn per_sum(&self) -> [f64; 2] {
         let ObservationConfig {
             alpha,
@@ -90,14 +90,14 @@ impl LineModel {
         }
     }
 
-    /// The log-weight that the two sums along a pose's lines come to.
+    /// Returns the log-weight for the two sums along a pose's lines.
     pub fn log_weight(&self, sums: [f32; 2]) -> f64 {
         let [per_value, per_seen] = self.per_sum();
         let [value, seen] = sums.map(f64::from);
         per_value * value + per_seen * seen
     }
 
-    /// The picture that the model looks values up in.
+    /// Returns the image that the model samples.
     pub fn image(&self, picture: &Prepared) -> GrayImage {
         let mut image = match self.config.kind {
             ObservationKind::Gauss => gaussian_blur(&picture.luma(), self.config.blur_sigma_px),
@@ -110,19 +110,19 @@ impl LineModel {
         image
     }
 
-    /// Whether what lies outside the field's border counts as black. Contrast compares a line with its flanks, which that
-    /// would darken.
+    /// Returns whether everything outside the field's border counts as black. Never for the contrast model: it compares
+    /// a line with its flanks, and masking would darken these.
     pub fn is_masked(&self) -> bool {
         self.config.mask_border && self.config.kind != ObservationKind::Contrast
     }
 
-    /// Distances are cut here, in [`DISTANCE_UNITS_PER_PX`].
+    /// Returns the maximum distance, in [`DISTANCE_UNITS_PER_PX`].
     pub fn nearness_cap(&self) -> u8 {
         (self.config.max_distance_px * DISTANCE_UNITS_PER_PX).clamp(0.0, 255.0) as u8
     }
 }
 
-/// The cap minus the distance to the next white pixel, at least 0.
+/// Returns the cap minus the distance to the nearest white pixel, at least 0.
 fn nearness(distances: &GrayImage, cap: u8) -> GrayImage {
     let mut field = distances.clone();
     field.iter_mut().for_each(|value| *value = cap.saturating_sub(*value));

@@ -1,7 +1,8 @@
-//! Eq. 1 to the letter: from every projected sample, both ways across the projected line to the first white pixel.
+//! Literal implementation of Eq. 1: from every projected sample it searches both ways across the projected line for the
+//! first white pixel.
 //!
-//! [`super::ObservationKind::Distance`] reads the same distance from a distance field, in any direction and many times
-//! faster; `docs/paper.md` compares the two.
+//! [`super::ObservationKind::Distance`] reads the distance to the nearest white pixel in any direction from a distance
+//! field, which is many times faster; `docs/paper.md` compares the two.
 
 use glam::DVec2;
 use image::GrayImage;
@@ -46,7 +47,8 @@ impl NormalSearch {
         distances.map(|distance_px| f64::from(self.max_distance_px - distance_px)).sum::<f64>() / self.alpha
     }
 
-    /// Distance from a projected sample to the next white pixel across the line, at most the cap; `None` out of view.
+    /// Returns the distance from a projected sample to the nearest white pixel across the line, pixels, at most the
+    /// cap. Returns `None` if the sample is out of view.
     fn distance_px(&self, pose: CameraPose, sample: &LineSample) -> Option<u32> {
         let project = |point: DVec2| self.camera.project(pose.camera_from_world(point.extend(0.0))).ok();
         let pixel = project(sample.point_in_world)?;
@@ -54,7 +56,7 @@ impl NormalSearch {
         let normal = (ahead - pixel).perp().try_normalize()?;
         let white = |pixel: DVec2| {
             let [u, v] = pixel.round().to_array();
-            // The casts saturate: what lies left of or above the picture is excluded first.
+            // The casts saturate: samples left of or above the picture are excluded first.
             u >= 0.0
                 && v >= 0.0
                 && self.evidence.get_pixel_checked(u as u32, v as u32).is_some_and(|p| p.0[0] > 0)
@@ -88,7 +90,7 @@ mod tests {
         test_scene,
     };
 
-    /// Straight to the next white pixel is never farther than across the line to one.
+    /// The nearest white pixel in any direction is never farther away than the nearest one across the line.
     #[test]
     fn the_distance_field_is_a_lower_bound_that_is_met_on_the_lines() {
         let (camera, field) = (test_scene::fisheye(), test_scene::field());
@@ -105,7 +107,7 @@ mod tests {
             for (across, any) in across.iter().zip(&any) {
                 assert!(*across <= 1.03 * any, "{across} along the normals, {any} in any direction");
             }
-            // Far lines are white in places only: across the line there may be nothing where along it there is.
+            // Far lines are white in places only: there may be a white pixel along the line, but none across it.
             assert!(across[0] > 0.6 * any[0], "{} and {} in the right place", across[0], any[0]);
             assert!(across.windows(2).all(|pair| pair[0] > pair[1]), "worse with the distance: {across:?}");
         }

@@ -39,7 +39,7 @@ fn any_pose() -> impl Strategy<Value = CameraPose> {
 }
 
 proptest! {
-    /// The single-precision loop against the double-precision camera, all models.
+    /// Compares the single-precision loop with the double-precision camera, for all models.
     #[test]
     fn the_loop_projects_as_the_camera_does(pose in any_pose()) {
         let samples = sample_lines(&test_scene::field(), 0.1);
@@ -57,7 +57,7 @@ proptest! {
                             let error = (pixel - glam::DVec2::new(f64::from(u), f64::from(v))).length();
                             prop_assert!(error < 0.01, "{error} px off at {pixel}");
                         }
-                        // At the picture's very edge the two may disagree by a rounding step.
+                        // At the very edge of the picture the two may disagree by a rounding step.
                         Ok(pixel) => {
                             let (right, bottom) = (f64::from(camera.width - 1), f64::from(camera.height - 1));
                             let edge = pixel.x.min(pixel.y).min(right - pixel.x).min(bottom - pixel.y);
@@ -71,8 +71,8 @@ proptest! {
         }
     }
 
-    /// The build for this processor's widest registers and the one for any processor agree to the last bit: the same
-    /// recording gives the same poses everywhere.
+    /// The build for this processor's widest registers and the portable build agree to the last bit: the same recording
+    /// gives the same poses everywhere.
     #[test]
     fn every_build_of_the_loops_gives_the_same_sums(pose in any_pose(), seed in any::<u32>()) {
         let picture = GrayImage::from_fn(640, 480, |u, v| {
@@ -98,7 +98,7 @@ proptest! {
         }
     }
 
-    /// The sum against one written out in double precision.
+    /// Compares the sum with one written out in double precision.
     #[test]
     fn the_loop_sums_what_lies_along_the_lines(pose in any_pose(), seed in any::<u32>()) {
         let picture = GrayImage::from_fn(640, 480, |u, v| {
@@ -121,7 +121,7 @@ proptest! {
     }
 }
 
-/// Every model prefers the pose a picture was drawn from to poses a little beside it, and to poses far away.
+/// Every model prefers the pose from which a picture was drawn to poses a little beside it and to poses far away.
 #[test]
 fn the_true_pose_scores_best() {
     let (camera, field) = (test_scene::fisheye(), test_scene::field());
@@ -153,7 +153,7 @@ fn the_true_pose_scores_best() {
     }
 }
 
-/// More light must not change what the contrast model says.
+/// More light must not change the contrast model's log-weights.
 #[test]
 fn contrast_does_not_depend_on_the_light() {
     let (camera, field, pose) = (test_scene::fisheye(), test_scene::field(), test_scene::poses()[0]);

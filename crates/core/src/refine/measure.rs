@@ -1,5 +1,5 @@
-//! Where, along the normal of a projected line, the white line really is: the distance model of the paper made
-//! sub-pixel.
+//! Sub-pixel measurement of white lines along the normals of the projected lines: a sub-pixel version of the paper's
+//! distance model.
 
 use glam::DVec2;
 
@@ -7,30 +7,30 @@ use crate::{field::VisibleSample, preprocess::Texture};
 
 /// Step along a profile, pixels.
 const STEP_PX: f64 = 0.5;
-/// A line measured this much wider or narrower than projected is something else.
+/// Allowed ratio of measured to projected width; anything else is not the line.
 const WIDTH_RATIO: std::ops::RangeInclusive<f64> = 0.6..=1.7;
 
 /// Settings of [`measure_offsets`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasureConfig {
-    /// Lines are looked for up to this far from where they are projected, pixels.
+    /// Maximum distance from its projection at which a line is searched for, pixels.
     pub search_px: f64,
-    /// Least difference between line and both flanks, grey levels.
+    /// Minimum difference between the line and each flank, grey levels.
     pub min_contrast: f64,
 }
 
-/// A white line found beside a projected one.
+/// White line found beside a projected one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineOffset {
-    /// The projected sample.
+    /// Projected sample.
     pub visible: VisibleSample,
-    /// From the projected to the measured centre, along the sample's normal in the picture, pixels.
+    /// Offset from the projected to the measured centre, along the sample's normal in the picture, pixels.
     pub offset_px: f64,
-    /// Measured width over projected width.
+    /// Measured width divided by projected width.
     pub width_ratio: f64,
 }
 
-/// Measures every sample whose line is found, both of its edges included.
+/// Measures every sample whose line is found with both of its edges.
 pub fn measure_offsets(
     texture: &Texture,
     samples: &[VisibleSample],
@@ -46,7 +46,7 @@ fn measure(
     config: MeasureConfig,
     profile: &mut Vec<f64>,
 ) -> Option<LineOffset> {
-    // Narrower than this, a line is as wide as the lens and the pixels blur it.
+    // Blur by lens and pixels keeps any line from looking narrower than this.
     let half_width_px = sample.half_width_px.max(0.6);
     let flank_px = half_width_px.clamp(1.0, 4.0) + 1.0;
     let reach_px = config.search_px + half_width_px + flank_px;
@@ -60,7 +60,7 @@ fn measure(
     let (left, right) = edges(profile, peak, half_width_px / STEP_PX, flank_px / STEP_PX)?;
     let offset_px = 0.5 * (place(left) + place(right));
     let width_ratio = (place(right) - place(left)) / (2.0 * half_width_px);
-    // A thin line's width is the blur's, not the line's.
+    // The measured width of a thin line is that of the blur.
     let width_fits = WIDTH_RATIO.contains(&width_ratio) || half_width_px < 1.5 && width_ratio < 3.0;
     (offset_px.abs() <= config.search_px && width_fits).then_some(LineOffset {
         visible: *sample,
@@ -83,7 +83,7 @@ fn mean(profile: &[f64], from: f64, to: f64) -> Option<f64> {
     Some(values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// The index around which a bright bar stands out most from the brighter of its flanks.
+/// Returns the index at which a bright bar stands out most from the brighter of its flanks.
 fn best_match(profile: &[f64], half_width: f64, flank: f64, min_contrast: f64) -> Option<usize> {
     let margin = (half_width + flank).ceil() as usize;
     let middle = profile.len() / 2;
@@ -94,7 +94,7 @@ fn best_match(profile: &[f64], half_width: f64, flank: f64, min_contrast: f64) -
         let inside = mean(profile, centre - 0.7 * half_width, centre + 0.7 * half_width)?;
         let left = mean(profile, centre - half_width - flank, centre - half_width - 0.3 * flank)?;
         let right = mean(profile, centre + half_width + 0.3 * flank, centre + half_width + flank)?;
-        // Of two bars alike the nearer one is the line.
+        // Of two similar bars, the nearer one is the line.
         let nearness = 1.0 - 0.3 * index.abs_diff(middle) as f64 / middle as f64;
         let contrast = inside - left.max(right);
         if contrast > min_contrast && contrast * nearness > best_score {
@@ -104,7 +104,7 @@ fn best_match(profile: &[f64], half_width: f64, flank: f64, min_contrast: f64) -
     best
 }
 
-/// Where the profile crosses half height on both sides of a bar, in steps.
+/// Returns the positions on both sides of a bar at which the profile crosses half its height, in steps.
 fn edges(profile: &[f64], peak: usize, half_width: f64, flank: f64) -> Option<(f64, f64)> {
     let centre = peak as f64;
     let inside = mean(profile, centre - 0.5 * half_width, centre + 0.5 * half_width)?;
@@ -135,7 +135,8 @@ mod tests {
     use super::*;
     use crate::field::LineSample;
 
-    /// A bright vertical bar with its centre at a fraction of a pixel, each pixel the exact share it is covered.
+    /// Draws a bright vertical bar with a sub-pixel centre; each pixel is as bright as the share of it that the bar
+    /// covers.
     fn bar(centre: f64, width: f64) -> Texture {
         let covered = |u: f64| {
             ((u + 0.5).min(centre + width / 2.0) - (u - 0.5).max(centre - width / 2.0)).clamp(0.0, 1.0)

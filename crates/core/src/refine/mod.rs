@@ -1,5 +1,4 @@
-//! From a pose that is nearly right to one that fits the picture to a fraction of a pixel, and from single pictures to
-//! a whole trajectory.
+//! Refinement of approximate poses: of single pictures to a fraction of a pixel, and of whole trajectories.
 
 mod measure;
 mod picture;

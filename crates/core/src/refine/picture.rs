@@ -1,4 +1,5 @@
-//! One picture: all six degrees of freedom fitted to sub-pixel line offsets, with what joints and IMU say as a prior.
+//! Refinement of one picture's pose: all six degrees of freedom are fitted to sub-pixel line offsets, with the mount
+//! pose as a prior.
 
 use glam::DVec3;
 use nalgebra::{Matrix6, Vector6};
@@ -20,17 +21,17 @@ pub struct RefineConfig {
     pub spacing_m: f64,
     /// Distance between samples in the picture, pixels.
     pub spacing_px: f64,
-    /// Search range of each round from a rough guess, pixels.
+    /// Search range of each round, starting from a rough guess, pixels.
     pub wide_search_px: [f64; 5],
-    /// The same from a good one.
+    /// Search range of each round, starting from a good guess, pixels.
     pub narrow_search_px: [f64; 5],
-    /// Smallest standard deviation of one offset, pixels.
+    /// Minimum standard deviation of one offset, pixels.
     pub offset_sigma_px: f64,
-    /// Length of line over which errors of the offsets are one and the same error, pixels.
+    /// Length of line over which the errors of the offsets are fully correlated, pixels.
     pub correlation_px: f64,
-    /// What joints and IMU are worth.
+    /// Uncertainty of the mount pose from joints and IMU.
     pub mount_sigma: MountPoseSigma,
-    /// Fewer lines found than this are no fit.
+    /// Minimum number of offsets for a fit.
     pub min_offsets: usize,
 }
 
@@ -49,34 +50,34 @@ impl Default for RefineConfig {
     }
 }
 
-/// How far from where the guess puts it a line is looked for.
+/// How far from its projection a line is searched for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reach {
-    /// [`RefineConfig::wide_search_px`].
+    /// Search ranges of [`RefineConfig::wide_search_px`].
     Wide,
-    /// [`RefineConfig::narrow_search_px`].
+    /// Search ranges of [`RefineConfig::narrow_search_px`].
     Narrow,
 }
 
-/// A pose fitted to one picture.
+/// Pose fitted to one picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseFit {
-    /// The pose.
+    /// Fitted pose.
     pub pose: CameraPose,
-    /// Covariance of x, y, yaw, height, pitch, roll (metres and radians), joints and IMU included.
+    /// Covariance of x, y, yaw, height, pitch and roll (metres and radians), given the picture and the mount pose.
     pub covariance: Matrix6<f64>,
-    /// Inverse covariance that the picture alone gives.
+    /// Inverse covariance of the six numbers, given the picture alone.
     pub information: Matrix6<f64>,
-    /// Robust standard deviation of the line offsets left, pixels.
+    /// Robust standard deviation of the residual line offsets, pixels.
     pub residual_px: f64,
-    /// Lines found, over samples in view.
+    /// Fraction of the samples in view whose line was found.
     pub found: f64,
     /// Number of offsets in the fit.
     pub offsets: usize,
 }
 
 impl PoseFit {
-    /// The fit turned by 180° about the field's centre, where x and y change their signs.
+    /// Returns the fit turned by 180° about the field's centre, where x and y change their signs.
     pub fn mirrored(self) -> Self {
         let signs = Matrix6::from_diagonal(&Vector6::new(-1.0, -1.0, 1.0, 1.0, 1.0, 1.0));
         let turned = |matrix: Matrix6<f64>| signs * matrix * signs;
@@ -98,7 +99,7 @@ pub struct Refiner {
     config: RefineConfig,
 }
 
-/// The pose moved by a step in its six numbers.
+/// Returns the pose moved by a step in its six numbers.
 pub(super) fn moved(pose: CameraPose, step: &Vector6<f64>) -> CameraPose {
     CameraPose {
         x_m: pose.x_m + step[0],
@@ -111,7 +112,7 @@ pub(super) fn moved(pose: CameraPose, step: &Vector6<f64>) -> CameraPose {
 }
 
 impl Refiner {
-    /// For pictures of this camera on this field.
+    /// Prepares fits to pictures of this camera on this field.
     pub fn new(camera: &Camera, field: &FieldDimensions, config: RefineConfig) -> Self {
         let clearance_m = 1.5 * field.line_width_m;
         let samples = sample_lines(field, config.spacing_m)
@@ -121,12 +122,13 @@ impl Refiner {
         Self { camera: camera.clone(), field: field.clone(), samples, config }
     }
 
-    /// What joints and IMU are worth.
+    /// Returns the uncertainty of the mount pose.
     pub fn mount_sigma(&self) -> MountPoseSigma {
         self.config.mount_sigma
     }
 
-    /// Fits a picture from a first guess. `None` where too few lines are found for six degrees of freedom.
+    /// Fits a picture, starting from a first guess. Returns `None` if too few lines are found for six degrees of
+    /// freedom.
     pub fn fit(
         &self,
         texture: &Texture,
@@ -166,7 +168,7 @@ impl Refiner {
         fit
     }
 
-    /// Iteratively reweighted Gauss–Newton on one set of offsets.
+    /// Runs iteratively reweighted Gauss–Newton steps on one set of offsets.
     fn solve(&self, pose: CameraPose, offsets: &[LineOffset], mount: MountPose) -> Option<Step> {
         let rows: Vec<(Vector6<f64>, f64)> = offsets
             .iter()
@@ -174,7 +176,7 @@ impl Refiner {
             .collect();
         let prior = self.config.mount_sigma.information();
         let mount_error = mount_error(pose, mount);
-        // The samples' density decides how many of them tell something new.
+        // Densely spaced samples share their errors: only one in `repeats` of them is independent.
         let repeats = (self.config.correlation_px / self.config.spacing_px).max(1.0);
         let mut step = Vector6::zeros();
         let mut sigma = robust_sigma(rows.iter().map(|(_, offset)| *offset)).max(self.config.offset_sigma_px);
@@ -195,7 +197,8 @@ impl Refiner {
         Some(Step { step, covariance, information, residual_px: sigma })
     }
 
-    /// Change of the sample's place along its normal with the six numbers of the pose, pixels per metre and radian.
+    /// Returns the derivatives of the sample's offset along its normal by the six numbers of the pose, pixels per metre
+    /// and per radian.
     fn gradient(&self, pose: CameraPose, offset: &LineOffset) -> Option<Vector6<f64>> {
         let point = offset.visible.sample.point_in_world.extend(0.0);
         let (_, [du, dv]) = self.camera.project_with_gradients(pose.camera_from_world(point)).ok()?;
@@ -229,7 +232,7 @@ pub(super) fn mount_error(pose: CameraPose, mount: MountPose) -> Vector6<f64> {
     )
 }
 
-/// The step in the six numbers from one pose to another.
+/// Returns the step in the six numbers from one pose to another.
 pub(super) fn pose_difference(from: CameraPose, to: CameraPose) -> Vector6<f64> {
     Vector6::new(
         to.x_m - from.x_m,
@@ -241,7 +244,7 @@ pub(super) fn pose_difference(from: CameraPose, to: CameraPose) -> Vector6<f64> 
     )
 }
 
-/// Tukey's biweight with its usual constant.
+/// Returns the weight of Tukey's biweight with its usual constant.
 fn tukey(error_in_sigmas: f64) -> f64 {
     let ratio = error_in_sigmas / 4.685;
     if ratio.abs() < 1.0 { (1.0 - ratio * ratio).powi(2) } else { 0.0 }
@@ -252,7 +255,7 @@ mod tests {
     use super::*;
     use crate::{preprocess::whiteness, test_scene};
 
-    /// Pictures of 320 × 240 pixels: a pixel is about 1 cm of carpet near the camera.
+    /// Uses pictures of 320 × 240 pixels, in which a pixel is about 1 cm of carpet near the camera.
     #[test]
     fn a_disturbed_pose_is_found_again_in_all_six_degrees_of_freedom() {
         let (camera, field) = (test_scene::fisheye(), test_scene::field());
@@ -267,7 +270,7 @@ mod tests {
             assert!(error[4].abs() < 0.003 && error[5].abs() < 0.003, "{error:?}");
             assert!(fit.found > 0.4 && fit.residual_px < 0.4, "{fit:?}");
             let nees = (error.transpose() * fit.covariance.try_inverse().unwrap() * error)[0];
-            // χ² of six degrees of freedom exceeds 30 in one of 25,000.
+            // χ² with six degrees of freedom exceeds 30 once in 25,000 times.
             assert!(nees < 30.0, "covariance too small: {nees}");
         }
     }

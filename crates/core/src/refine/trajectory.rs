@@ -1,5 +1,5 @@
-//! A whole recording at once: nothing forces tagging to be causal. Every pose is the most probable one given all
-//! pictures, the odometry between them, and what joints and IMU say: a chain solved by Gauss–Newton, whose normal
+//! Smoothing of a whole recording. Every pose is the most probable one given all pictures, past and future, the
+//! odometry between them, and the mount poses. The poses form a chain, which is solved by Gauss–Newton; its normal
 //! equations are block-tridiagonal (Rauch, Tung and Striebel, 1965, in information form).
 
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Vector3, Vector6};
@@ -12,41 +12,43 @@ use crate::{
     statistics::{median, robust_sigma},
 };
 
-/// Rounds of Gauss–Newton; the chain is nearly linear.
+/// Number of Gauss–Newton rounds; few are enough, since the chain is nearly linear.
 const ROUNDS: usize = 6;
-/// Least sway of the body between two pictures that is believed: standard deviations, metres and radians.
+/// Minimum sway of the body between two pictures: standard deviations forwards, to the left (metres) and in heading
+/// (radians).
 const MIN_SWAY: [f64; 3] = [0.003, 0.003, 0.003];
-/// Sway where the pictures do not tell.
+/// Sway if the pictures cannot determine it.
 const DEFAULT_SWAY: [f64; 3] = [0.02, 0.02, 0.02];
-/// A picture's fit this many times farther from the chain than its covariance says is another line (χ² of six).
+/// Squared Mahalanobis distance from the chain (χ² of six degrees of freedom) above which a picture's fit is an
+/// outlier, made on the wrong line.
 const OUTLIER_CHI2: f64 = 40.0;
 
-/// What is known of one picture.
+/// Everything known about one picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrajectoryFrame {
-    /// A first guess.
+    /// First guess of the pose.
     pub guess: CameraPose,
-    /// What the picture says, where it says anything.
+    /// Fit to the picture, if there is one.
     pub fit: Option<PoseFit>,
-    /// What joints and IMU say.
+    /// Mount pose by joints and IMU.
     pub mount: MountPose,
-    /// Motion from the frame before, by odometry.
+    /// Motion since the previous frame, by odometry.
     pub motion: Option<Motion2>,
 }
 
-/// A pose of the whole recording's solution.
+/// Pose of one frame in the solution for the whole recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SmoothedPose {
-    /// The pose.
+    /// Smoothed pose.
     pub pose: CameraPose,
     /// Covariance of x, y, yaw, height, pitch, roll, metres and radians.
     pub covariance: Matrix6<f64>,
-    /// Whether the picture's own fit was used; else the pose comes from its neighbours.
+    /// Whether the picture's own fit was used; otherwise the pose comes from its neighbours.
     pub picture_used: bool,
 }
 
-/// The most probable poses of all pictures together. `None` where the equations cannot be solved, as without a single
-/// fit.
+/// Returns the most probable poses of all pictures together. Returns `None` if the equations cannot be solved, for
+/// example without a single fit.
 pub fn smooth_trajectory(
     frames: &[TrajectoryFrame],
     mount_sigma: MountPoseSigma,
@@ -67,7 +69,7 @@ pub fn smooth_trajectory(
             *pose = moved(*pose, step);
         }
         covariances = marginals;
-        // Judged only after the chain has settled once; a fit may come back.
+        // Fits are judged only after the chain has settled once; a rejected fit may come back.
         if round > 0 {
             for index in 0..frames.len() {
                 used[index] = fits_chain(&frames[index], poses[index], covariances[index], used[index]);
@@ -85,7 +87,7 @@ pub fn smooth_trajectory(
 /// Steps of all poses, and their marginal covariances.
 type Solution = (Vec<Vector6<f64>>, Vec<Matrix6<f64>>);
 
-/// Normal equations of the chain: `diagonal[i]`, and `beside[i]` between i and i + 1.
+/// Normal equations of the chain: `diagonal[i]` of pose i, and `beside[i]` between poses i and i + 1.
 struct Chain {
     diagonal: Vec<Matrix6<f64>>,
     beside: Vec<Matrix6<f64>>,
@@ -110,7 +112,7 @@ impl Chain {
         for index in 0..count {
             chain.diagonal[index] += prior;
             chain.right[index] -= prior * mount_error(poses[index], frames[index].mount);
-            // The weakest of ties keeps poses that nothing else determines where they are.
+            // A very weak prior keeps poses that nothing else determines where they are.
             chain.diagonal[index] += Matrix6::identity() * 1e-6;
             if let (Some(fit), true) = (frames[index].fit, used[index]) {
                 chain.diagonal[index] += fit.information;
@@ -123,7 +125,7 @@ impl Chain {
         chain
     }
 
-    /// A motion measured between frame `index − 1` and frame `index`.
+    /// Adds a motion measured between frame `index − 1` and frame `index`.
     fn add_motion(
         &mut self,
         index: usize,
@@ -141,7 +143,7 @@ impl Chain {
         self.right[index] -= j_to.transpose() * odometry * error;
     }
 
-    /// Steps and marginal covariances, by elimination forwards and substitution backwards.
+    /// Returns steps and marginal covariances, by forward elimination and back substitution.
     fn solve(self) -> Option<Solution> {
         let count = self.diagonal.len();
         let mut inverses: Vec<Matrix6<f64>> = Vec::with_capacity(count);
@@ -176,7 +178,7 @@ fn symmetric(matrix: Matrix6<f64>) -> Matrix6<f64> {
     0.5 * (matrix + matrix.transpose())
 }
 
-/// Motion between two poses minus the motion measured.
+/// Returns the motion between two poses minus the measured motion.
 fn motion_error(from: CameraPose, to: CameraPose, motion: Motion2) -> Vector3<f64> {
     let between = from.planar().motion_to(to.planar());
     Vector3::new(
@@ -186,7 +188,7 @@ fn motion_error(from: CameraPose, to: CameraPose, motion: Motion2) -> Vector3<f6
     )
 }
 
-/// Change of the motion between two poses with the six numbers of each.
+/// Returns the derivatives of the motion between two poses by the six numbers of each.
 fn motion_gradients(from: CameraPose, to: CameraPose) -> (Matrix3x6<f64>, Matrix3x6<f64>) {
     let (sin, cos) = from.yaw_rad.sin_cos();
     let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
@@ -201,15 +203,15 @@ fn motion_gradients(from: CameraPose, to: CameraPose) -> (Matrix3x6<f64>, Matrix
     (j_from, j_to)
 }
 
-/// What the odometry is worth: a part that grows with the motion, and sway of the body, which does not.
+/// Noise of the odometry: a part that grows with the motion, and the sway of the body, which does not.
 struct OdometryNoise {
     growing: MotionNoise,
     sway: Vector3<f64>,
 }
 
 impl OdometryNoise {
-    /// Learns the sway from how well the odometry agrees with neighbouring fits: the median deviation of each axis, less
-    /// what the fits themselves and the growing part contribute.
+    /// Estimates the sway from how well the odometry agrees with neighbouring fits: the median deviation along each
+    /// axis, minus what the fits themselves and the growing part contribute.
     fn learn(frames: &[TrajectoryFrame], noise: MotionNoise) -> Self {
         let growing = MotionNoise { still_m: 0.0, still_rad: 0.0, ..noise };
         let mut odometry = Self { growing, sway: Vector3::zeros() };
@@ -232,7 +234,7 @@ impl OdometryNoise {
         odometry
     }
 
-    /// Variances forwards, to the left and in heading.
+    /// Returns the variances forwards, to the left and in heading.
     fn variances(&self, motion: Motion2) -> Vector3<f64> {
         let sigma = self.growing.sigma(Some(motion));
         let place = sigma.position_m * sigma.position_m;
@@ -244,19 +246,21 @@ impl OdometryNoise {
     }
 }
 
-/// Variances of a fit forwards, sideways (both as their mean: the heading does not matter) and in heading.
+/// Returns the variances of a fit forwards, sideways and in heading. The first two are both the mean variance of the
+/// position, which does not depend on the heading.
 fn planar_variances(fit: &PoseFit) -> Vector3<f64> {
     let place = 0.5 * (fit.covariance[(0, 0)] + fit.covariance[(1, 1)]);
     Vector3::new(place, place, fit.covariance[(2, 2)])
 }
 
-/// Whether a picture's fit agrees with what all others say. For a fit that is part of the chain that is its deviation
-/// from the chain against the difference of both covariances, which is the innovation of the chain without it.
+/// Returns whether a picture's fit agrees with all the others. For a fit that is part of the chain, its deviation from
+/// the chain is compared with the difference of the two covariances; this equals the innovation test against the chain
+/// without the fit.
 fn fits_chain(frame: &TrajectoryFrame, pose: CameraPose, covariance: Matrix6<f64>, used: bool) -> bool {
     let Some(fit) = frame.fit else { return false };
     let difference = pose_difference(pose, fit.pose);
     let alone = fit.information.try_inverse().unwrap_or(fit.covariance);
-    // A little of the fit's own covariance keeps the difference of two nearly equal ones positive.
+    // Inflating the fit's own covariance a little keeps the difference of two nearly equal ones positive definite.
     let spread = if used { 1.05 * alone - covariance } else { alone + covariance };
     spread.cholesky().is_some_and(|spread| difference.dot(&spread.solve(&difference)) < OUTLIER_CHI2)
 }
@@ -268,7 +272,7 @@ mod tests {
     use super::*;
     use crate::filter::{Purpose, Stream};
 
-    /// The walk's odometry errs by the same, however far it goes.
+    /// Odometry noise of the simulated walk, which does not grow with the motion.
     const STEADY: MotionNoise = MotionNoise {
         still_m: 0.0,
         still_rad: 0.0,
@@ -280,7 +284,7 @@ mod tests {
     };
     const TOLERANCE: MountPoseSigma = MountPoseSigma { height_m: 0.03, angle_rad: 0.01 };
 
-    /// A walk whose pictures and odometry err as their covariances say; every third picture shows nothing.
+    /// Simulates a walk whose pictures and odometry err as their covariances say; every third picture shows nothing.
     fn walk(seed: u64, count: u32) -> (Vec<CameraPose>, Vec<TrajectoryFrame>) {
         let truth: Vec<CameraPose> = (0..count)
             .map(|i| {
@@ -331,7 +335,7 @@ mod tests {
         (truth, frames)
     }
 
-    /// The block elimination against one dense solve of the same normal equations.
+    /// Compares the block elimination with one dense solve of the same normal equations.
     #[test]
     fn the_chain_is_solved_as_a_dense_system_would_be() {
         let (truth, frames) = walk(3, 9);
@@ -376,7 +380,7 @@ mod tests {
         }
         assert!(smooth < 0.7 * single, "{smooth} against {single}");
         assert!(gaps < 0.05, "pictures without lines are up to {gaps} m off");
-        // Quantiles of χ² with six degrees of freedom. 720 correlated poses: a few per cent of play.
+        // Quantiles of χ² with six degrees of freedom. The 720 poses are correlated: allow a few per cent of deviation.
         for (quantile, level) in [(5.348, 0.5), (10.645, 0.9), (12.592, 0.95)] {
             let inside = nees.iter().filter(|value| **value < quantile).count() as f64 / nees.len() as f64;
             assert!((inside - level).abs() < 0.06, "{inside} of the poses in the {level} region");

@@ -1,31 +1,34 @@
-//! Every number of the search that can be tuned, with its default and the reason for it.
+//! Tunable parameters of the search, each with its default and the reason for it.
 
 use crate::filter::PlanarSigma;
 
-/// How the field is searched.
+/// Settings of the search of the field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SearchConfig {
-    /// Grid poses kept for refinement, 60: the grid's score is coarse, and the right pose is often not its best.
+    /// Number of grid poses kept for refinement, 60: the grid's score is coarse, and the right pose is often not the
+    /// best.
     pub kept_poses: usize,
-    /// Headings of one place that can be among them, 4: lines look alike in several, and other places must not be crowded out.
+    /// Maximum number of headings kept per place, 4: lines look alike in several headings, and these must not crowd out
+    /// other places.
     pub kept_headings: usize,
-    /// Places of the grid scored in one go, 1024: a fine grid has millions of poses.
+    /// Number of places of the grid scored in one go, 1024: a fine grid has millions of poses.
     pub places_at_once: usize,
-    /// Refines each grid pose.
+    /// Particles that refine each grid pose.
     pub near: SearchParticles,
-    /// Looks farther around the best of them: a place where some of the lines fit may be next to the one where all do.
+    /// Particles that search farther around the best places: a place where some of the lines fit may be next to the one
+    /// where all do.
     pub far: SearchParticles,
-    /// Places that are looked around farther, 8.
+    /// Number of places around which the search goes farther, 8.
     pub far_places: usize,
-    /// Iterations of both, 6: the start is farther off than while tracking.
+    /// Number of iterations of both, 6: the start is farther off than in tracking.
     pub iterations: u32,
-    /// Places that are fitted to a fraction of a pixel before they are ranked, 24.
+    /// Number of places that are fitted with sub-pixel accuracy before they are ranked, 24.
     pub fitted_places: usize,
-    /// A fit may lose this much log-weight, 4: the particle that it starts from was chosen to maximise it.
+    /// Log-weight that a fit may lose, 4: the particle from which it starts was chosen to maximise the log-weight.
     pub fit_margin: f64,
-    /// Poses nearer than this to a better one belong to it, 0.35 m and 0.25 rad: farther than
-    /// [`SearchConfig::far`] spreads its particles, so that one place is not found twice.
+    /// Poses nearer to a better one than this are the same place, 0.35 m and 0.25 rad: more than the spread of
+    /// [`SearchConfig::far`], so that no place is found twice.
     pub same_place: PlanarSigma,
 }
 
@@ -47,11 +50,11 @@ impl Default for SearchConfig {
     }
 }
 
-/// A small particle filter around a place, standing still.
+/// A small particle filter around a place, without motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchParticles {
     /// Number of particles.
     pub particles: usize,
-    /// How far they are spread.
+    /// Spread of the particles around the place.
     pub sigma: PlanarSigma,
 }

@@ -1,4 +1,4 @@
-//! The grid of poses that a search begins with.
+//! Grid of poses with which a search begins.
 
 use std::f64::consts::TAU;
 
@@ -9,22 +9,23 @@ use crate::{
     pose::{Pose2, wrap_angle},
 };
 
-/// Places and headings over the whole carpet.
+/// Grid of places and headings over the whole carpet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchGrid {
-    /// Between neighbouring places along x and y, metres; a little less where the carpet's size is no multiple of it.
+    /// Maximum distance between neighbouring places along x and y, metres: a little less if the carpet's size is no
+    /// multiple of it.
     pub step_m: f64,
-    /// Headings at every place.
+    /// Number of headings at every place.
     pub headings: u32,
 }
 
 impl SearchGrid {
-    /// As fine as the grid's score asks for on this field.
+    /// Returns a grid as fine as the grid's score needs on this field.
     pub fn new(field: &FieldDimensions) -> Self {
         Self { step_m: (2.0 * field.line_width_m).max(0.1), headings: 120 }
     }
 
-    /// All places, column after column.
+    /// Returns all places, column after column.
     pub fn places(&self, field: &FieldDimensions) -> Vec<DVec2> {
         let half_extent = field.carpet_half_extent_m();
         let along = |half: f64| {
@@ -34,7 +35,7 @@ impl SearchGrid {
         along(half_extent.x).flat_map(|x| along(half_extent.y).map(move |y| DVec2::new(x, y))).collect()
     }
 
-    /// All headings at a place.
+    /// Returns the poses with all headings at a place.
     pub(crate) fn poses_at(&self, place: DVec2) -> impl Iterator<Item = Pose2> {
         (0..self.headings).map(move |heading| {
             let yaw_rad = wrap_angle(TAU * f64::from(heading) / f64::from(self.headings));

@@ -1,5 +1,5 @@
-//! Where on the field a picture can have been taken: exhaustive search over all places and headings, then the best
-//! places refined. Used for a start nobody knows, and when the filter has lost its way.
+//! Global localization: an exhaustive search of the whole field for places that fit a picture, whose best results are
+//! then refined. It is used for an unknown start, and when the filter is lost.
 
 mod config;
 mod grid;
@@ -25,10 +25,10 @@ use crate::{
     refine::{Reach, RefineConfig, Refiner},
 };
 
-/// Poses of the grid that are compared with each other for each that is kept: most lie beside a better one.
+/// Number of scored grid poses that are compared with each other per pose kept: most lie beside a better one.
 const SCORED_PER_KEPT: usize = 40;
 
-/// Searches the whole field in pictures of one camera.
+/// Searches the whole field for poses that fit pictures of one camera.
 pub struct GlobalSearch {
     config: SearchConfig,
     grid: SearchGrid,
@@ -47,13 +47,13 @@ impl std::fmt::Debug for GlobalSearch {
 }
 
 impl GlobalSearch {
-    /// Prepares the search on this processor.
+    /// Prepares a search on the CPU.
     pub fn new(camera: &Camera, field: &FieldDimensions, mount_sigma: MountPoseSigma) -> Self {
         Self::with_backend(camera, field, SearchConfig::default(), mount_sigma, &CpuBackend)
             .unwrap_or_else(|error| unreachable!("this processor never fails: {error}"))
     }
 
-    /// As [`GlobalSearch::new`], with the grid scored on the device of a backend.
+    /// Works as [`GlobalSearch::new`], with the grid scored on the backend's device. Fails if the device does.
     pub fn with_backend(
         camera: &Camera,
         field: &FieldDimensions,
@@ -73,25 +73,26 @@ impl GlobalSearch {
         })
     }
 
-    /// Another grid.
+    /// Replaces the grid.
     pub fn set_grid(&mut self, grid: SearchGrid) {
         self.grid = grid;
     }
 
-    /// Takes over a new picture for what needs no search.
+    /// Loads a new picture for the methods that do not search the field.
     pub fn load(&mut self, picture: &Prepared) {
         self.scorer.set_picture(picture);
         self.white_contrast = f64::from(picture.levels.contrast());
     }
 
-    /// Fraction of the line in view that the picture shows where the pose puts it, see [`CpuScorer::line_fraction`]; 0
-    /// where no line is in view.
+    /// Returns the fraction of the line in view that the picture shows where the pose projects it, see
+    /// [`CpuScorer::line_fraction`]; 0 if no line is in view.
     pub fn line_fraction(&self, pose: CameraPose) -> f64 {
         self.scorer.line_fraction(pose).unwrap_or(0.0)
     }
 
-    /// The poses the picture fits, best first. A field with equal halves fits every pose and its mirror image alike:
-    /// without a prior only one of the two is searched, with one the prior decides. Fails where the backend's device does.
+    /// Returns the poses that fit the picture, best first. On a field with equal halves, a pose and its mirror pose fit
+    /// equally well: without a prior only one of them is searched for, with a prior the prior decides. Fails if the
+    /// backend's device does.
     pub fn search(
         &mut self,
         picture: &Prepared,
@@ -110,13 +111,13 @@ impl GlobalSearch {
         modes.extend(self.look_around(&best, config.far, mount, prior, !seed)?);
         let mut modes = self.ranked(modes);
         modes.truncate(config.fitted_places);
-        // The place expected gets a fit of its own: the particles around it may have found a worse one.
+        // The expected place is fitted as well: the particles around it may have found a worse one.
         modes.extend(prior.map(|known| self.mode(mount.at(known.pose), mount, prior)));
         modes.par_iter_mut().for_each(|mode| *mode = self.fitted(*mode, mount, prior));
         Ok(with_probabilities(self.ranked(modes)))
     }
 
-    /// The most probable of some poses, each fitted to the picture loaded or searched last.
+    /// Returns the most probable of several poses, each fitted to the picture loaded or searched last.
     pub fn best_of(&self, poses: &[CameraPose], mount: MountPose, prior: Option<Prior>) -> Option<Mode> {
         let fitted: Vec<Mode> =
             poses.par_iter().map(|&pose| self.fitted(self.mode(pose, mount, prior), mount, prior)).collect();
@@ -124,7 +125,7 @@ impl GlobalSearch {
     }
 
     fn fitted(&self, mode: Mode, mount: MountPose, prior: Option<Prior>) -> Mode {
-        // Where lines lie close together, a wide search for them can slip from one to the next; a narrow one stays.
+        // If lines lie close together, a wide search can slip from one to the next; a narrow one stays on its line.
         [Reach::Wide, Reach::Narrow]
             .into_iter()
             .filter_map(|reach| {
@@ -142,7 +143,7 @@ impl GlobalSearch {
         Mode { pose, log_weight, probability: 0.0, fit: None }
     }
 
-    /// Scores every pose of the grid, and gives the best that lie apart from each other.
+    /// Scores every pose of the grid, and returns the best ones that lie apart from each other.
     pub fn best_on_grid(
         &mut self,
         picture: &Prepared,
@@ -152,7 +153,7 @@ impl GlobalSearch {
         self.grid_scorer.load(picture)?;
         let mut places = self.grid.places(&self.field);
         if prior.is_none() {
-            // The other half of the field looks the same turned by 180°.
+            // The other half of the field looks the same when turned by 180°.
             places.retain(|place| place.x <= self.grid.step_m);
         }
         let mut scored: Vec<(Pose2, f64)> = Vec::new();
@@ -179,7 +180,7 @@ impl GlobalSearch {
         Ok(places.into_iter().map(|(pose, _)| pose).collect())
     }
 
-    /// The best pose that a small particle filter finds around each place.
+    /// Returns the best pose that a small particle filter finds around each place.
     fn look_around(
         &self,
         places: &[Pose2],
@@ -214,7 +215,7 @@ impl GlobalSearch {
         Ok(filter.update(&self.scorer, mount, sigma)?.pose)
     }
 
-    /// Best first, one of each place.
+    /// Sorts the modes, best first, and keeps one for each place.
     fn ranked(&self, mut modes: Vec<Mode>) -> Vec<Mode> {
         modes.sort_by(|a, b| b.log_weight.total_cmp(&a.log_weight));
         distinct(modes, self.config.same_place, |mode| mode.pose.planar())
@@ -252,7 +253,7 @@ mod tests {
         test_scene,
     };
 
-    /// Guesses far enough away that a fit finds other lines than the right ones.
+    /// Uses guesses so far away that a fit finds wrong lines.
     #[test]
     fn a_fit_never_explains_the_picture_worse_than_the_pose_it_starts_from() {
         let (camera, field) = (test_scene::fisheye(), test_scene::field());

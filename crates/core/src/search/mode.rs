@@ -1,4 +1,4 @@
-//! Places that a picture fits, and what was known of them before.
+//! Places that fit a picture, and the prior knowledge about them.
 
 use crate::{
     filter::PlanarSigma,
@@ -6,33 +6,34 @@ use crate::{
     refine::PoseFit,
 };
 
-/// Least log-probability of a prior: a clear picture outweighs a wrong prior.
+/// Minimum log-probability of a prior: a clear picture outweighs a wrong prior.
 const PRIOR_FLOOR: f64 = -20.0;
 
-/// A place the picture fits.
+/// Place that fits the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mode {
-    /// The pose.
+    /// Pose of the camera at this place.
     pub pose: CameraPose,
-    /// Log-weight by the contrast model, prior included.
+    /// Log-weight of the contrast model, including the prior.
     pub log_weight: f64,
-    /// Probability among all modes found.
+    /// Probability of this mode among all modes found.
     pub probability: f64,
-    /// The sub-pixel fit that `pose` comes from, where there is one.
+    /// Sub-pixel fit from which `pose` comes, if there is one.
     pub fit: Option<PoseFit>,
 }
 
-/// What is known before the picture is looked at.
+/// Knowledge about the pose before the picture is used.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prior {
-    /// Where the camera probably is.
+    /// Expected pose of the camera.
     pub pose: Pose2,
-    /// How far from there it may be.
+    /// Uncertainty of the expected pose.
     pub sigma: PlanarSigma,
 }
 
 impl Prior {
-    /// Log-probability up to a constant; normal, but never below a floor: a clear picture outweighs a wrong prior.
+    /// Returns the log-probability of a pose, up to a constant: a normal distribution with a floor, so that a clear
+    /// picture outweighs a wrong prior.
     pub(crate) fn log_probability(&self, pose: Pose2) -> f64 {
         let place =
             (pose.position_in_world() - self.pose.position_in_world()).length() / self.sigma.position_m;
