@@ -1,4 +1,4 @@
-//! Why a pipeline ended early.
+//! Errors that end a pipeline early.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ use reality_sim_core::{
 use reality_sim_db::DbError;
 use reality_sim_synthesis::SynthesisError;
 
-/// A pipeline that ended early. What was stored before stays.
+/// Error that ended a pipeline early. What was stored before it stays.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PipelineError {
@@ -32,10 +32,10 @@ pub enum PipelineError {
     /// A file of poses has none at the times of the pictures.
     #[error("{}: holds no poses of these pictures: localize them, and write the poses there", Printable(.file))]
     NoPoses {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
     },
-    /// The filter is sure of none of a recording's poses.
+    /// The filter is not sure of any pose of a recording.
     #[error("{}: the filter is sure of no picture's pose: give the poses, or take unsure ones too", Printable(.folder))]
     NothingSure {
         /// Folder of the recording.

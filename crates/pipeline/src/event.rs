@@ -1,67 +1,67 @@
-//! What a pipeline tells while it works.
+//! Events that a pipeline reports while it works.
 
 use reality_sim_core::{localization::LocalizedFrame, pose::CameraPose, warp::Hall};
 use reality_sim_db::{IngestReport, PoseEstimate, PoseSource};
 
-/// A step of a pipeline. Recordings count from 0 in the order of the plan.
+/// Step of a pipeline. Recordings are numbered from 0 in the order of the plan.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Event {
-    /// The filter begins with a recording of so many frames.
+    /// The filter starts on a recording with this many frames.
     LocalizationStarted {
-        /// Which recording.
+        /// Number of the recording.
         recording: usize,
-        /// Its frames.
+        /// Number of its frames.
         frames: usize,
     },
-    /// The filter has found a frame's pose.
+    /// The filter has estimated a frame's pose.
     Localized {
-        /// Which recording.
+        /// Number of the recording.
         recording: usize,
         /// Number of the frame, from 0.
         index: usize,
-        /// Frames of the recording.
+        /// Number of frames of the recording.
         of: usize,
-        /// What was found.
+        /// Result of the filter.
         frame: Box<LocalizedFrame>,
     },
-    /// Smoothing has looked at a picture once more.
+    /// Smoothing has processed a picture a second time.
     Revisited {
-        /// Which recording.
+        /// Number of the recording.
         recording: usize,
-        /// Pictures looked at again so far.
+        /// Number of pictures processed again so far.
         done: usize,
-        /// Pictures to look at again.
+        /// Number of pictures to process again.
         of: usize,
     },
     /// The poses of a recording are known.
     PosesFound {
-        /// Which recording.
+        /// Number of the recording.
         recording: usize,
-        /// The poses.
+        /// Poses of the recording.
         poses: FoundPoses,
     },
-    /// Storing of a recording of so many frames begins.
+    /// Storage of a recording with this many frames starts.
     StorageStarted {
-        /// Which recording.
+        /// Number of the recording.
         recording: usize,
-        /// Its frames.
+        /// Number of its frames.
         frames: usize,
     },
-    /// Frames of a recording have been stored, or left out for want of a pose.
+    /// Frames of a recording have been stored, or left out because they have no pose.
     Stored {
-        /// Which recording.
+        /// Number of the recording.
         recording: usize,
-        /// Frames so far.
+        /// Number of frames so far.
         done: usize,
-        /// Frames of the recording.
+        /// Number of frames of the recording.
         of: usize,
     },
     /// A recording is in the database.
     Ingested {
-        /// Which recording.
+        /// Number of the recording.
         recording: usize,
-        /// What became of its frames.
+        /// Numbers of its frames by what happened to them.
         report: IngestReport,
         /// Time that storing took, seconds.
         seconds: f64,
@@ -70,20 +70,20 @@ pub enum Event {
     HallStarted,
     /// Everything is in the database.
     Completed {
-        /// Images in the database now.
+        /// Number of images that the database now holds.
         images: usize,
-        /// The hall, where it was measured now.
+        /// The hall, if it was measured in this run.
         hall: Option<Hall>,
     },
 }
 
-/// The poses of a recording, and where they come from.
+/// Poses of a recording, and their source.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundPoses {
-    /// What goes into the database, one a frame.
+    /// Poses to be stored, one per frame.
     pub estimates: Vec<Option<PoseEstimate>>,
-    /// Frames held back, with their poses.
+    /// Frames that are held back, with their poses.
     pub held_back: Vec<(usize, CameraPose)>,
-    /// Where they come from.
+    /// Source of the poses.
     pub source: PoseSource,
 }

@@ -1,9 +1,9 @@
 //! From recordings to a database: poses, smoothing, storage and the hall around the field, as one stream of events.
 //!
-//! | type | |
+//! | type | purpose |
 //! |---|---|
-//! | [`Plan`] | which recordings, where their poses come from, and what becomes of them |
-//! | [`Pipeline`] | the plan at work: an iterator of [`Event`]s, cancelled by dropping it |
+//! | [`Plan`] | which recordings, where their poses come from, and what is done with them |
+//! | [`Pipeline`] | a running plan: an iterator of [`Event`]s, cancelled by dropping it |
 //! | [`PoseChoice`], [`FilterPlan`] | where poses come from |
 //!
 //! ```

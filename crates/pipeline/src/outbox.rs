@@ -1,17 +1,17 @@
-//! The way of events from the thread that works to whoever listens.
+//! Channel for events from the worker thread to the listener.
 
 use std::sync::mpsc;
 
 use crate::{error::PipelineError, event::Event};
 
-/// Sends events for as long as anybody listens.
+/// Sender of events, as long as somebody listens.
 pub(crate) struct Outbox(mpsc::SyncSender<Result<Event, PipelineError>>);
 
-/// Why the work ends before it is done.
+/// Reason why the work stops before it is done.
 pub(crate) enum Stop {
     /// Nobody listens any more.
     Cancelled,
-    /// An error, which the listener is told.
+    /// An error, which the listener receives.
     Failed(PipelineError),
 }
 
@@ -22,19 +22,19 @@ impl<E: Into<PipelineError>> From<E> for Stop {
 }
 
 impl Outbox {
-    /// The sending end of a channel.
+    /// Wraps the sending end of a channel.
     pub fn new(sender: mpsc::SyncSender<Result<Event, PipelineError>>) -> Self {
         Self(sender)
     }
 
-    /// Tells what has been done.
+    /// Sends an event.
     pub fn send(&self, event: Event) -> Result<(), Stop> {
         self.0.send(Ok(event)).map_err(|_| Stop::Cancelled)
     }
 
-    /// Tells why there are no more events.
+    /// Sends the error after which there are no more events.
     pub fn fail(&self, error: PipelineError) {
-        // Who does not listen any more need not know.
+        // It does not matter whether anybody still listens.
         let _ = self.0.send(Err(error));
     }
 }

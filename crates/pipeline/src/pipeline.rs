@@ -1,4 +1,4 @@
-//! A plan at work.
+//! A running plan.
 
 use std::{path::Path, sync::mpsc, thread};
 
@@ -13,20 +13,21 @@ use crate::{
     storage::{store, store_hall},
 };
 
-/// Events on their way at most.
+/// Largest number of events that wait for the listener.
 const QUEUE: usize = 1;
 
-/// A plan at work on a thread of its own, as a stream of events. After an error there are no more. Dropping it cancels the
-/// work and waits until that has ended; what was stored before stays, and another pipeline goes on from there.
+/// Plan that runs on a thread of its own, as a stream of events. There are no more events after an error. Dropping the
+/// pipeline cancels the work and waits until the thread has ended; what was stored before stays, and another pipeline
+/// continues from there.
 #[derive(Debug)]
 pub struct Pipeline {
-    /// None once they have ended.
+    /// `None` once the events have ended.
     events: Option<mpsc::Receiver<Result<Event, PipelineError>>>,
     thread: Option<thread::JoinHandle<()>>,
 }
 
 impl Plan {
-    /// Begins.
+    /// Starts the pipeline.
     pub fn start(self) -> Pipeline {
         let (sender, events) = mpsc::sync_channel(QUEUE);
         let thread = thread::spawn(move || {
@@ -39,10 +40,10 @@ impl Plan {
     }
 }
 
-/// All poses are known before a database is made: whoever waits for the filter must not be left with half of one.
+/// Finds all poses before anything is stored, so that an error of the filter does not leave half a database behind.
 fn work(plan: &Plan, outbox: &Outbox) -> Result<(), Stop> {
     if let Some(path) = plan.database.as_deref().filter(|path| path.exists()) {
-        // Before the filter works for an hour: is it one?
+        // Whether the file can be a database is checked before the filter works for an hour.
         drop(Database::create_or_open(path)?);
     }
     let mut finder = PoseFinder::new(plan, outbox);
@@ -75,7 +76,7 @@ fn store_all(plan: &Plan, path: &Path, poses: &[FoundPoses], outbox: &Outbox) ->
 }
 
 impl Pipeline {
-    /// Waits for the end of the thread; a panic in it goes on here.
+    /// Waits for the end of the thread and resumes its panic, if any.
     fn end(&mut self) {
         self.events = None;
         if let Some(Err(panic)) = self.thread.take().map(thread::JoinHandle::join)

@@ -1,4 +1,4 @@
-//! What a pipeline is to do.
+//! Plan of a pipeline.
 
 use std::{
     fmt,
@@ -12,104 +12,104 @@ use reality_sim_core::{
     sequence::Sequence,
 };
 
-/// Which recordings, where their poses come from, and what becomes of them. Without a database the pipeline ends with the
-/// poses.
+/// Recordings, where their poses come from, and what is done with them. Without a database the pipeline ends once it has
+/// the poses.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Plan {
-    /// The recordings, in the order in which they are stored.
+    /// Recordings, in the order in which they are stored.
     pub recordings: Vec<Arc<Sequence>>,
-    /// Where their poses come from.
+    /// Source of their poses.
     pub poses: PoseChoice,
-    /// How the filter finds poses, where it does.
+    /// Configuration of the filter, where it is used.
     pub filter: FilterPlan,
-    /// The database's file; made where there is none.
+    /// Path of the database, which is created if there is none.
     pub database: Option<PathBuf>,
-    /// Measure the hall around the field and store it.
+    /// Whether the hall around the field is measured and stored.
     pub measures_hall: bool,
-    /// Frames that are not stored, to compare with.
+    /// Frames that are not stored but kept for comparison.
     pub hold_back: Option<HoldBack>,
 }
 
-/// Where poses come from.
+/// Source of poses.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PoseChoice {
-    /// A TUM file of the only recording's poses.
+    /// TUM file with the poses of the only recording.
     File(PathBuf),
-    /// The reference poses of a recording that has any, and the particle filter for those that have none.
+    /// Reference poses of a recording that has any, and the particle filter for a recording that has none.
     ReferenceElseFilter,
-    /// The particle filter.
+    /// Particle filter.
     Filter,
 }
 
-/// How the particle filter finds poses.
+/// Configuration of the particle filter.
 #[derive(Clone)]
 #[non_exhaustive]
 pub struct FilterPlan {
-    /// Its settings.
+    /// Settings of the localizer.
     pub config: LocalizerConfig,
-    /// Opens the device that it runs on, when it is first needed.
+    /// Opens the device that the filter runs on, when it is first needed.
     pub device: OpenDevice,
-    /// Smooth all poses of a recording together.
+    /// Whether all poses of a recording are smoothed together.
     pub smooths: bool,
-    /// Keep poses that the filter is not sure of.
+    /// Whether poses are kept of which the filter is not sure.
     pub keeps_unsure: bool,
-    /// Name and version of the program, for the database.
+    /// Name and version of the program, which the database records.
     pub program: String,
 }
 
-/// Opens a device.
+/// Function that opens a device.
 pub type OpenDevice = Arc<dyn Fn() -> Result<Device, BackendError> + Send + Sync>;
 
-/// A device with the name that the database keeps.
+/// Device with the name that the database records.
 #[derive(Clone)]
 pub struct Device {
-    /// What it is called.
+    /// Name of the device.
     pub name: String,
-    /// The device.
+    /// Backend of the device.
     pub backend: Arc<dyn Backend>,
 }
 
-/// Frames that are held back: every so many-th of those with a pose, counted from the middle of the first so many.
+/// Rule for held-back frames: every n-th of those with a pose, starting in the middle of the first n.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HoldBack {
-    /// One of so many.
+    /// Interval n: one of n frames is held back.
     pub every: usize,
-    /// Recordings with fewer poses than this need all of their frames.
+    /// Smallest number of poses; recordings with fewer need all of their frames.
     pub at_least: usize,
 }
 
 impl Plan {
-    /// A plan for recordings, without a database.
+    /// Makes a plan for recordings, without a database.
     pub fn new(recordings: impl IntoIterator<Item = Arc<Sequence>>, poses: PoseChoice) -> Self {
         let recordings = recordings.into_iter().collect();
         let filter = FilterPlan::default();
         Self { recordings, poses, filter, database: None, measures_hall: true, hold_back: None }
     }
 
-    /// With these settings of the filter.
+    /// Sets the configuration of the filter.
     pub fn with_filter(self, filter: FilterPlan) -> Self {
         Self { filter, ..self }
     }
 
-    /// With a database; made where there is none.
+    /// Sets the database, which is created if there is none.
     pub fn with_database(self, path: &Path) -> Self {
         Self { database: Some(path.to_path_buf()), ..self }
     }
 
-    /// With or without measuring the hall.
+    /// Sets whether the hall is measured.
     pub fn with_hall(self, measures_hall: bool) -> Self {
         Self { measures_hall, ..self }
     }
 
-    /// With frames held back.
+    /// Sets the rule for held-back frames.
     pub fn with_hold_back(self, hold_back: HoldBack) -> Self {
         Self { hold_back: Some(hold_back), ..self }
     }
 }
 
 impl Default for FilterPlan {
-    /// The usual settings, on this processor, smoothed.
+    /// Default settings, on the processor, smoothed.
     fn default() -> Self {
         Self {
             config: LocalizerConfig::default(),
@@ -122,27 +122,27 @@ impl Default for FilterPlan {
 }
 
 impl FilterPlan {
-    /// With other settings of the localizer.
+    /// Sets the settings of the localizer.
     pub fn with_config(self, config: LocalizerConfig) -> Self {
         Self { config, ..self }
     }
 
-    /// On another device.
+    /// Sets the device.
     pub fn with_device(self, device: OpenDevice) -> Self {
         Self { device, ..self }
     }
 
-    /// With or without smoothing.
+    /// Sets whether poses are smoothed.
     pub fn with_smoothing(self, smooths: bool) -> Self {
         Self { smooths, ..self }
     }
 
-    /// With or without poses that the filter is not sure of.
+    /// Sets whether poses are kept of which the filter is not sure.
     pub fn with_unsure(self, keeps_unsure: bool) -> Self {
         Self { keeps_unsure, ..self }
     }
 
-    /// In the name of another program.
+    /// Sets the name of the program.
     pub fn with_program(self, program: &str) -> Self {
         Self { program: program.to_owned(), ..self }
     }

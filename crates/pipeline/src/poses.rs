@@ -1,4 +1,4 @@
-//! The poses of a recording: from a file, its own, or the filter's.
+//! Poses of a recording: from a file, from the recording itself, or from the filter.
 
 use std::{path::Path, sync::Arc};
 
@@ -17,21 +17,21 @@ use crate::{
     plan::{Device, FilterPlan, HoldBack, Plan, PoseChoice},
 };
 
-/// Finds the poses of recordings, one after the other.
+/// Finder of the poses of recordings, one after the other.
 pub(crate) struct PoseFinder<'a> {
     plan: &'a Plan,
     outbox: &'a Outbox,
-    /// Once it was needed.
+    /// Opened when it is first needed.
     device: Option<Device>,
 }
 
 impl<'a> PoseFinder<'a> {
-    /// Finds what a plan asks for.
+    /// Makes a finder for the recordings of a plan.
     pub fn new(plan: &'a Plan, outbox: &'a Outbox) -> Self {
         Self { plan, outbox, device: None }
     }
 
-    /// The poses of a recording by its number.
+    /// Finds the poses of the recording with this number.
     pub fn find(&mut self, recording: usize) -> Result<FoundPoses, Stop> {
         let sequence = self.plan.recordings[recording].clone();
         let (mut estimates, source) = match &self.plan.poses {
@@ -126,7 +126,7 @@ fn estimates(poses: impl Iterator<Item = Option<CameraPose>>) -> Vec<Option<Pose
     poses.map(|pose| pose.map(PoseEstimate::from)).collect()
 }
 
-/// Takes some of the poses out: their pictures are the truth that others are compared with.
+/// Removes some of the poses: their pictures serve as ground truth for reconstructed ones.
 fn hold_back(rule: HoldBack, estimates: &mut [Option<PoseEstimate>]) -> Vec<(usize, CameraPose)> {
     let known: Vec<usize> = (0..estimates.len()).filter(|&frame| estimates[frame].is_some()).collect();
     if known.len() < rule.at_least {

@@ -1,4 +1,4 @@
-//! Recordings with their poses into a database, and the hall around them.
+//! Storage of recordings with their poses, and of the hall around them.
 
 use std::{path::Path, time::Instant};
 
@@ -35,7 +35,7 @@ pub(crate) fn store(
     Ok(report)
 }
 
-/// Measures the hall around the field that most images show, and keeps it. `None` where the images do not show it.
+/// Measures and stores the hall around the field that most images show. `None` if the images do not show it.
 pub(crate) fn store_hall(path: &Path, database: &mut Database) -> Result<Option<Hall>, PipelineError> {
     let archive = Archive::open(path, 0)?;
     let Some(hall) = measure_hall(&archive)? else { return Ok(None) };

@@ -1,4 +1,4 @@
-//! The demonstration walk through the pipeline, to its end and not.
+//! The demonstration walk through the pipeline, complete and cancelled.
 
 use std::{
     path::Path,

@@ -1,4 +1,4 @@
-//! A database opened for pictures at any pose: what was recorded, where it lies, and the pictures decoded last.
+//! Database opened for pictures at any pose: records, index by pose, and the pictures decoded last.
 
 use std::{collections::BTreeMap, path::Path, sync::Arc};
 
@@ -19,7 +19,7 @@ use reality_sim_db::{
 
 use crate::{SynthesisError, cache::PictureCache};
 
-/// Recorded images by pose. Threads share one.
+/// Recorded images, indexed by pose. Threads share one archive.
 #[derive(Debug)]
 pub struct Archive {
     database: Database,
@@ -33,9 +33,9 @@ pub struct Archive {
 }
 
 impl Archive {
-    /// Opens a database without decoding any picture. At most `cache_bytes` are spent on decoded pictures.
+    /// Opens a database without decoding any picture. Decoded pictures take at most `cache_bytes`.
     ///
-    /// A database may hold recordings of several fields: the one that most images show is taken, with its images alone.
+    /// If a database holds recordings of several fields, only the images of the field that most images show are used.
     pub fn open(path: &Path, cache_bytes: usize) -> Result<Self, SynthesisError> {
         let database = Database::open(path)?;
         let mut images = database.images()?;
@@ -61,76 +61,76 @@ impl Archive {
         Ok(Self { database, images, cameras, setup, field, proxy, index, cache })
     }
 
-    /// The file it was opened from.
+    /// Returns the database that was opened.
     pub fn database(&self) -> &Database {
         &self.database
     }
 
-    /// What is known of the images, in the order of [`ImageIndex`].
+    /// Returns the records of the images, in the order of [`ImageIndex`].
     pub fn images(&self) -> &[ImageRecord] {
         &self.images
     }
 
-    /// The camera that took most of the images.
+    /// Returns the camera that took most of the images.
     pub fn setup(&self) -> &CameraSetup {
         &self.setup
     }
 
-    /// The field that the images show.
+    /// Returns the field that the images show.
     pub fn field(&self) -> &FieldDimensions {
         &self.field
     }
 
-    /// What stands for the world around the field.
+    /// Returns the geometry that stands for the world around the field.
     pub fn proxy_geometry(&self) -> &ProxyGeometry {
         &self.proxy
     }
 
-    /// Images by pose.
+    /// Returns the index of images by pose.
     pub fn index(&self) -> &PoseIndex {
         &self.index
     }
 
-    /// Bytes of the decoded pictures held.
+    /// Size of the decoded pictures that are held, bytes.
     pub fn cached_bytes(&self) -> usize {
         self.cache.bytes()
     }
 
-    /// The pose that the camera has most often but for its place and heading: the medians of height, pitch and roll.
+    /// Returns a pose with the camera's usual height, pitch and roll: the medians over all images.
     pub fn usual_pose(&self) -> CameraPose {
         usual_pose(self.index.poses())
     }
 
-    /// A decoded picture.
+    /// Returns a picture, decoding it if necessary.
     ///
     /// # Panics
     ///
-    /// Where there is no such image: indices come from [`Archive::index`].
+    /// Panics if there is no such image: indices come from [`Archive::index`].
     pub fn picture(&self, image: ImageIndex) -> Result<Arc<Picture>, SynthesisError> {
         let decode = || Ok(Picture::from(&self.database.picture(self.images[image as usize].id)?));
         self.cache.get(image, decode)
     }
 
-    /// Several decoded pictures, those that are not held decoded at once.
+    /// Returns several pictures; those that are not held are decoded in parallel.
     pub fn pictures(&self, images: &[ImageIndex]) -> Result<Vec<Arc<Picture>>, SynthesisError> {
         images.par_iter().with_max_len(1).map(|&image| self.picture(image)).collect()
     }
 
-    /// The camera that took an image.
+    /// Returns the camera that took an image.
     ///
     /// # Panics
     ///
-    /// As [`Archive::picture`].
+    /// Panics if there is no such image, like [`Archive::picture`].
     pub fn camera_of(&self, image: ImageIndex) -> &Camera {
         &self.cameras[&self.images[image as usize].camera_id].0
     }
 
-    /// Stands in for a picture where only its place counts.
+    /// Makes a placeholder where only the pose of a picture matters.
     pub(crate) fn no_picture() -> Arc<Picture> {
         Arc::new(Picture { width: 0, height: 0, pixels: Vec::new() })
     }
 
-    /// An image as a source of others.
+    /// Makes an image a source for a warp.
     pub(crate) fn source<'a>(&'a self, image: ImageIndex, picture: &'a Arc<Picture>) -> Source<'a> {
         let record = &self.images[image as usize];
         Source {
@@ -145,7 +145,7 @@ impl Archive {
 fn most_common(ids: impl Iterator<Item = i64>) -> Option<i64> {
     let mut counts: BTreeMap<i64, usize> = BTreeMap::new();
     ids.for_each(|id| *counts.entry(id).or_default() += 1);
-    // Of equals the first one.
+    // Among equals the first one wins.
     counts.into_iter().max_by_key(|(id, count)| (*count, std::cmp::Reverse(*id))).map(|(id, _)| id)
 }
 

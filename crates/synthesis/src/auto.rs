@@ -1,13 +1,14 @@
-//! The recorded picture where there is one, else one drawn from its neighbours.
+//! The recorded picture if there is one at the pose, else one drawn from its neighbours.
 
 use reality_sim_core::pose::CameraPose;
 
 use crate::{Blend, Method, Reconstruction, SynthesisError, Synthesizer, nearest::as_recorded};
 
-/// A picture whose pixels lie this near to where they should, root mean square, was recorded at the pose asked for.
+/// Distance within which a picture counts as recorded at the requested pose, root mean square pixels.
 const RECORDED_PX: f64 = 0.5;
 
-/// The recorded picture where one was taken at the pose, to half a pixel, by a camera like the one wanted; else [`Blend`].
+/// Method that returns the recorded picture if a camera like the requested one took one at the pose, to half a pixel;
+/// otherwise the same as [`Blend`].
 #[derive(Debug, Clone, Copy)]
 pub struct Auto;
 

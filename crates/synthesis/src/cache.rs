@@ -1,4 +1,4 @@
-//! Decoded pictures, the last ones used, within a bound of memory.
+//! Cache of the most recently used decoded pictures, with bounded memory.
 
 use std::{
     collections::{BTreeMap, HashMap},
@@ -8,7 +8,7 @@ use std::{
 use reality_sim_core::warp::Picture;
 use reality_sim_db::index::ImageIndex;
 
-/// Decoded pictures. Threads share one.
+/// Cache of decoded pictures. Threads share one.
 #[derive(Debug)]
 pub(crate) struct PictureCache {
     limit_bytes: usize,
@@ -18,10 +18,10 @@ pub(crate) struct PictureCache {
 #[derive(Debug, Default)]
 struct Held {
     bytes: usize,
-    /// Counts uses.
+    /// Number of uses so far.
     clock: u64,
     pictures: HashMap<ImageIndex, (Arc<Picture>, u64)>,
-    /// The pictures by when they were last used.
+    /// Pictures by the time of their last use.
     order: BTreeMap<u64, ImageIndex>,
 }
 
@@ -30,8 +30,8 @@ impl PictureCache {
         Self { limit_bytes, held: Mutex::default() }
     }
 
-    /// A picture, decoded by `decode` where it is not held. Two threads may decode the same picture at once; one of
-    /// the two is kept.
+    /// Returns a picture, decoded by `decode` if it is not held. Two threads may decode the same picture at once; one of
+    /// the two results is kept.
     pub(crate) fn get<E>(
         &self,
         image: ImageIndex,
@@ -45,13 +45,13 @@ impl PictureCache {
         Ok(picture)
     }
 
-    /// Bytes of the pictures held.
+    /// Size of the pictures held, bytes.
     pub(crate) fn bytes(&self) -> usize {
         self.lock().bytes
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Held> {
-        // Nothing panics while the lock is held, and a picture more or less does no harm.
+        // Nothing panics while the lock is held, and one picture more or less does no harm.
         self.held.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,8 +1,8 @@
-//! Brightness of neighbours brought together: exposure and white balance differ from picture to picture.
+//! Gains that match the brightness of neighbours: exposure and white balance differ from picture to picture.
 //!
-//! For every pair of neighbours and every channel, the median of the ratios of their colours at the places that both see;
-//! from these, by least squares, a factor for each neighbour. Their geometric mean is 1 but for
-//! those that are cut off.
+//! For every pair of neighbours and every channel, the ratio of their colours is measured at the places that both see, and
+//! its median is taken; from these medians, least squares gives a gain for each neighbour. The geometric mean of the gains
+//! is 1, except where some are clipped.
 
 use nalgebra::{DMatrix, DVector};
 use reality_sim_core::{
@@ -10,19 +10,19 @@ use reality_sim_core::{
     warp::{Source, Target, glimpses},
 };
 
-/// Grey values outside this range say nothing about brightness: noise, or saturated.
+/// Usable grey values: darker ones are noise, brighter ones are saturated.
 const USABLE: std::ops::Range<f32> = 10.0..245.0;
 
-/// Pairs with fewer places in common are not compared.
+/// Smallest number of common places at which a pair is compared.
 const LEAST_PLACES: usize = 8;
 
-/// Places that holding on to a factor of 1 counts as.
+/// Weight of the prior that a gain is 1, as a number of places.
 const PRIOR_PLACES: f64 = 2.0;
 
-/// No neighbour is made more than this much brighter, or darker: it shows something else then.
+/// Largest change of a neighbour's brightness, up or down: beyond this it must show something else.
 const LARGEST_GAIN: f64 = 2.0;
 
-/// A factor for red, green and blue of each source.
+/// Returns a gain for red, green and blue of each source.
 pub(crate) fn gains(target: &Target, sources: &[Source]) -> Vec<[f32; 3]> {
     let seen: Vec<Vec<Option<[f32; 3]>>> = sources.iter().map(|source| glimpses(target, source)).collect();
     let channels = [0, 1, 2].map(|channel| channel_gains(&seen, channel));
@@ -51,7 +51,7 @@ fn channel_gains(seen: &[Vec<Option<[f32; 3]>>], channel: usize) -> Vec<f32> {
     logs.iter().map(|log| log.clamp(-limit, limit).exp() as f32).collect()
 }
 
-/// Median of log (b / a), and at how many places.
+/// Median of log (b / a), and the number of places that it was taken over.
 fn median_log_ratio(a: &[Option<[f32; 3]>], b: &[Option<[f32; 3]>], channel: usize) -> Option<(f64, f64)> {
     let both = a.iter().zip(b).filter_map(|(a, b)| Some(((*a)?[channel], (*b)?[channel])));
     let usable = both.filter(|(a, b)| USABLE.contains(a) && USABLE.contains(b));

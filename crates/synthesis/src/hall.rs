@@ -1,8 +1,8 @@
-//! Where the walls stand: found by what pictures taken at different places agree on.
+//! Measurement of the hall: walls are where pictures taken at different places agree best.
 //!
-//! A hall's measures are good when the colours that one picture shows are those that another shows at the same places of the
-//! [`ProxyGeometry`]. One measure after the other is moved to where the mean difference, cut off so that what stands in
-//! front does not decide, is least (coordinate descent), first in coarse steps, then in finer ones.
+//! The hall's dimensions are right when one picture shows the same colours as another at the same places of the
+//! [`ProxyGeometry`]. Coordinate descent varies one dimension after the other to minimise the mean difference, first in
+//! coarse steps, then in finer ones. Differences are clipped, so that objects in front of the walls do not decide.
 
 use std::sync::Arc;
 
@@ -15,32 +15,33 @@ use reality_sim_core::{
 
 use crate::{Archive, SynthesisError, select::select};
 
-/// Pictures of the recording that are looked at.
+/// Number of pictures used of a recording.
 const VIEWS: usize = 120;
-/// Of these, every so many-th is compared with others.
+/// Interval of those that are compared with others.
 const TARGET_STEP: usize = 2;
-/// Pictures that each is compared with.
+/// Number of pictures that each is compared with.
 const PARTNERS: usize = 3;
-/// Partners stand at least this far away, metres: from one place all distances look alike.
+/// Smallest distance to a partner, metres: from a single place, walls at all distances look alike.
 const BASELINE_M: f64 = 0.5;
-/// Pictures are looked at no wider than this, pixels: noise and memory shrink.
+/// Largest width at which pictures are compared, pixels: smaller pictures have less noise and need less memory.
 const WIDTH: u32 = 320;
-/// Differences of colour are cut off here, grey levels.
+/// Value at which differences of colour are clipped, grey levels.
 const CUT: f32 = 40.0;
-/// With fewer places compared nothing is measured.
+/// Smallest number of compared places for a measurement.
 const LEAST_PLACES: f32 = 1000.0;
-/// A measure is left as it usually is unless moving it back makes pictures differ by so much more, grey levels.
+/// Smallest increase of the mean difference, grey levels, when a dimension is set back to its default: with less evidence
+/// the default is kept.
 const EVIDENCE: f32 = 0.05;
-/// From the coarsest step to the finest, metres.
+/// Steps from the coarsest to the finest, metres.
 const STEPS_M: [f64; 5] = [0.8, 0.4, 0.2, 0.1, 0.05];
-/// Rounds over all measures for each step, at most.
+/// Largest number of rounds over all dimensions for each step.
 const ROUNDS: usize = 4;
-/// Walls stand at least this far from the carpet, metres; nothing is lower or less deep.
+/// Smallest distance of walls from the carpet, and smallest height and depth, metres.
 const LEAST_M: f64 = 0.1;
-/// No wall stands farther from the carpet, and no ceiling hangs higher, metres.
+/// Largest distance of walls from the carpet, and largest height of the ceiling, metres.
 const MOST_M: f64 = 12.0;
 
-/// Measures the hall around an archive's field. `None` where the pictures do not tell: too few, or all from one place.
+/// Measures the hall around an archive's field. `None` if the pictures are too few, or all were taken at one place.
 pub fn measure_hall(archive: &Archive) -> Result<Option<Hall>, SynthesisError> {
     let usual = Hall::usual(archive.field());
     let views = Views::new(archive, &usual)?;
@@ -58,7 +59,7 @@ pub fn measure_hall(archive: &Archive) -> Result<Option<Hall>, SynthesisError> {
     Ok(Some(best))
 }
 
-/// Walls towards −x, −y, +x, +y, ceiling, goals.
+/// Walls towards −x, −y, +x and +y, ceiling, goals.
 const MEASURES: [fn(&mut Hall) -> &mut f64; 6] = [
     |hall| &mut hall.min_m.x,
     |hall| &mut hall.min_m.y,
@@ -68,7 +69,7 @@ const MEASURES: [fn(&mut Hall) -> &mut f64; 6] = [
     |hall| &mut hall.goal_depth_m,
 ];
 
-/// A small picture and how it was taken.
+/// Small picture with its camera and pose.
 struct View {
     camera: KernelCamera,
     rays: RayTable,
@@ -82,19 +83,19 @@ impl View {
     }
 }
 
-/// How much pictures differ.
+/// Difference between pictures.
 struct Difference {
-    /// Grey levels.
+    /// Mean difference, grey levels.
     mean: f32,
-    /// That were compared.
+    /// Number of places compared.
     places: f32,
 }
 
-/// Pictures spread over a recording, and which are compared.
+/// Pictures spread over a recording, and the pairs that are compared.
 struct Views<'a> {
     archive: &'a Archive,
     views: Vec<View>,
-    /// A picture, and one that sees much of the same from elsewhere.
+    /// Pairs of a picture and one that shows much of the same from elsewhere.
     pairs: Vec<[usize; 2]>,
 }
 
@@ -123,7 +124,7 @@ impl<'a> Views<'a> {
         Difference { mean: sum / f32::max(places, 1.0), places }
     }
 
-    /// The hall on which the pictures agree best, from this one on.
+    /// Searches, from this hall on, for the one on which the pictures agree best.
     fn descend(&self, mut best: Hall) -> Hall {
         let mut least = self.difference(&best).mean;
         for step_m in STEPS_M {
@@ -145,7 +146,7 @@ impl<'a> Views<'a> {
         best
     }
 
-    /// One measure larger by this, where that is a plausible hall.
+    /// Changes one dimension by this much, if the result is a plausible hall.
     fn moved(&self, hall: &Hall, measure: usize, step_m: f64) -> Option<Hall> {
         let carpet = self.archive.field().carpet_half_extent_m();
         let range = match measure {
@@ -162,7 +163,7 @@ impl<'a> Views<'a> {
     }
 }
 
-/// An image, small. It does not stay in the archive's cache.
+/// Reads an image at small size. It does not stay in the archive's cache.
 fn view(archive: &Archive, image: usize) -> Result<View, SynthesisError> {
     let record = &archive.images()[image];
     let picture = archive.database().picture(record.id)?;
@@ -180,11 +181,11 @@ fn view(archive: &Archive, image: usize) -> Result<View, SynthesisError> {
     })
 }
 
-/// The same camera with fewer pixels.
+/// Returns the same camera with fewer pixels.
 fn smaller(camera: &Camera, size: [u32; 2]) -> Camera {
     let [across, down] =
         [f64::from(size[0]) / f64::from(camera.width), f64::from(size[1]) / f64::from(camera.height)];
-    // Pixels' centres are whole numbers: the picture begins half a pixel before the first one.
+    // Pixel centres have whole coordinates: the picture starts half a pixel before the first one.
     let centre = [(camera.cx + 0.5) * across - 0.5, (camera.cy + 0.5) * down - 0.5];
     let intrinsics = [camera.fx * across, camera.fy * down, centre[0], centre[1]];
     let circle = camera.image_circle.map(|circle| ImageCircle {
@@ -192,12 +193,12 @@ fn smaller(camera: &Camera, size: [u32; 2]) -> Camera {
         cy: (circle.cy + 0.5) * down - 0.5,
         radius: circle.radius * across.min(down),
     });
-    // A camera that was valid stays so when it shrinks.
+    // A valid camera stays valid when its picture shrinks.
     let small = Camera::new(size, intrinsics, camera.distortion).unwrap_or_else(|_| camera.clone());
     small.with_image_circle(circle)
 }
 
-/// Pairs of a picture with those that see much of the same from elsewhere.
+/// Pairs a picture with those that show much of the same from elsewhere.
 fn partners(views: &[View], target: usize, proxy: &ProxyGeometry) -> Vec<[usize; 2]> {
     let own = &views[target];
     let distance_m = |other: &View| {

@@ -1,25 +1,26 @@
-//! A picture at a pose at which none was recorded, from those recorded around it.
+//! Pictures at poses at which none was recorded, made from those recorded around them.
 //!
-//! | type | what |
+//! | type | purpose |
 //! |---|---|
-//! | [`Archive`] | a database opened for pictures: poses by nearness, pictures decoded last |
-//! | [`Synthesizer`] | the picture at a pose, for threads that share one |
-//! | [`SynthesisConfig`] | how many neighbours, how weighed, and when a picture is refused |
+//! | [`Archive`] | a database opened for pictures: index by pose, pictures decoded last |
+//! | [`Synthesizer`] | the picture at a pose; threads share one |
+//! | [`SynthesisConfig`] | how many neighbours, their weights, and when a picture is refused |
 //! | [`Reconstruction`] | a picture, the images it was made from, and how far each pixel can be trusted |
-//! | [`SynthesisError`] | why there is none |
+//! | [`SynthesisError`] | why there is no picture |
 //! | [`measure_hall`] | where the walls around the field are |
 //!
 //! A picture is made by one of these methods:
 //!
-//! | [`Method`] | what |
+//! | [`Method`] | result |
 //! |---|---|
 //! | [`Nearest`] | the nearest picture as it is |
-//! | [`Quadratic`] | the paper's Eq. 4: a polynomial of second order from the nearest picture's pixels to the target's |
+//! | [`Quadratic`] | the paper's Eq. 4: the nearest picture, moved by a polynomial of second order in its pixels |
 //! | [`Plane`] | one picture, exactly, through the ground plane and both lenses; goals and hall as in [`reality_sim_core::warp`] |
-//! | [`Blend`] | several, each as by `Plane`, weighed pixel by pixel |
-//! | [`Auto`] | the recorded picture where there is one at the pose, else `Blend` |
+//! | [`Blend`] | several pictures, each warped as by `Plane`, weighted pixel by pixel |
+//! | [`Auto`] | the recorded picture if there is one at the pose, else `Blend` |
 //!
-//! Pictures are RGB, 8 bits each, as a camera records them; units and frames are those of [`reality_sim_core::pose`].
+//! Pictures are RGB, 8 bits per channel, as a camera records them; units and frames are those of
+//! [`reality_sim_core::pose`].
 //!
 //! ```
 //! # use std::path::Path;

@@ -1,15 +1,15 @@
-//! What a way to a picture at a pose is, and how it is asked.
+//! Interface of the methods, and calls for pictures.
 
 use reality_sim_core::pose::CameraPose;
 
 use crate::{Reconstruction, SynthesisError, Synthesizer};
 
-/// A way to a picture at a pose from those recorded at others.
+/// Method that makes the picture at a pose from those recorded at others.
 pub trait Method: Send + Sync {
-    /// What it is called.
+    /// Returns the name of the method.
     fn name(&self) -> &'static str;
 
-    /// The picture at a pose that has been checked, see [`Synthesizer::image_at`].
+    /// Returns the picture at a pose that has been checked, see [`Synthesizer::image_at`].
     fn reconstruct(&self, from: &Synthesizer, pose: CameraPose) -> Result<Reconstruction, SynthesisError>;
 }
 
@@ -24,9 +24,9 @@ impl Synthesizer {
         method.reconstruct(self, pose)
     }
 
-    /// Draws the picture at a pose into a buffer: RGB, 8 bits each, row by row from the top left, three bytes a pixel of
+    /// Draws the picture at a pose into a buffer: RGB, row by row from the top left, three bytes per pixel of
     /// [`Synthesizer::camera`]. Returns the share of the pixels that some recorded image shows, 0 to 1. After an error the
-    /// buffer is as it was.
+    /// buffer is unchanged.
     pub fn image_into(
         &self,
         pose: CameraPose,

@@ -2,5 +2,5 @@
 
 use crate::{Blend, Method, Nearest, Plane, Quadratic};
 
-/// Methods to compare with each other; [`crate::Auto`] chooses among them.
+/// Methods that can be compared with each other; [`crate::Auto`] chooses among them.
 pub const METHODS: [&dyn Method; 4] = [&Nearest, &Quadratic, &Plane, &Blend];

@@ -5,10 +5,10 @@ use reality_sim_db::index::Neighbour;
 
 use crate::{Method, Reconstruction, SynthesisError, Synthesizer};
 
-/// At this distance a picture's pixels are worth half, pixels.
+/// Distance at which the trust in a picture's pixels is one half, pixels.
 const HALF_TRUST_PX: f64 = 10.0;
 
-/// The nearest picture as it is, of those in the size of the camera wanted; its lens may be another.
+/// Method that returns the nearest picture as it is, among those in the size of the requested camera; its lens may differ.
 #[derive(Debug, Clone, Copy)]
 pub struct Nearest;
 
@@ -22,7 +22,7 @@ impl Method for Nearest {
     }
 }
 
-/// An image as it is.
+/// Returns an image as it is.
 pub(crate) fn as_recorded(
     from: &Synthesizer,
     neighbour: Neighbour,

@@ -1,10 +1,10 @@
-//! One neighbour, through the ground plane and both lenses; what does not lie on the ground, through goals and proxy geometry.
+//! Warps through the ground plane and both lenses; what is not on the ground goes through goals and proxy geometry.
 
 use reality_sim_core::pose::CameraPose;
 
 use crate::{Method, Reconstruction, SynthesisError, Synthesizer};
 
-/// The exact map from the neighbour that shows most of the target best.
+/// Method that maps exactly from the neighbour that shows most of the target best.
 #[derive(Debug, Clone, Copy)]
 pub struct Plane;
 
@@ -18,7 +18,8 @@ impl Method for Plane {
     }
 }
 
-/// Several neighbours, each mapped as by [`Plane`], mixed pixel by pixel: see [`reality_sim_core::warp::blend`].
+/// Method that maps several neighbours like [`Plane`] and mixes them pixel by pixel, see
+/// [`reality_sim_core::warp::blend`].
 #[derive(Debug, Clone, Copy)]
 pub struct Blend;
 

@@ -1,8 +1,8 @@
 //! The paper's Eq. 4: a polynomial of second order between the pixels of two pictures.
 //!
-//! x' = α₀ + α₁ x + α₂ y + α₃ x² + α₄ x y + α₅ y², and y' with β, fitted by least squares to the points of a 25 cm grid
-//! on the ground that both cameras see. Every pixel of the nearest picture is moved by it (forward model); pixels of
-//! the target that stay empty are looked up by the polynomial fitted the other way (reverse model).
+//! x' = α₀ + α₁ x + α₂ y + α₃ x² + α₄ x y + α₅ y², and y' with β, fitted by least squares to the points of a 25 cm grid on
+//! the ground that both cameras see. It moves every pixel of the nearest picture (forward model); pixels of the target
+//! that stay empty are looked up with the polynomial fitted the other way (reverse model).
 
 use glam::DVec2;
 use image::RgbImage;
@@ -19,10 +19,10 @@ use crate::{Method, Reconstruction, SynthesisError, Synthesizer, synthesizer::pi
 /// Distance between the points of the grid, metres.
 const GRID_M: f64 = 0.25;
 
-/// Points that determine six coefficients.
+/// Number of points needed for six coefficients.
 const LEAST_POINTS: usize = 6;
 
-/// The paper's Eq. 4 from the nearest picture.
+/// Method of the paper's Eq. 4, from the nearest picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Quadratic;
 
@@ -58,7 +58,7 @@ impl Method for Quadratic {
     }
 }
 
-/// Pixels of points on the ground, in the source and in the target.
+/// Returns the pixels of points on the ground, in the source and in the target.
 fn ground_pairs(
     (source, source_pose): (&Camera, CameraPose),
     (target, target_pose): (&Camera, CameraPose),
@@ -82,15 +82,15 @@ fn ground_pairs(
 
 /// Two polynomials of second order in two variables.
 struct Polynomial {
-    /// α and β.
+    /// Coefficients α and β.
     coefficients: SMatrix<f64, 6, 2>,
-    /// Pixels are taken relative to this point, and in this unit, so that squares do not outgrow the rest.
+    /// Origin and unit of the pixel coordinates, so that the squares do not dominate.
     origin: DVec2,
     unit_px: f64,
 }
 
 impl Polynomial {
-    /// From the first to the second pixels of pairs; `None` where they do not determine it.
+    /// Fits the map from the first to the second pixel of each pair; `None` if the pairs do not determine it.
     fn fit(pairs: &[[DVec2; 2]]) -> Option<Self> {
         if pairs.len() < LEAST_POINTS {
             return None;
@@ -102,7 +102,7 @@ impl Polynomial {
         let wanted = DMatrix::from_fn(pairs.len(), 2, |row, axis| pairs[row][1][axis]);
         let normal: Matrix6<f64> = (design.transpose() * &design).fixed_view::<6, 6>(0, 0).into_owned();
         let right: SMatrix<f64, 6, 2> = (design.transpose() * wanted).fixed_view::<6, 2>(0, 0).into_owned();
-        // Points on one curve of second order leave a polynomial free.
+        // Points on one curve of second order do not determine a polynomial.
         let least = normal.symmetric_eigenvalues().min();
         let coefficients = normal.cholesky()?.solve(&right);
         (least > 1e-9 * normal.trace()).then_some(Self { coefficients, origin, unit_px })
@@ -119,7 +119,7 @@ fn terms(at: DVec2) -> [f64; 6] {
     [1.0, at.x, at.y, at.x * at.x, at.x * at.y, at.y * at.y]
 }
 
-/// The picture moved by the forward model, with gaps filled by the reverse one; black where neither leads.
+/// Moves the picture by the forward model and fills gaps by the reverse one; pixels that neither reaches are black.
 fn moved(
     picture: &Picture,
     [source, camera]: [&Camera; 2],
@@ -159,7 +159,7 @@ fn moved(
     (colors, origins)
 }
 
-/// The pixel nearest to a place, where the camera sees something there.
+/// Returns the pixel nearest to a place, if the camera sees something there.
 fn pixel_at(place: DVec2, camera: &Camera) -> Option<(u32, u32)> {
     let rounded = place.round();
     camera.check_inside(rounded).ok()?;

@@ -1,14 +1,14 @@
-//! How near a picture comes to the true one: PSNR and SSIM.
+//! Similarity of a picture to the true one: PSNR and SSIM.
 
 use glam::DVec2;
 use image::{GrayImage, RgbImage};
 use rayon::prelude::*;
 use reality_sim_core::{camera::Camera, field::FieldDimensions, pose::CameraPose};
 
-/// Identical pictures have this PSNR, dB: that of an error of a hundredth of a grey level.
+/// PSNR of identical pictures, dB: that of an error of one hundredth of a grey level.
 pub const MAX_PSNR_DB: f64 = 88.13;
 
-/// Pixels that are compared.
+/// Set of pixels to compare.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mask {
     width: u32,
@@ -16,7 +16,7 @@ pub struct Mask {
 }
 
 impl Mask {
-    /// The pixels that look at the field's carpet, or at what stands on it in front.
+    /// Returns the pixels that show the field's carpet, or objects in front of it.
     pub fn carpet(camera: &Camera, pose: CameraPose, field: &FieldDimensions) -> Self {
         let half = field.carpet_half_extent_m();
         let rows = (0..camera.height).into_par_iter().flat_map_iter(|v| {
@@ -35,8 +35,8 @@ impl Mask {
     }
 }
 
-/// Peak signal-to-noise ratio, dB: 10 log₁₀(255² / mean squared error over all pixels and channels), or over the pixels
-/// chosen. `None` where there are none, or the sizes differ.
+/// Peak signal-to-noise ratio, dB: 10 log₁₀(255² / mean squared error over all pixels and channels), or over the chosen
+/// pixels only. `None` if there are no pixels, or the sizes differ.
 pub fn psnr_db(picture: &RgbImage, truth: &RgbImage, mask: Option<&Mask>) -> Option<f64> {
     if picture.dimensions() != truth.dimensions() || mask.is_some_and(|mask| mask.width != picture.width()) {
         return None;
@@ -52,8 +52,9 @@ pub fn psnr_db(picture: &RgbImage, truth: &RgbImage, mask: Option<&Mask>) -> Opt
     (count > 0).then(|| (10.0 * (255.0 * 255.0 * count as f64 / sum).log10()).min(MAX_PSNR_DB))
 }
 
-/// Structural similarity of the grey values (Wang et al., 2004): Gaussian window of σ = 1.5 px and 11 px, K₁ = 0.01,
-/// K₂ = 0.03, the mean over all pixels whose window lies inside. `None` for other sizes, or smaller pictures.
+/// Structural similarity of the grey values (Wang et al., 2004): Gaussian window of 11 px with σ = 1.5 px, K₁ = 0.01, K₂ =
+/// 0.03, averaged over all pixels whose window lies inside. `None` if the sizes differ, or the pictures are smaller than a
+/// window.
 pub fn ssim(picture: &GrayImage, truth: &GrayImage) -> Option<f64> {
     const WINDOW: usize = 11;
     let (width, height) = (picture.width() as usize, picture.height() as usize);
@@ -77,7 +78,7 @@ pub fn ssim(picture: &GrayImage, truth: &GrayImage) -> Option<f64> {
     Some((0..count).map(similarity).sum::<f64>() / count as f64)
 }
 
-/// Gaussian of 11 px and σ = 1.5 px, where the whole window lies inside.
+/// Filters with a Gaussian of 11 px and σ = 1.5 px where the whole window lies inside.
 fn gauss(values: &[f64], width: usize, height: usize) -> Vec<f64> {
     const RADIUS: usize = 5;
     let weights: Vec<f64> =
@@ -111,7 +112,7 @@ mod tests {
         GrayImage::from_fn(64, 48, |u, v| Luma([(value(u, v) % 256) as u8]))
     }
 
-    /// The expected value is scikit-image's: `structural_similarity` with Gaussian weights, σ = 1.5 and population
+    /// The expected value comes from scikit-image: `structural_similarity` with Gaussian weights, σ = 1.5 and population
     /// covariance.
     #[test]
     fn similarity_is_that_of_scikit_image() {
@@ -133,7 +134,7 @@ mod tests {
         let mask = Mask::carpet(&camera, pose, &field);
         assert!(mask.count() > 100 && mask.count() < 64 * 48);
         let truth = RgbImage::from_pixel(64, 48, Rgb([100; 3]));
-        // Wrong above the horizon alone: row 14 is the horizon's.
+        // The pictures differ only above the horizon, which is in row 14.
         let sky = RgbImage::from_fn(64, 48, |_, v| if v < 14 { Rgb([0; 3]) } else { Rgb([110; 3]) });
         assert!((psnr_db(&sky, &truth, Some(&mask)).unwrap() - 20.0 * 25.5_f64.log10()).abs() < 1e-9);
         assert!(psnr_db(&sky, &truth, None).unwrap() < 15.0);

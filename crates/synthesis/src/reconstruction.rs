@@ -1,11 +1,11 @@
-//! A picture at a pose, with where it came from.
+//! Reconstructed picture at a pose, and the origin of its pixels.
 
 use image::{GrayImage, Luma, Rgb, RgbImage};
 use reality_sim_core::warp::{MAX_SOURCES, Origin, RayTable};
 use reality_sim_db::index::ImageIndex;
 
-/// The hues of [`Reconstruction::origin_picture`], sRGB, in the order of [`Reconstruction::used`]: told apart with any kind
-/// of colour vision (Okabe and Ito, 2008).
+/// Hues of [`Reconstruction::origin_picture`], sRGB, in the order of [`Reconstruction::used`]: distinguishable with any
+/// kind of colour vision (Okabe and Ito, 2008).
 pub const ORIGIN_HUES: [[u8; 3]; MAX_SOURCES] = [
     [230, 159, 0],
     [86, 180, 233],
@@ -17,27 +17,27 @@ pub const ORIGIN_HUES: [[u8; 3]; MAX_SOURCES] = [
     [160, 160, 160],
 ];
 
-/// A recorded image that a reconstruction was made from.
+/// Recorded image that a reconstruction was made from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UsedImage {
-    /// Which, of [`crate::Archive::images`].
+    /// Index of the image in [`crate::Archive::images`].
     pub image: ImageIndex,
-    /// How far the picture moves from it to the pose asked for, root mean square pixels.
+    /// Distance that the picture moves from the image to the requested pose, root mean square pixels.
     pub distance_px: f64,
-    /// The share of the pixels that came from it more than from any other.
+    /// Share of the pixels that came mainly from this image.
     pub share: f64,
 }
 
-/// A picture at a pose that was asked for.
+/// Reconstructed picture at a requested pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reconstruction {
     /// The picture.
     pub picture: RgbImage,
-    /// The method's name.
+    /// Name of the method.
     pub method: &'static str,
-    /// The images it was made from.
+    /// Images that the picture was made from.
     pub used: Vec<UsedImage>,
-    /// For every pixel, row by row, which of `used` it came from, and how far it can be trusted.
+    /// Source in `used` and trust of every pixel, row by row.
     pub origins: Vec<Origin>,
 }
 
@@ -62,7 +62,7 @@ impl Reconstruction {
         Self { picture, method, used: used.collect(), origins }
     }
 
-    /// The share of the pixels that some recorded image shows; the others are smoothly filled or black. Pixels where the
+    /// Share of the pixels that some recorded image shows; the others are filled smoothly or black. Pixels where the
     /// camera sees nothing do not count.
     pub fn covered(&self) -> f64 {
         let count = |of: fn(&Origin) -> bool| self.origins.iter().filter(|&origin| of(origin)).count() as f64;
@@ -70,12 +70,13 @@ impl Reconstruction {
         count(|origin| origin.is_recorded()) / (self.origins.len() as f64 - outside).max(1.0)
     }
 
-    /// How far each pixel can be trusted: white fully, black not at all.
+    /// Draws how far each pixel can be trusted: white means fully, black not at all.
     pub fn trust_picture(&self) -> GrayImage {
         self.drawn(|origin| Luma([origin.trust]))
     }
 
-    /// Which image each pixel came from: a hue an image, the brighter the more it can be trusted; black from none.
+    /// Draws which image each pixel came from: one hue per image, brighter where it can be trusted more; black where there
+    /// is none.
     pub fn origin_picture(&self) -> RgbImage {
         self.drawn(|origin| match ORIGIN_HUES.get(usize::from(origin.source)) {
             Some(hue) => {

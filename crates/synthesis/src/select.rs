@@ -1,12 +1,12 @@
-//! Which neighbours to take: together they shall see as much of the target as possible, as well as possible.
+//! Selection of neighbours that together show as much of the target as possible, as well as possible.
 //!
-//! The nearest by pose are often pictures of one moment that all miss the same corner. Of the candidates, one after the
-//! other is chosen that lowers most the sum over the target's pixels of the least cost (greedy facility location: within
-//! 1 − 1/e of the best choice).
+//! The nearest images by pose are often pictures of one moment that all miss the same corner. Candidates are therefore
+//! chosen one after the other: each lowers the sum, over the target's pixels, of the least cost as much as possible
+//! (greedy facility location: within 1 − 1/e of the best choice).
 
 use reality_sim_core::warp::{BlendWeights, Source, Target, costs};
 
-/// Indices of the candidates to take, at most `count`, the best first.
+/// Returns the indices of the candidates to use, at most `count`, the best first.
 pub fn select(target: &Target, candidates: &[Source], weights: &BlendWeights, count: usize) -> Vec<usize> {
     let costs: Vec<Vec<f32>> = candidates.iter().map(|candidate| costs(target, candidate, weights)).collect();
     let Some(pixels) = costs.first().map(Vec::len) else { return Vec::new() };

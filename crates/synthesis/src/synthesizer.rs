@@ -1,4 +1,4 @@
-//! A picture at any pose: the neighbours are found, their pictures decoded, the method draws.
+//! Pictures at any pose: finds the neighbours, decodes their pictures and calls the method.
 
 use std::{fmt, sync::Arc};
 
@@ -14,61 +14,61 @@ use reality_sim_db::index::{ImageIndex, Neighbour};
 
 use crate::{Archive, Reconstruction, SynthesisError, gain::gains, select::select};
 
-/// How pictures are made.
+/// Settings of the synthesis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SynthesisConfig {
-    /// Neighbours that are mixed, at most [`reality_sim_core::warp::MAX_SOURCES`].
+    /// Number of neighbours that are mixed, at most [`reality_sim_core::warp::MAX_SOURCES`].
     pub sources: usize,
-    /// Nearest images among which they are chosen.
+    /// Number of nearest images among which they are chosen.
     pub candidates: usize,
-    /// How they are weighed against each other.
+    /// Weights of the sources in a blend.
     pub weights: BlendWeights,
-    /// No picture is given where the nearest image is farther, root mean square pixels.
+    /// Largest distance of the nearest image, root mean square pixels; beyond it a pose is refused.
     pub reach_px: f64,
-    /// No picture is drawn of which recorded images show a smaller share, 0 to 1.
+    /// Smallest share of the pixels that recorded images must show, 0 to 1; otherwise a picture is refused.
     pub least_covered: f64,
 }
 
 impl SynthesisConfig {
-    /// For an archive: pictures are given where recorded images show at least two fifths of them.
+    /// Default settings for an archive: recorded images must show at least two fifths of a picture.
     pub fn new(archive: &Archive) -> Self {
         let reach_px = archive.index().metric().diagonal_px();
         Self { sources: 6, candidates: 120, weights: BlendWeights::default(), reach_px, least_covered: 0.4 }
     }
 
-    /// The same, mixing at most so many neighbours.
+    /// Sets the largest number of neighbours that are mixed.
     pub fn with_sources(self, sources: usize) -> Self {
         Self { sources, ..self }
     }
 
-    /// The same, choosing among so many of the nearest images.
+    /// Sets the number of nearest images among which neighbours are chosen.
     pub fn with_candidates(self, candidates: usize) -> Self {
         Self { candidates, ..self }
     }
 
-    /// The same, with neighbours weighed otherwise.
+    /// Sets the weights of a blend.
     pub fn with_weights(self, weights: BlendWeights) -> Self {
         Self { weights, ..self }
     }
 
-    /// The same, refusing poses whose nearest image is farther, root mean square pixels.
+    /// Sets the largest distance of the nearest image, root mean square pixels; beyond it a pose is refused.
     pub fn with_reach_px(self, reach_px: f64) -> Self {
         Self { reach_px, ..self }
     }
 
-    /// The same, refusing pictures of which recorded images show a smaller share, 0 to 1.
+    /// Sets the smallest share of a picture that recorded images must show, 0 to 1.
     pub fn with_least_covered(self, least_covered: f64) -> Self {
         Self { least_covered, ..self }
     }
 
-    /// The same, with pictures wherever there is any image at all.
+    /// Allows pictures wherever there is any image at all.
     pub fn best_effort(self) -> Self {
         Self { reach_px: f64::INFINITY, least_covered: 0.0, ..self }
     }
 }
 
-/// Gives pictures at any pose. Threads share one.
+/// Source of pictures at any pose. Threads share one.
 pub struct Synthesizer {
     archive: Arc<Archive>,
     camera: Camera,
@@ -87,14 +87,14 @@ impl fmt::Debug for Synthesizer {
 }
 
 impl Synthesizer {
-    /// Pictures of the camera that took the archive's images, drawn by the processor.
+    /// Makes pictures of the camera that took the archive's images, drawn on the processor.
     pub fn new(archive: Arc<Archive>) -> Self {
         let camera = archive.setup().camera.clone();
         let config = SynthesisConfig::new(&archive);
         Self::with(archive, camera, Arc::new(CpuWarper), config)
     }
 
-    /// Pictures of another camera, drawn on another device, or with other settings.
+    /// Makes pictures of another camera, on another device, or with other settings.
     pub fn with(
         archive: Arc<Archive>,
         camera: Camera,
@@ -105,28 +105,27 @@ impl Synthesizer {
         Self { archive, camera, rays, warper, config }
     }
 
-    /// What was recorded.
+    /// Returns the archive.
     pub fn archive(&self) -> &Arc<Archive> {
         &self.archive
     }
 
-    /// The camera whose pictures are drawn.
+    /// Returns the camera whose pictures are drawn.
     pub fn camera(&self) -> &Camera {
         &self.camera
     }
 
-    /// Its pixels' rays.
+    /// Returns the rays of its pixels.
     pub(crate) fn rays(&self) -> &RayTable {
         &self.rays
     }
 
-    /// The settings.
+    /// Returns the settings.
     pub fn config(&self) -> &SynthesisConfig {
         &self.config
     }
 
-    /// Decodes the pictures that a picture at this pose is made from, by whichever method, so that it is drawn without
-    /// delay later.
+    /// Decodes the pictures that any method needs at this pose, so that a later call draws without delay.
     pub fn prepare(&self, pose: CameraPose) -> Result<(), SynthesisError> {
         let proxy = self.archive.proxy_geometry().holding(pose);
         let images = self.chosen(&self.target(pose, &proxy), pose, self.config.sources)?;
@@ -137,13 +136,13 @@ impl Synthesizer {
         self.archive.pictures(&images).map(drop)
     }
 
-    /// The nearest images.
+    /// Returns the nearest images.
     pub fn nearest(&self, pose: CameraPose, count: usize) -> Result<Vec<Neighbour>, SynthesisError> {
         let found = self.archive.index().nearest(pose, count);
         found.map_err(|reason| SynthesisError::NoNeighbours { pose, reason })
     }
 
-    /// The nearest image in the size of the camera whose pictures are drawn; its lens may be another.
+    /// Returns the nearest image in the size of the camera whose pictures are drawn; its lens may differ.
     pub(crate) fn nearest_of_size(&self, pose: CameraPose) -> Result<Neighbour, SynthesisError> {
         let size = |camera: &Camera| [camera.width, camera.height];
         let is_of_size =
@@ -153,7 +152,7 @@ impl Synthesizer {
         found.ok_or(SynthesisError::OtherSize { pose, width, height })
     }
 
-    /// The picture drawn from so many neighbours through the proxy geometry.
+    /// Draws the picture from at most this many neighbours through the proxy geometry.
     pub(crate) fn warped(
         &self,
         method: &'static str,
@@ -189,7 +188,7 @@ impl Synthesizer {
         Target { rays: &self.rays, placement: Placement::new(pose), proxy }
     }
 
-    /// The neighbours to draw from: of the nearest and the natural ones those that together show most.
+    /// Chooses the neighbours to draw from: those of the nearest and the natural ones that together show most.
     fn chosen(
         &self,
         target: &Target,
@@ -203,7 +202,7 @@ impl Synthesizer {
                 candidates.push(natural);
             }
         }
-        // Where an image was taken decides whether it is chosen, not what it shows.
+        // The choice depends on where an image was taken, not on what it shows.
         let nothing = Archive::no_picture();
         let sources: Vec<Source> =
             candidates.iter().map(|candidate| self.archive.source(candidate.image, &nothing)).collect();
@@ -212,8 +211,8 @@ impl Synthesizer {
     }
 }
 
-/// Colours as a picture of a camera.
+/// Makes a picture of a camera from its colours.
 pub(crate) fn picture_of(camera: &Camera, colors: Vec<[u8; 3]>) -> RgbImage {
-    // A colour a pixel of the camera: there are as many as the picture holds.
+    // There is one colour for every pixel of the camera.
     RgbImage::from_raw(camera.width, camera.height, colors.into_flattened()).unwrap_or_default()
 }

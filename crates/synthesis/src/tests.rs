@@ -14,14 +14,14 @@ use crate::{
     *,
 };
 
-/// Frames of the walk that are left out of the database.
+/// Frames of the walk that are not in the database.
 const LEFT_OUT: std::ops::Range<usize> = 20..30;
 
 fn walk() -> Sequence {
     Sequence::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk")).unwrap()
 }
 
-/// The walk without some frames, in a database.
+/// Stores the walk without some frames in a database.
 fn stored(sequence: &Sequence) -> (TempDir, Archive) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("walk.db");
@@ -81,7 +81,7 @@ fn the_recorded_picture_is_given_where_there_is_one_and_a_reconstruction_elsewhe
     let beside = CameraPose { yaw_rad: pose.yaw_rad + 0.02, ..pose };
     let made = synthesizer.image_at(beside, &Auto).unwrap();
     assert_eq!(made, synthesizer.image_at(beside, &Blend).unwrap());
-    // Another lens saw something else.
+    // Another lens would have shown something else.
     let archive = synthesizer.archive().clone();
     let mut camera = synthesizer.camera().clone();
     camera.fx = 200.0;
@@ -90,7 +90,7 @@ fn the_recorded_picture_is_given_where_there_is_one_and_a_reconstruction_elsewhe
     assert_eq!(other.image_at(pose, &Auto).unwrap().method, "blend");
 }
 
-/// Another lens of the same size stood a little nearer: the picture is the right lens's all the same.
+/// An image from another lens of the same size is slightly nearer; the picture of the right lens is returned all the same.
 #[test]
 fn the_recorded_picture_is_that_of_the_lens_wanted() {
     let mut walk = walk();
@@ -189,7 +189,7 @@ fn threads_get_the_same_pictures_and_the_cache_keeps_its_bound() {
     {
         let (temporary, archive) = stored(&walk);
         let path = archive.database().path().to_path_buf();
-        // Room for three pictures.
+        // The cache has room for three pictures.
         synthesizer = Synthesizer::new(Arc::new(Archive::open(&path, 3 * 640 * 480 * 4).unwrap()));
         folder = temporary;
     }
@@ -223,7 +223,7 @@ fn what_was_prepared_needs_no_more_decoding() {
     assert_eq!(synthesizer.archive().cached_bytes(), held);
 }
 
-/// A recording whose exposure jumps up and down: without matching gains the pictures' borders would show.
+/// Jumps of the exposure would show at the borders between pictures if the gains did not match.
 #[test]
 fn pictures_of_different_brightness_are_brought_together() {
     let folder = tempfile::tempdir().unwrap();
@@ -243,7 +243,7 @@ fn pictures_of_different_brightness_are_brought_together() {
     let even = Synthesizer::new(Arc::new(even));
     let (pose, _) = truth(&walk(), 25);
     let [made, wanted] = [&synthesizer, &even].map(|from| from.image_at(pose, &Blend).unwrap().picture);
-    // All that is left of the jumps is a common factor.
+    // Only a common factor remains of the jumps.
     let ratios: Vec<f64> = made
         .pixels()
         .zip(wanted.pixels())
@@ -256,7 +256,7 @@ fn pictures_of_different_brightness_are_brought_together() {
     assert!((0.74..1.01).contains(&mean) && spread < 0.05, "{mean} ± {spread}");
 }
 
-/// A hall painted with known walls, photographed, and measured again.
+/// Paints a hall with known walls, photographs it, and measures it.
 #[test]
 fn the_hall_is_measured_from_what_pictures_agree_on() {
     let walk = walk();
@@ -276,7 +276,7 @@ fn the_hall_is_measured_from_what_pictures_agree_on() {
     assert!((found.ceiling_m - hall.ceiling_m).abs() < 0.15, "{found:?}");
 }
 
-/// A recording of a painted hall from many places.
+/// Makes a recording of a painted hall from many places.
 fn painted(walk: &Sequence, proxy: &ProxyGeometry) -> (TempDir, Sequence) {
     let pictures = tempfile::tempdir().unwrap();
     let folder = pictures.path().to_path_buf();
@@ -285,7 +285,7 @@ fn painted(walk: &Sequence, proxy: &ProxyGeometry) -> (TempDir, Sequence) {
     setup.camera = reality_sim_core::camera::Camera::new([160, 120], [54.0, 54.0, 79.5, 59.5], lens).unwrap();
     let mut frames = Vec::new();
     for number in 0..60 {
-        // Places and headings that fill the field evenly (Roberts' sequence).
+        // The places and headings fill the field evenly (Roberts' sequence).
         let part = |step: f64| (0.5 + f64::from(number) * step).fract();
         let planar = Pose2::new(
             5.0 * part(0.819_173) - 2.5,
