@@ -3,8 +3,8 @@
 use image::GrayImage;
 use rayon::prelude::*;
 
-/// Blurs with a Gaussian of `sigma_px`, cut at three sigma; the edge's value is repeated outside. A sigma of zero (or
-/// below, or NaN) leaves the picture as it is.
+/// Blurs with a Gaussian of `sigma_px`, truncated at three sigma; values at the edge are repeated outside. A sigma of
+/// zero, below zero or NaN leaves the picture unchanged.
 pub fn gaussian_blur(picture: &GrayImage, sigma_px: f32) -> GrayImage {
     let kernel = gaussian_kernel(sigma_px);
     let (width, height) = (picture.width() as usize, picture.height() as usize);
@@ -13,11 +13,11 @@ pub fn gaussian_blur(picture: &GrayImage, sigma_px: f32) -> GrayImage {
     }
     let across = blur_rows(picture.as_raw(), width, &kernel);
     let blurred = blur_columns(&across, width, &kernel);
-    // One value a pixel is just what the buffer of this size holds.
+    // The buffer holds exactly one value per pixel, as its size requires.
     GrayImage::from_raw(picture.width(), picture.height(), blurred).unwrap_or_default()
 }
 
-/// An odd number of weights that sum to one: just one for a sigma of zero (or below, or NaN).
+/// Returns an odd number of weights that sum to one; a single weight if sigma is zero, below zero or NaN.
 pub fn gaussian_kernel(sigma_px: f32) -> Vec<f32> {
     if !(sigma_px > 0.0 && sigma_px.is_finite()) {
         return vec![1.0];
@@ -77,7 +77,7 @@ mod tests {
 
     use super::*;
 
-    /// The same blur as a plain two-dimensional sum.
+    /// Computes the same blur as a plain two-dimensional sum.
     fn direct(picture: &GrayImage, sigma: f64) -> Vec<f64> {
         let radius = (3.0 * sigma).ceil() as i64;
         let (width, height) = (i64::from(picture.width()), i64::from(picture.height()));
@@ -106,7 +106,7 @@ mod tests {
             let picture = GrayImage::from_raw(13, 9, values).unwrap();
             let blurred = gaussian_blur(&picture, sigma as f32);
             for (value, expected) in blurred.as_raw().iter().zip(direct(&picture, sigma)) {
-                // Half a level for rounding, and what single precision adds.
+                // Half a level for rounding, plus the error of single precision.
                 prop_assert!((f64::from(*value) - expected).abs() <= 0.51);
             }
         }

@@ -1,10 +1,10 @@
-//! The border of the field: the carpet's colour learned from the picture itself, the farthest carpet in every
-//! direction, and the convex outline around it.
+//! Detection of the field's border: the carpet's colour is learned from the picture itself, the farthest carpet is
+//! found in every direction, and a convex outline is drawn around it.
 //!
-//! The paper detects the field's border as a contour in the picture. Here the contour is found on the ground: seen
-//! from the camera, each direction is followed outwards to the place that best divides carpet from not-carpet. A robot
-//! in the way makes that place too near, so the convex hull of all places is taken: a carpet is convex, a robot's foot
-//! inside the hull does not move it.
+//! The paper detects the field's border as a contour in the picture. Here the contour is found on the ground: each
+//! direction from the camera is followed outwards to the point that best divides carpet from everything else. A robot
+//! in the way makes that point too near, so the convex hull of all points is taken: the carpet is convex, and a robot's
+//! foot inside the hull does not change it.
 
 use glam::Vec2;
 use image::{GrayImage, RgbImage};
@@ -13,24 +13,25 @@ use rayon::prelude::*;
 use super::carpet::{CarpetColor, ColorSum};
 use crate::{camera::Camera, mount::MountPose};
 
-/// The picture is looked at in cells of this many pixels, along each side.
+/// Side of the square cells into which the picture is divided, pixels.
 pub const CELL_PX: u32 = 2;
-/// Directions around the camera, by pseudo-angle.
+/// Number of directions around the camera, by pseudo-angle.
 const BEARINGS: usize = 360;
-/// Steps of the ray's sine of depression, from the horizon (0) to straight down (1).
+/// Number of steps of the ray's sine of depression, from the horizon (0) to straight down (1).
 const DEPRESSIONS: usize = 400;
-/// Rays flatter than this end beyond any field: about 40 camera heights away.
+/// Minimum sine of depression: flatter rays end beyond any field, about 40 camera heights away.
 const MIN_DEPRESSION: f32 = 0.025;
-/// Carpet colour is learned up to this many camera heights from the camera.
+/// Maximum distance from the camera up to which the carpet's colour is learned, camera heights.
 const LEARNING_RADIUS_HEIGHTS: f32 = 8.0;
 
-/// Cells of carpet at a strip's near end that tell the next strip its colour.
+/// Number of carpet cells at a strip's near end from which the next strip takes its start colour.
 const NEAR_CELLS: usize = 8;
-/// Every how many cells the colour is learned from, and every how many bearings are looked at for where it shows best.
+/// Step between the cells from which the colour is learned, and between the bearings among which the best one is
+/// sought.
 const LEARNING_STEP: usize = 5;
-/// A sine of depression that no ray has.
+/// Sine of depression that no ray has.
 const NEVER_INSIDE: f32 = 2.0;
-/// This many bearings beside the hull are counted to it.
+/// Number of bearings beside the hull that still count as part of it.
 const SIDE_BEARINGS: usize = 6;
 
 /// Finds the field's border in pictures of one camera.
@@ -42,19 +43,19 @@ pub struct BorderDetector {
     rays_in_camera: Vec<[f32; 3]>,
 }
 
-/// The border of the field in one picture.
+/// Border of the field in one picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldBorder {
     columns: u32,
     /// Sine of the depression below the horizon for every cell inside the border; 0 outside.
     depressions: Vec<f32>,
-    /// The carpet's colour in this picture.
+    /// Colour of the carpet in this picture.
     pub carpet: CarpetColor,
     /// Corners of the convex outline, metres, x along the camera's heading and y to its left, counter-clockwise.
     pub outline_in_heading: Vec<Vec2>,
 }
 
-/// A cell's ray: which bearing, and the sine of its depression below the horizon.
+/// Ray of a cell: its bearing, and the sine of its depression below the horizon.
 #[derive(Clone, Copy)]
 struct GroundCell {
     bearing: u16,
@@ -105,7 +106,8 @@ impl BorderDetector {
         }
         let ends = carpet_ends(&strips, &carpet);
         let mut places = border_points(&ends, mount.height_m as f32);
-        // The robot stands on the carpet too: without its own place, a narrow view's outline would cut off what lies near.
+        // The robot itself stands on the carpet: without its own position, the outline of a narrow view would cut off
+        // what lies near.
         places.push(Vec2::ZERO);
         let outline_in_heading = convex_hull(places);
         let limits = hull_depressions(&outline_in_heading, mount.height_m as f32);
@@ -130,17 +132,17 @@ impl BorderDetector {
 }
 
 impl FieldBorder {
-    /// Whether a pixel shows a place inside the border (or something that stands before it).
+    /// Returns whether a pixel shows a point inside the border (or something that stands in front of it).
     pub fn contains(&self, u: u32, v: u32) -> bool {
         self.depression(u, v) > 0.0
     }
 
-    /// Sine of the depression below the horizon of a pixel inside the border; 0 outside.
+    /// Returns the sine of the depression below the horizon of a pixel inside the border; 0 outside.
     pub(super) fn depression(&self, u: u32, v: u32) -> f32 {
         self.depressions.get(((v / CELL_PX) * self.columns + u / CELL_PX) as usize).copied().unwrap_or(0.0)
     }
 
-    /// A bit for each cell of two by two pixels, row after row, the first in the lowest bit: whether it lies inside.
+    /// Returns one bit per cell of two by two pixels, row by row, the first in the lowest bit: whether it lies inside.
     pub fn inside_bits(&self) -> Vec<u32> {
         let word = |cells: &[f32]| {
             cells
@@ -166,7 +168,7 @@ impl FieldBorder {
     }
 }
 
-/// A number from 0 to 4 that grows with the angle of a direction, without trigonometry.
+/// Returns a number from 0 to 4 that grows with the angle of a direction, without trigonometry.
 fn pseudo_angle(direction: Vec2) -> f32 {
     let p = direction.y / (direction.x.abs() + direction.y.abs()).max(f32::MIN_POSITIVE);
     if direction.x < 0.0 {
@@ -182,7 +184,7 @@ fn bearing_bin(direction: Vec2) -> u16 {
     ((pseudo_angle(direction) * (BEARINGS as f32 / 4.0)) as usize).min(BEARINGS - 1) as u16
 }
 
-/// The direction at the middle of a bearing's bin.
+/// Returns the direction at the centre of a bearing's bin.
 fn bearing_direction(bin: usize) -> Vec2 {
     let p = (bin as f32 + 0.5) * 4.0 / BEARINGS as f32;
     let direction = match p {
@@ -201,8 +203,9 @@ fn depression_bin(depression: f32) -> usize {
 /// Cells from near to far along one bearing.
 type Strip = [ColorSum; DEPRESSIONS];
 
-/// Where the carpet ends along every bearing. Lens and light change its colour from one side of the picture to the other:
-/// from the strip that shows the learned colour best, each strip starts with the colour of the one before.
+/// Finds where the carpet ends along every bearing. Lens and light change its colour from one side of the picture to
+/// the other: starting from the strip that shows the learned colour best, each strip begins with the colour of its
+/// neighbour.
 fn carpet_ends(strips: &[Strip], carpet: &CarpetColor) -> Vec<Option<f32>> {
     let likeness = |strip: &Strip| -> f32 {
         let near = strip.iter().filter(|cells| cells.mean().is_some_and(|mean| carpet.is_near(mean)));
@@ -222,9 +225,9 @@ fn carpet_ends(strips: &[Strip], carpet: &CarpetColor) -> Vec<Option<f32>> {
     ends
 }
 
-/// The sine of depression up to which a strip of cells, followed from near to far, has most carpet and least of anything
-/// else, and the carpet's colour at its near end. The colour that counts as carpet follows slow changes of light along
-/// the strip; a wall, a floor or a robot is a sudden change.
+/// Returns the sine of depression that best divides carpet from everything else, along a strip of cells followed from
+/// near to far, and the carpet's colour at its near end. The colour that counts as carpet follows gradual changes of
+/// light along the strip; a wall, a floor or a robot is a sudden change.
 fn farthest_carpet(strip: &Strip, start: CarpetColor, learned: &CarpetColor) -> (Option<f32>, CarpetColor) {
     let (mut local, mut near_end) = (start, start);
     let (mut sum, mut best, mut end) = (0.0, 0.0, None);
@@ -249,7 +252,7 @@ fn farthest_carpet(strip: &Strip, start: CarpetColor, learned: &CarpetColor) -> 
     (end.map(|bin| bin as f32 / DEPRESSIONS as f32), near_end)
 }
 
-/// Places where the carpet ends, without single directions that reach beyond both neighbours.
+/// Returns the points where the carpet ends, without single directions that reach beyond both neighbours.
 fn border_points(ends: &[Option<f32>], height_m: f32) -> Vec<Vec2> {
     let at = |bin: usize, step: i32| ends[(bin as i32 + step).rem_euclid(ends.len() as i32) as usize];
     (0..ends.len())
@@ -262,7 +265,7 @@ fn border_points(ends: &[Option<f32>], height_m: f32) -> Vec<Vec2> {
         .collect()
 }
 
-/// Andrew's monotone chain; counter-clockwise.
+/// Returns the convex hull, counter-clockwise, by Andrew's monotone chain.
 fn convex_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();
@@ -287,8 +290,8 @@ fn convex_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
     hull
 }
 
-/// For every bearing, the sine of depression at which a ray leaves the hull. Bearings just beside it, at the picture's
-/// sides, end where their neighbours do; 2 (never inside) elsewhere.
+/// Returns the sine of depression at which a ray leaves the hull, for every bearing. Bearings just beside the hull, at
+/// the picture's sides, end where their neighbours do; 2 (never inside) elsewhere.
 fn hull_depressions(hull: &[Vec2], height_m: f32) -> Vec<f32> {
     let limit = |bin: usize| {
         let direction = bearing_direction(bin);
@@ -328,7 +331,8 @@ mod tests {
     use super::*;
     use crate::{pose::CameraPose, test_scene};
 
-    /// Fractions of carpet called outside, and of anything else called inside, among pixels not near the border.
+    /// Returns the fraction of carpet classified as outside, and that of everything else classified as inside, among
+    /// pixels that are not near the border.
     fn mistakes(picture: &RgbImage, pose: CameraPose) -> (f64, f64) {
         let (camera, field) = (test_scene::fisheye(), test_scene::field());
         let border = BorderDetector::new(&camera).detect(picture, MountPose::of(pose));
@@ -353,7 +357,7 @@ mod tests {
         (lost / carpet, kept / other)
     }
 
-    /// Draws into a picture, and holds that its border loses little of the carpet and keeps little of the hall.
+    /// Draws into a picture, and asserts that its border loses little of the carpet and keeps little of the hall.
     fn assert_border(pose: CameraPose, most_lost: f64, draw: impl Fn(&mut RgbImage)) {
         let mut picture = test_scene::render(&test_scene::fisheye(), pose, &test_scene::field());
         draw(&mut picture);
@@ -377,7 +381,7 @@ mod tests {
         });
     }
 
-    /// Red and blue fall to a fifth from one side of the picture to the other, as lenses and cheap sensors have it.
+    /// Red and blue fall to a fifth from one side of the picture to the other, as with some lenses and cheap sensors.
     #[test]
     fn a_tint_from_one_side_to_the_other_hides_no_carpet() {
         for pose in test_scene::poses() {

@@ -1,24 +1,24 @@
-//! The carpet's colour, learned from the picture itself.
+//! Colour of the carpet, learned from the picture itself.
 
-/// Bins along each axis of the chromaticity histogram.
+/// Number of bins along each axis of the chromaticity histogram.
 const BINS: usize = 48;
-/// Weight of a pixel without any colour; that of others grows with their distance from grey, about 0.1 for dull carpets.
+/// Weight of a colourless pixel; the weight of others grows with their distance from grey, about 0.1 for dull carpets.
 const GREY_WEIGHT: f32 = 0.02;
-/// Pixels darker than this (sum of the channels) have no usable chromaticity.
+/// Sum of the channels below which a pixel is too dark to have a usable chromaticity.
 const MIN_SUM: u16 = 36;
-/// Smallest spread of the carpet's chromaticity: JPEG's colour noise.
+/// Minimum spread of the carpet's chromaticity: JPEG's colour noise.
 const MIN_SIGMA: f32 = 0.012;
-/// Largest spread of the carpet's chromaticity.
+/// Maximum spread of the carpet's chromaticity.
 const MAX_SIGMA: f32 = 0.025;
-/// How much of a change of colour along the ground is followed at each step.
+/// Fraction by which a change of colour along the ground is followed at each step.
 const DRIFT: f32 = 0.15;
-/// Farther than this from the colour learned nothing is carpet.
+/// Maximum distance of the followed colour from the learned one.
 const MAX_DRIFT: f32 = 0.12;
 /// Squared distance, in spreads, up to which a pixel may be carpet.
 const GATE: f32 = 12.0;
 
-/// A Gaussian in chromaticity (r, g) = (R, G)/(R + G + B), with a range of brightness: light changes brightness more
-/// than colour.
+/// Gaussian distribution in chromaticity (r, g) = (R, G)/(R + G + B), together with a brightness: light changes
+/// brightness more than colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CarpetColor {
     /// Mean chromaticity (r, g).
@@ -30,7 +30,7 @@ pub struct CarpetColor {
 }
 
 impl CarpetColor {
-    /// The most common colour among pixels that probably show carpet.
+    /// Learns the most common colour among pixels that probably show carpet.
     pub fn learn(pixels: impl Iterator<Item = [u8; 3]>) -> Self {
         let samples: Vec<([f32; 2], f32)> = pixels.filter_map(chromaticity).collect();
         let mut color = Self { mean: peak(&samples), inverse: [400.0, 0.0, 400.0], brightness: 0.0 };
@@ -40,7 +40,7 @@ impl CarpetColor {
         color
     }
 
-    /// Mean and covariance of the samples within the gate.
+    /// Recomputes mean and covariance from the samples within the gate.
     fn refit(self, samples: &[([f32; 2], f32)]) -> Self {
         let (mut count, mut sum, mut squares, mut brightness) = (0.0, [0.0; 2], [0.0; 3], 0.0);
         for &([r, g], total) in samples {
@@ -62,7 +62,7 @@ impl CarpetColor {
             squares[1] / count - shift[0] * shift[1],
             squares[2] / count - shift[1] * shift[1] + floor,
         ];
-        // A floor or a wall of nearly the same colour must not widen the carpet's until it is carpet too.
+        // A floor or a wall of nearly the same colour must not widen the distribution until it counts as carpet, too.
         let excess = (rr.max(gg) / (MAX_SIGMA * MAX_SIGMA)).max(1.0);
         [rr, rg, gg] = [rr / excess, rg / excess, gg / excess];
         let determinant = rr * gg - rg * rg;
@@ -79,12 +79,12 @@ impl CarpetColor {
         rr * dr * dr + 2.0 * rg * dr * dg + gg * dg * dg
     }
 
-    /// Whether a chromaticity is the carpet's.
+    /// Returns whether a chromaticity is that of the carpet.
     pub(super) fn is_near(&self, chroma: [f32; 2]) -> bool {
         self.distance_squared(chroma) < GATE
     }
 
-    /// This colour moved a little towards another, but never far from the one learned.
+    /// Returns this colour moved a little towards another, but never far from the learned one.
     pub(super) fn drifted(&self, towards: [f32; 2], learned: &Self) -> Self {
         let moved = |axis: usize| {
             let mean = self.mean[axis] + DRIFT * (towards[axis] - self.mean[axis]);
@@ -93,7 +93,7 @@ impl CarpetColor {
         Self { mean: [moved(0), moved(1)], ..*self }
     }
 
-    /// Whether a pixel may be a white line: bright for this carpet, and nearly without colour.
+    /// Returns whether a pixel may be a white line: bright for this carpet, and nearly colourless.
     fn may_be_line(&self, rgb: [u8; 3]) -> bool {
         let [low, high] = [rgb.into_iter().min().unwrap_or(0), rgb.into_iter().max().unwrap_or(0)];
         let colourless = u16::from(low) * 4 > u16::from(high) * 3;
@@ -101,7 +101,7 @@ impl CarpetColor {
     }
 }
 
-/// The mean chromaticity of some pixels, white lines left out.
+/// Sum of the chromaticities of some pixels, without white lines.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ColorSum {
     /// Number of pixels.
@@ -114,7 +114,7 @@ impl ColorSum {
         if carpet.may_be_line(rgb) {
             return;
         }
-        // What is too dark to have a colour is as far from the carpet's as grey is.
+        // A pixel too dark to have a colour is as far from the carpet's colour as grey is.
         let ([r, g], _) = chromaticity(rgb).unwrap_or(([1.0 / 3.0; 2], 0.0));
         self.count += 1.0;
         self.sum = [self.sum[0] + r, self.sum[1] + g];
@@ -131,8 +131,8 @@ fn chromaticity([r, g, b]: [u8; 3]) -> Option<([f32; 2], f32)> {
     (sum >= MIN_SUM).then(|| ([f32::from(r) / total, f32::from(g) / total], total))
 }
 
-/// The middle of the 3×3 bins that hold most colour. Robots, shoes and shadows are grey: a colourless pixel counts
-/// little, so that the robot's own shoulder before the camera does not pass for the carpet.
+/// Returns the centre of the 3×3 bins with the largest total weight. Robots, shoes and shadows are grey: a colourless
+/// pixel counts little, so that the robot's own shoulder in front of the camera is not taken for the carpet.
 fn peak(samples: &[([f32; 2], f32)]) -> [f32; 2] {
     const GREY: f32 = 1.0 / 3.0;
     let bin = |value: f32| ((value * BINS as f32) as usize).min(BINS - 1);

@@ -1,5 +1,5 @@
-//! How far every pixel is from the nearest white one: exact up to a radius, along the rows first, then along the columns
-//! (Saito and Toriwaki, "New algorithms for Euclidean distance transformation", 1994).
+//! Distance transform: how far every pixel is from the nearest white one, exact up to a radius, first along the rows,
+//! then along the columns (Saito and Toriwaki, "New algorithms for Euclidean distance transformation", 1994).
 
 use image::GrayImage;
 use rayon::prelude::*;
@@ -7,10 +7,11 @@ use rayon::prelude::*;
 /// Grey levels per pixel of distance in [`distance_field`].
 pub const DISTANCE_UNITS_PER_PX: f32 = 8.0;
 
-/// Distances are looked for up to this many pixels: more than 255 units hold.
+/// Maximum distance that is searched, pixels: slightly more than 255 units can hold.
 pub const DISTANCE_RADIUS_PX: u8 = 32;
 
-/// Distance of every pixel from the nearest white one, pixels × [`DISTANCE_UNITS_PER_PX`], rounded, cut at 255.
+/// Returns the distance of every pixel from the nearest white one, pixels × [`DISTANCE_UNITS_PER_PX`], rounded, clipped
+/// at 255.
 pub fn distance_field(evidence: &GrayImage) -> GrayImage {
     let (width, height) = evidence.dimensions();
     if width == 0 || height == 0 {
@@ -18,11 +19,11 @@ pub fn distance_field(evidence: &GrayImage) -> GrayImage {
     }
     let across = distance_rows(evidence);
     let field = distance_columns(&across, width as usize);
-    // One value a pixel is just what the buffer of this size holds.
+    // The buffer holds exactly one value per pixel, as its size requires.
     GrayImage::from_raw(width, height, field).unwrap_or_default()
 }
 
-/// Distance of every pixel from the nearest white one in its row, cut at [`DISTANCE_RADIUS_PX`].
+/// Returns the distance of every pixel from the nearest white one in its row, clipped at [`DISTANCE_RADIUS_PX`].
 fn distance_rows(evidence: &GrayImage) -> Vec<u8> {
     let width = evidence.width() as usize;
     let mut across = vec![0_u8; evidence.len()];
@@ -42,7 +43,7 @@ fn distance_rows(evidence: &GrayImage) -> Vec<u8> {
     across
 }
 
-/// Smallest distance over the column, from the distances along the rows, in [`DISTANCE_UNITS_PER_PX`].
+/// Combines the distances along the rows to the smallest distance over each column, in [`DISTANCE_UNITS_PER_PX`].
 fn distance_columns(across: &[u8], width: usize) -> Vec<u8> {
     let radius = usize::from(DISTANCE_RADIUS_PX);
     let height = across.len() / width;

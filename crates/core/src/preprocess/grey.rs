@@ -6,13 +6,13 @@ use rayon::prelude::*;
 /// Weights of red, green and blue in luma, ITU-R BT.601, as in JPEG files.
 pub const LUMA_WEIGHTS: [f64; 3] = [0.299, 0.587, 0.114];
 
-/// Luma by ITU-R BT.601 with weights in 256ths, rounded down.
+/// Returns the luma by ITU-R BT.601 with weights in 256ths, rounded down.
 pub fn luma(picture: &RgbImage) -> GrayImage {
     map_pixels(picture, |[r, g, b]| ((u32::from(r) * 77 + u32::from(g) * 150 + u32::from(b) * 29) >> 8) as u8)
 }
 
-/// The smallest of the three channels: large only where a pixel is bright *and* colourless, as white lines are; small
-/// on carpet, coloured goals, balls and robots.
+/// Returns the smallest of the three channels: large only where a pixel is bright *and* colourless, as white lines are;
+/// small on carpet, coloured goals, balls and robots.
 pub fn whiteness(picture: &RgbImage) -> GrayImage {
     map_pixels(picture, |[r, g, b]| r.min(g).min(b))
 }
@@ -28,6 +28,6 @@ fn map_pixels(picture: &RgbImage, value: impl Fn([u8; 3]) -> u8 + Sync) -> GrayI
             }
         },
     );
-    // One value a pixel is just what the buffer of this size holds.
+    // The buffer holds exactly one value per pixel, as its size requires.
     GrayImage::from_raw(width, height, values).unwrap_or_default()
 }

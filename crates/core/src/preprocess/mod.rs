@@ -1,5 +1,5 @@
-//! From a recorded picture to what the observation models read: grey values, blur, the field's border, the evidence
-//! for white lines.
+//! Preprocessing: turns a recorded picture into the input of the observation models: grey values, blur, the field's
+//! border and the evidence for white lines.
 
 mod blur;
 mod border;

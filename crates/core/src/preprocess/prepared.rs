@@ -1,4 +1,4 @@
-//! Everything the observation models read of one picture.
+//! A picture with everything that the observation models read.
 
 use crate::mount::MountPose;
 use std::sync::Arc;
@@ -10,27 +10,27 @@ use super::{
 };
 use crate::camera::Camera;
 
-/// A picture ready to be scored.
+/// Picture that is ready to be scored.
 #[derive(Debug, Clone)]
 pub struct Prepared {
-    /// The picture itself.
+    /// Original picture.
     pub picture: Arc<RgbImage>,
-    /// Smallest channel: bright only on white.
+    /// Smallest of the three channels of each pixel: bright only on white.
     pub whiteness: GrayImage,
     /// Whiteness of carpet and lines.
     pub levels: WhiteLevels,
-    /// The field's border.
+    /// Border of the field.
     pub border: FieldBorder,
     scale: LineScale,
 }
 
 impl Prepared {
-    /// Grey values. Made anew at each call: not every observation model needs them.
+    /// Computes the grey values. The result is not cached: not every observation model needs it.
     pub fn luma(&self) -> GrayImage {
         luma(&self.picture)
     }
 
-    /// White pixels (255) inside the border. Made anew at each call, as [`Prepared::luma`].
+    /// Computes the white pixels (255) inside the border. The result is not cached, as with [`Prepared::luma`].
     pub fn evidence(&self) -> GrayImage {
         white_line_evidence(&self.whiteness, &self.border, self.scale, &self.levels)
     }
@@ -45,7 +45,7 @@ pub struct Preprocessor {
 }
 
 impl Preprocessor {
-    /// For pictures of this camera on a field with lines of this width, metres.
+    /// Makes a preprocessor for pictures of this camera on a field with lines of this width, metres.
     pub fn new(camera: &Camera, line_width_m: f64) -> Self {
         let focal_px = (0.5 * (camera.fx + camera.fy)) as f32;
         Self { border: BorderDetector::new(camera), focal_px, line_width_m: line_width_m as f32 }

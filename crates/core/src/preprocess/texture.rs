@@ -1,9 +1,9 @@
-//! An 8-bit picture laid out for bilinear look-ups at many random places.
+//! An 8-bit picture laid out for bilinear look-ups at many random positions.
 
 use image::GrayImage;
 
-/// Each texel holds its own value and those of its right, lower and lower right neighbours in one 32-bit word, so
-/// that a bilinear look-up costs one load instead of four.
+/// Picture in which each texel holds its own value and those of its right, lower and lower right neighbours in one
+/// 32-bit word, so that a bilinear look-up costs one load instead of four.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
     pub(crate) width: u32,
@@ -12,20 +12,20 @@ pub struct Texture {
 }
 
 impl Default for Texture {
-    /// One black pixel.
+    /// Returns a texture of one black pixel.
     fn default() -> Self {
         Self { width: 1, height: 1, texels: vec![0] }
     }
 }
 
 impl Texture {
-    /// A word a texel, row by row: its own value in the lowest byte, then those of its right, lower and lower right
-    /// neighbours. Filled up to a power of two.
+    /// Returns one word per texel, row by row: its own value in the lowest byte, then those of its right, lower and
+    /// lower right neighbours. The number of words is padded to a power of two.
     pub fn texels(&self) -> &[u32] {
         &self.texels
     }
 
-    /// Packs a grey picture. Beyond the last column and row the edge's value is repeated.
+    /// Packs a grey picture. Beyond the last column and row the value at the edge is repeated.
     pub fn pack(picture: &GrayImage) -> Self {
         let (width, height) = picture.dimensions();
         let values = picture.as_raw();
@@ -38,12 +38,12 @@ impl Texture {
             texels.extend((0..row.len() - 1).map(|x| word(x, x + 1)));
             texels.push(word(row.len() - 1, row.len() - 1));
         }
-        // Filled up to a power of two, see the look-up in the scoring loop.
+        // Padded to a power of two, see the look-up in the scoring loop.
         texels.resize(texels.len().next_power_of_two(), 0);
         Self { width, height, texels }
     }
 
-    /// Bilinear value (0–255) at a place in pixels; places outside are moved to the edge.
+    /// Returns the bilinear value (0–255) at a position in pixels; positions outside are moved to the edge.
     pub fn sample(&self, u: f32, v: f32) -> f32 {
         let u = u.clamp(0.0, (self.width - 1) as f32);
         let v = v.clamp(0.0, (self.height - 1) as f32);

@@ -1,18 +1,18 @@
-//! The evidence for white lines: which pixels inside the field's border are white.
+//! Evidence for white lines: which pixels inside the field's border are white.
 
 use image::GrayImage;
 use rayon::prelude::*;
 
 use super::FieldBorder;
 
-/// Flanks lie this many line widths from a pixel, so that a line that runs at 45° is spanned too.
+/// Distance of the flanks from a pixel, in line widths; large enough to span a line that runs at 45°.
 const FLANK_WIDTHS: f32 = 1.3;
-/// And this much farther, for blur, pixels.
+/// Additional distance of the flanks, to allow for blur, pixels.
 const FLANK_MARGIN_PX: f32 = 1.5;
-/// Ridges below this are the carpet's texture and the sensor's noise, grey levels.
+/// Minimum height of a ridge, grey levels: anything lower is the carpet's texture or the sensor's noise.
 const MIN_RIDGE: u8 = 10;
 
-/// How wide white lines are in the pictures of a camera.
+/// Parameters that give the width of white lines in the pictures of a camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineScale {
     /// Pixels per radian around the optical axis.
@@ -23,11 +23,11 @@ pub struct LineScale {
     pub height_m: f32,
 }
 
-/// Rows looked at to learn the picture's levels: every this many.
+/// Step between the rows from which the picture's levels are learned.
 const LEVEL_ROWS: usize = 4;
 
-/// White pixels (255) on the field: brighter than what lies just more than a line's width away on both sides, along the
-/// row or along the column. Light that changes over the carpet does not change that.
+/// Returns the white pixels (255) on the field: brighter than the flanks just over a line's width away on both sides,
+/// along the row or along the column. Light that varies over the carpet does not matter.
 pub fn white_line_evidence(
     whiteness: &GrayImage,
     border: &FieldBorder,
@@ -39,11 +39,11 @@ pub fn white_line_evidence(
     evidence
 }
 
-/// How bright lines and carpet are in a picture, and how much brighter than its flanks a white pixel must be: Otsu's
-/// threshold among the pixels that are brighter at all.
+/// Returns how bright lines and carpet are in a picture, and how much brighter than its flanks a white pixel must be:
+/// Otsu's threshold among the pixels that stand out at all.
 pub fn white_levels(whiteness: &GrayImage, border: &FieldBorder, scale: LineScale) -> WhiteLevels {
     let ridges = ridges(whiteness, border, scale, LEVEL_ROWS);
-    // What is no ridge at all would only drown the lines.
+    // Pixels that are no ridge at all would outnumber the lines.
     let candidates =
         || ridges.as_raw().iter().zip(whiteness.as_raw()).filter(|(ridge, _)| **ridge > MIN_RIDGE);
     let mut histogram = [0_u32; 256];
@@ -61,8 +61,8 @@ pub fn white_levels(whiteness: &GrayImage, border: &FieldBorder, scale: LineScal
     }
 }
 
-/// By how much each pixel inside the border, in some of the rows, is brighter than both its flanks, along the row or along
-/// the column.
+/// Returns by how much each pixel inside the border, in some of the rows, is brighter than both its flanks, along the
+/// row or along the column.
 fn ridges(whiteness: &GrayImage, border: &FieldBorder, scale: LineScale, every: usize) -> GrayImage {
     let (width, height) = (whiteness.width() as usize, whiteness.height() as usize);
     let values = whiteness.as_raw();
@@ -85,11 +85,11 @@ fn ridges(whiteness: &GrayImage, border: &FieldBorder, scale: LineScale, every: 
             *ridge = beside.unwrap_or(0).max(above.unwrap_or(0));
         }
     });
-    // One value a pixel is just what the buffer of this size holds.
+    // The buffer holds exactly one value per pixel, as its size requires.
     GrayImage::from_raw(whiteness.width(), whiteness.height(), ridges).unwrap_or_default()
 }
 
-/// Otsu, "A threshold selection method from gray-level histograms", 1979.
+/// Returns the threshold of Otsu, "A threshold selection method from gray-level histograms", 1979.
 fn otsu(histogram: &[u32; 256]) -> u8 {
     let total: f64 = histogram.iter().map(|&n| f64::from(n)).sum();
     let moment: f64 = histogram.iter().enumerate().map(|(value, &n)| value as f64 * f64::from(n)).sum();
@@ -116,24 +116,25 @@ pub struct WhiteLevels {
     pub carpet: f32,
     /// Mean on the lines.
     pub line: f32,
-    /// A pixel brighter than both its flanks by more than this is white.
+    /// Threshold: a pixel brighter than both its flanks by more than this is white.
     pub threshold: u8,
 }
 
 impl Default for WhiteLevels {
-    /// Where no line is seen: black carpet, white lines.
+    /// Returns the levels used if no line is seen: black carpet, white lines.
     fn default() -> Self {
         Self { carpet: 0.0, line: 255.0, threshold: 0 }
     }
 }
 
 impl WhiteLevels {
-    /// Michelson contrast of lines and carpet, with `dark_level` added to the brightness it is relative to.
+    /// Returns the Michelson contrast of lines and carpet, with `dark_level` added to the brightness in the
+    /// denominator.
     pub fn michelson(&self, dark_level: f32) -> f32 {
         ((self.line - self.carpet) / (self.line + self.carpet + dark_level)).max(0.05)
     }
 
-    /// How much brighter lines are than carpet.
+    /// Returns how much brighter lines are than carpet, grey levels.
     pub fn contrast(&self) -> f32 {
         self.line - self.carpet
     }

@@ -1,8 +1,9 @@
-//! One picture from several: every pixel from those neighbours that see its place best.
+//! Blending of several pictures into one: every pixel is taken from the neighbours that see its point of the scene
+//! best.
 //!
-//! The weights follow unstructured lumigraph rendering (Buehler et al., 2001): a penalty for the angle between the
-//! two lines of sight, for coarser resolution, and for lying near the neighbour's border. Neighbours that disagree with
-//! the others at a pixel (an obstacle that stood there once) lose their weight there.
+//! The weights follow unstructured lumigraph rendering (Buehler et al., 2001): a penalty for the angle between the two
+//! lines of sight, for coarser resolution, and for lying near the neighbour's border. A neighbour that disagrees with
+//! the others at a pixel (because an obstacle stood there at the time, say) loses its weight there.
 
 #![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
 
@@ -19,10 +20,10 @@ use super::{
 };
 use crate::camera::{KernelCamera, LANES, Lanes, Pixels};
 
-/// More neighbours than this are never mixed.
+/// Maximum number of neighbours that are mixed.
 pub const MAX_SOURCES: usize = 8;
 
-/// How neighbours are weighed against each other.
+/// Parameters that weigh the neighbours against each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct BlendWeights {
@@ -30,43 +31,43 @@ pub struct BlendWeights {
     pub angle_on_ground: f32,
     /// Penalty of a right angle between the lines of sight above the ground, where the proxy geometry is a guess.
     pub angle_above: f32,
-    /// Penalty where a source's pixels are four times as large as the target's.
+    /// Penalty of a source whose pixels are four times as large as the target's.
     pub resolution: f32,
-    /// Within this distance of a neighbour's border its weight falls to 0, pixels.
+    /// Distance from a neighbour's border within which its weight falls to 0, pixels.
     pub border_px: f32,
-    /// Added to all penalties: the smaller, the more the best neighbour takes alone.
+    /// Constant added to all penalties: the smaller it is, the more the best neighbour dominates.
     pub softness: f32,
-    /// Colours that differ by this from the others' have half the weight, grey levels.
+    /// Difference from the others' colours at which a neighbour has half its weight, grey levels.
     pub disagreement: f32,
 }
 
 impl BlendWeights {
-    /// The same, with another penalty of a right angle between the lines of sight on the ground.
+    /// Replaces the penalty of a right angle between the lines of sight on the ground.
     pub fn with_angle_on_ground(self, angle_on_ground: f32) -> Self {
         Self { angle_on_ground, ..self }
     }
 
-    /// The same, with another penalty of a right angle above the ground.
+    /// Replaces the penalty of a right angle between the lines of sight above the ground.
     pub fn with_angle_above(self, angle_above: f32) -> Self {
         Self { angle_above, ..self }
     }
 
-    /// The same, with another penalty of coarse sources.
+    /// Replaces the penalty of coarse sources.
     pub fn with_resolution(self, resolution: f32) -> Self {
         Self { resolution, ..self }
     }
 
-    /// The same, with weights that fall to 0 within this distance of a border, pixels.
+    /// Replaces the distance from a border within which weights fall to 0, pixels.
     pub fn with_border_px(self, border_px: f32) -> Self {
         Self { border_px, ..self }
     }
 
-    /// The same, with this added to all penalties.
+    /// Replaces the constant added to all penalties.
     pub fn with_softness(self, softness: f32) -> Self {
         Self { softness, ..self }
     }
 
-    /// The same, with half the weight for colours that differ by this from the others', grey levels.
+    /// Replaces the difference from the others' colours at which a neighbour has half its weight, grey levels.
     pub fn with_disagreement(self, disagreement: f32) -> Self {
         Self { disagreement, ..self }
     }
@@ -85,42 +86,42 @@ impl Default for BlendWeights {
     }
 }
 
-/// A picture that was recorded, and from where.
+/// A recorded picture with its camera and pose.
 #[derive(Debug, Clone, Copy)]
 pub struct Source<'a> {
-    /// The camera.
+    /// Camera that took the picture.
     pub camera: &'a KernelCamera,
-    /// Its pose.
+    /// Pose of the camera.
     pub placement: Placement,
-    /// What it saw.
+    /// Recorded picture.
     pub picture: &'a Arc<Picture>,
-    /// Red, green and blue are multiplied by this.
+    /// Factors for red, green and blue.
     pub gain: [f32; 3],
 }
 
-/// The camera and the pose at which a picture is wanted, and what stands for the world.
+/// Camera and pose for which a picture is wanted, with the proxy geometry of the scene.
 #[derive(Debug, Clone, Copy)]
 pub struct Target<'a> {
-    /// The camera's pixels.
+    /// Rays of the camera's pixels.
     pub rays: &'a RayTable,
-    /// Its pose.
+    /// Pose of the camera.
     pub placement: Placement,
-    /// The shape of the world.
+    /// Proxy geometry of the scene.
     pub proxy: &'a ProxyGeometry,
 }
 
-/// A picture drawn from others.
+/// A picture warped from others.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warped {
     /// Red, green and blue, row by row from the top.
     pub colors: Vec<[u8; 3]>,
-    /// Where each pixel came from.
+    /// Origin of each pixel.
     pub origins: Vec<Origin>,
 }
 
 impl Warped {
-    /// The same picture, black where the camera sees nothing, and with pixels that no source saw coloured as their
-    /// surroundings are: the last step of [`blend`], on all devices.
+    /// Returns the same picture, black where the camera sees nothing. Pixels that no source saw are filled in from
+    /// their surroundings. This is the last step of [`blend`], on all devices.
     pub fn filled(mut self, rays: &RayTable) -> Self {
         rays.mark_outside(&mut self.origins);
         for (color, _) in
@@ -133,7 +134,7 @@ impl Warped {
     }
 }
 
-/// Draws the picture at the target from the sources, at most [`MAX_SOURCES`] of them.
+/// Draws the picture at the target from the sources; uses at most [`MAX_SOURCES`] of them.
 pub fn blend(target: &Target, sources: &[Source], weights: &BlendWeights) -> Warped {
     let (width, height) = (target.rays.width as usize, target.rays.height as usize);
     let sources = &sources[..sources.len().min(MAX_SOURCES)];
@@ -168,21 +169,22 @@ fn blend_row(
     }
 }
 
-/// Sixteen pixels of a reconstruction.
+/// Sixteen pixels of a blended picture.
 struct Mixed {
     color: [Lanes; 3],
     source: [u8; LANES],
     trust: Lanes,
 }
 
-/// What a source says of sixteen pixels.
+/// Colours and weights of one source at sixteen pixels.
 #[derive(Clone, Copy)]
 struct Opinion {
     color: [Lanes; 3],
     weight: Lanes,
 }
 
-/// `opinions` is room to work in, one a source: clearing it for every block takes time.
+/// Mixes the sources at sixteen pixels. `opinions` is working memory with one element per source; allocating it for
+/// every block would take time.
 #[inline(always)]
 fn mix(
     target: &Target,
@@ -229,7 +231,7 @@ fn gained(mut color: [Lanes; 3], gain: [f32; 3]) -> [Lanes; 3] {
     color
 }
 
-/// The weight of a source before it is compared with the others.
+/// Returns the weight of a source before it is compared with the others.
 #[inline(always)]
 fn source_weight(
     target: &Target,
@@ -249,8 +251,8 @@ fn source_weight(
             + points.direction[2][i] * (points.place[2][i] - z);
         let cosine = along * nearness;
         let ground = points.on_ground[i];
-        // Pixels for a length on the surface, the target's over the source's: squared, falls with the distance
-        // squared, and on the ground once more for the flat view.
+        // Ratio of the pixel densities on the surface, target over source. The density falls with the squared distance,
+        // and on the ground with one more power for the foreshortening.
         let nearer = 1.0 / (points.distance[i] * nearness);
         let flatter = nearer * target_height / height;
         let density = nearer * nearer * (1.0 + ground * (flatter - 1.0));
@@ -267,7 +269,7 @@ fn source_weight(
     weight
 }
 
-/// The weighted mean colour, with less weight for those far from it; the weights are left as they were used.
+/// Returns the weighted mean colour, with less weight for colours far from it; leaves the weights as they were used.
 #[inline(always)]
 fn agreed(opinions: &mut [Opinion], disagreement: f32) -> [Lanes; 3] {
     let per_square = 1.0 / (disagreement * disagreement);
@@ -312,13 +314,13 @@ fn weighted_mean(opinions: &[Opinion]) -> [Lanes; 3] {
     sum
 }
 
-/// Rows of pixels that [`costs`] and [`glimpses`] look at; sixteen in each.
+/// Number of rows of pixels that [`costs`] and [`glimpses`] examine, with sixteen pixels each.
 const LOOK_ROWS: usize = 12;
 
-/// What a pixel costs that a source does not see.
+/// Cost of a pixel that a source does not see.
 const UNSEEN: f32 = 4.0;
 
-/// How badly a source shows each of a few hundred pixels of the target, evenly spread: 0 for a perfect view.
+/// Returns how badly a source shows each of a few hundred evenly spread pixels of the target: 0 for a perfect view.
 pub fn costs(target: &Target, source: &Source, weights: &BlendWeights) -> Vec<f32> {
     let mut costs = Vec::with_capacity(LOOK_ROWS * LANES);
     for points in spread_points(target) {
@@ -333,7 +335,7 @@ pub fn costs(target: &Target, source: &Source, weights: &BlendWeights) -> Vec<f3
     costs
 }
 
-/// The colours that a source shows at the pixels of [`costs`]; `None` where it does not see them.
+/// Returns the colours that a source shows at the pixels of [`costs`]; `None` where it does not see them.
 pub fn glimpses(target: &Target, source: &Source) -> Vec<Option<[f32; 3]>> {
     let mut glimpses = Vec::with_capacity(LOOK_ROWS * LANES);
     for points in spread_points(target) {
@@ -356,7 +358,7 @@ fn spread_points(target: &Target) -> impl Iterator<Item = ProxyPoints> {
     })
 }
 
-/// Sixteen rays spread over a row.
+/// Returns sixteen rays spread over a row.
 fn spread(blocks: &[RayBlock], width: usize) -> RayBlock {
     std::array::from_fn(|axis| {
         std::array::from_fn(|lane| {

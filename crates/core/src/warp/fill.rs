@@ -1,16 +1,16 @@
-//! Colours for pixels that no neighbour saw: smoothly continued from those around them.
+//! Filling of pixels that no neighbour saw, by smooth continuation from those around them.
 //!
-//! The pull-push method (Gortler et al., 1996): the picture is halved again and again, means taken over the known pixels
-//! only, until all are known; on the way back every unknown pixel takes the colour of the coarser picture.
+//! The pull-push method (Gortler et al., 1996): the picture is halved again and again, averaging only known pixels,
+//! until all pixels are known; on the way back every unknown pixel takes the colour of the coarser picture.
 
 use rayon::prelude::*;
 
 use super::Origin;
 
-/// Work enough for a task of its own.
+/// Number of pixels per task: enough work to outweigh the cost of starting it.
 const PIXELS_A_TASK: usize = 16384;
 
-/// Colours with weights, 0 for unknown.
+/// Picture of colours with weights, 0 for unknown pixels.
 struct Level {
     width: usize,
     height: usize,
@@ -18,7 +18,7 @@ struct Level {
     pixels: Vec<[f32; 4]>,
 }
 
-/// Fills the pixels whose source is [`Origin::NOWHERE`]. Nothing happens where none was recorded at all.
+/// Fills the pixels whose source is [`Origin::NOWHERE`]. Does nothing if no pixel was recorded at all.
 pub(crate) fn fill(colors: &mut [[u8; 3]], width: usize, source: impl Fn(usize) -> u8 + Sync) {
     let is_unknown = |index: usize| source(index) == Origin::NOWHERE;
     let is_known = |index: usize| source(index) < Origin::OUTSIDE;
@@ -36,7 +36,8 @@ pub(crate) fn fill(colors: &mut [[u8; 3]], width: usize, source: impl Fn(usize) 
     });
 }
 
-/// A picture at half its size. It is never held in numbers of four bytes at its full size: memory costs most of the time.
+/// Returns a picture at half its size. The full size is never converted to floats: memory access takes most of the
+/// time.
 fn half_size(colors: &[[u8; 3]], width: usize, is_known: &(impl Fn(usize) -> bool + Sync)) -> Level {
     let height = colors.len() / width;
     Level::by_rows(width.div_ceil(2), height.div_ceil(2), |v, sums| {
@@ -49,7 +50,7 @@ fn half_size(colors: &[[u8; 3]], width: usize, is_known: &(impl Fn(usize) -> boo
     })
 }
 
-/// A level at half its size.
+/// Returns a level at half its size.
 fn halved(fine: &Level) -> Level {
     Level::by_rows(fine.width.div_ceil(2), fine.height.div_ceil(2), |v, sums| {
         for row in fine.pixels.chunks(fine.width).skip(2 * v).take(2) {
@@ -62,7 +63,7 @@ fn add(sum: &mut [f32; 4], pixel: [f32; 4]) {
     sum.iter_mut().zip(pixel).for_each(|(sum, value)| *sum += value);
 }
 
-/// Unknown pixels take the bilinear colour of the next coarser level.
+/// Gives unknown pixels the bilinear colour of the next coarser level.
 fn take_unknown(fine: &mut Level, coarse: &Level) {
     let width = fine.width;
     let rows = fine.pixels.par_chunks_mut(width).enumerate().with_min_len(PIXELS_A_TASK.div_ceil(width));
@@ -74,7 +75,7 @@ fn take_unknown(fine: &mut Level, coarse: &Level) {
 }
 
 impl Level {
-    /// A level whose rows are sums of colours with their weights, which then become at most 1.
+    /// Makes a level from rows of weighted sums of colours, and normalises the weights to at most 1.
     fn by_rows(width: usize, height: usize, sum_up: impl Fn(usize, &mut [[f32; 4]]) + Sync) -> Self {
         let mut pixels = vec![[0.0_f32; 4]; width * height];
         let rows = pixels.par_chunks_mut(width).enumerate().with_min_len(PIXELS_A_TASK.div_ceil(width));
@@ -88,7 +89,7 @@ impl Level {
         Self { width, height, pixels }
     }
 
-    /// The same level with no pixel unknown, where any is known.
+    /// Returns the same level with all pixels known, if any is known.
     fn filled(mut self) -> Self {
         if self.pixels.iter().any(|pixel| pixel[3] == 0.0) && self.pixels.len() > 1 {
             let coarse = halved(&self).filled();
@@ -97,14 +98,14 @@ impl Level {
         self
     }
 
-    /// The colour at a pixel of the next finer level, where anything around it is known.
+    /// Returns the colour at a pixel of the next finer level, if anything around it is known.
     fn bilinear(&self, u: usize, v: usize) -> Option<[f32; 4]> {
         let at = |u: isize, v: isize| {
             let u = u.clamp(0, self.width as isize - 1) as usize;
             let v = v.clamp(0, self.height as isize - 1) as usize;
             self.pixels[v * self.width + u]
         };
-        // The middle of a coarse pixel lies between two fine ones: three quarters of its own, one of the next.
+        // The centre of a coarse pixel lies between two fine ones: three quarters of its own, one quarter of the next.
         let beside = |fine: usize| (fine / 2) as isize + if fine.is_multiple_of(2) { -1 } else { 1 };
         let (own_u, own_v) = ((u / 2) as isize, (v / 2) as isize);
         let taps = [

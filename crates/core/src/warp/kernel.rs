@@ -1,7 +1,8 @@
-//! The loops over pixels: a pixel's ray to the proxy geometry, from there into another picture, and the colour found there.
+//! Loops over pixels: a pixel's ray is followed to the proxy geometry, and the point found there is projected into
+//! another picture, whose colour is read.
 //!
-//! Sixteen pixels at a time, in plain arrays that the compiler turns into vector instructions. The compute shader of the
-//! same name does the same, one pixel a thread.
+//! Sixteen pixels are handled at a time, in plain arrays that the compiler turns into vector instructions. The compute
+//! shader of the same name does the same, with one pixel per thread.
 
 #![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
 
@@ -11,17 +12,17 @@ use crate::{
     pose::CameraPose,
 };
 
-/// A pose in single precision: `camera = rows · (world − position)`.
+/// Pose in single precision: `camera = rows · (world − position)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
-    /// The camera's right, down and forward in the world.
+    /// Right, down and forward axes of the camera in the world.
     pub axes_in_world: [[f32; 3]; 3],
-    /// The projection centre, metres.
+    /// Projection centre, metres.
     pub position_in_world: [f32; 3],
 }
 
 impl Placement {
-    /// The same pose in single precision.
+    /// Converts a pose to single precision.
     pub fn new(pose: CameraPose) -> Self {
         let rotation = pose.rotation_world_from_camera();
         let axes = [rotation.x_axis, rotation.y_axis, rotation.z_axis];
@@ -32,7 +33,7 @@ impl Placement {
     }
 }
 
-/// The edges of a billboard, metres.
+/// Edges of a billboard, metres.
 struct Edges {
     half_width: f32,
     top: f32,
@@ -51,7 +52,8 @@ impl Edges {
         }
     }
 
-    /// Whether a place in the billboard's plane, above the ground, lies on it, or beside it by no more than this, metres.
+    /// Returns whether a point in the billboard's plane, above the ground, lies on it or at most `margin` beside it,
+    /// metres.
     #[inline(always)]
     fn hold(&self, across: f32, up: f32, margin: f32) -> bool {
         let across = across.abs();
@@ -60,14 +62,14 @@ impl Edges {
     }
 }
 
-/// What sixteen pixels look at.
+/// Points of the proxy geometry that sixteen pixels see.
 #[derive(Clone, Copy)]
 pub(crate) struct ProxyPoints {
-    /// World axes, metres.
+    /// Coordinates in the world, metres.
     pub place: [Lanes; 3],
     /// Unit directions from the camera, world axes.
     pub direction: [Lanes; 3],
-    /// From the camera, metres.
+    /// Distances from the camera, metres.
     pub distance: Lanes,
     /// 1 on the ground, else 0.
     pub on_ground: Lanes,
@@ -120,7 +122,7 @@ pub(crate) fn proxy_points(proxy: &ProxyGeometry, from: &Placement, rays: &RayBl
     ProxyPoints { place, direction, distance, on_ground }
 }
 
-/// Where another camera sees the points; `None` where it sees none of them.
+/// Projects the points into another camera; `None` if it sees none of them.
 #[inline(always)]
 pub(crate) fn see(camera: &KernelCamera, placement: &Placement, points: &ProxyPoints) -> Option<Pixels> {
     let mut in_camera = [[0.0_f32; LANES]; 3];
@@ -135,21 +137,22 @@ pub(crate) fn see(camera: &KernelCamera, placement: &Placement, points: &ProxyPo
     project_lanes(camera, &in_camera)
 }
 
-/// 0 where a goal stands between a camera and the points, else 1.
+/// Returns 0 for points hidden from a camera by a goal, else 1.
 #[inline(always)]
 pub(crate) fn unhidden(proxy: &ProxyGeometry, from: &Placement, points: &ProxyPoints) -> Lanes {
-    /// A point on the billboard itself is not hidden by it, as a share of the way to it.
+    /// Fraction of the way to a point beyond which a billboard does not hide it: a point on the billboard is not hidden
+    /// by it.
     const ON_SCREEN: f32 = 1.0 - 1e-3;
-    /// Of a usual post. Seen from the side, a round one hides more than the flat one that stands for it; by how
-    /// much, grows with one over the cosine.
+    /// Radius of a typical post. Seen obliquely, a round post hides more than the flat one that stands for it, in
+    /// proportion to one over the cosine.
     const POST_RADIUS_M: f32 = 0.05;
-    /// Below 1: pixels and compression spread a post's colour beyond its edge.
+    /// Less than 1, since pixels and compression spread a post's colour beyond its edge.
     const SHARP_EDGE: f32 = 0.6;
-    /// Nearly along the billboard it would hide everything.
+    /// Maximum of one over the cosine: seen nearly edge-on, a billboard would hide everything.
     const MOST_OBLIQUE: f32 = 4.0;
     let [x, y, z] = from.position_in_world;
     let mut unhidden = [1.0_f32; LANES];
-    // NaN is left out of both.
+    // Both minimum and maximum ignore NaN.
     let least_x = points.place[0].iter().fold(x, |least, place| least.min(*place));
     let most_x = points.place[0].iter().fold(x, |most, place| most.max(*place));
     for billboard in &proxy.billboards {
@@ -174,7 +177,7 @@ pub(crate) fn unhidden(proxy: &ProxyGeometry, from: &Placement, points: &ProxyPo
     unhidden
 }
 
-/// Bilinear colours (0–255); without sense where a point is not seen.
+/// Returns bilinear colours (0–255); values at points that are not seen are meaningless.
 #[inline(always)]
 pub(crate) fn sample(picture: &Picture, pixels: &Pixels) -> [Lanes; 3] {
     let mut index = [0usize; LANES];

@@ -1,7 +1,7 @@
-//! A picture at one pose from pictures taken at others: every pixel's ray ends on a shape that stands for the world, and
-//! the point found there is looked up in the other pictures.
+//! Warping: a picture at one pose is drawn from pictures taken at others. Every pixel's ray ends on the proxy geometry
+//! of the scene, and the point found there is looked up in the other pictures.
 //!
-//! On other devices the same is done behind the trait [`Warper`].
+//! The trait [`Warper`] lets other devices do the same.
 
 mod blend;
 mod fill;
@@ -23,7 +23,7 @@ use crate::backend_error::BackendError;
 
 /// Draws pictures from others on some device.
 pub trait Warper: Send + Sync {
-    /// See [`blend`].
+    /// Blends pictures, see [`blend`]. Fails if the device does.
     fn blend(
         &self,
         target: &Target,
@@ -32,7 +32,7 @@ pub trait Warper: Send + Sync {
     ) -> Result<Warped, BackendError>;
 }
 
-/// The processor.
+/// Warper on the CPU.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct CpuWarper;
 

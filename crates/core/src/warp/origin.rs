@@ -1,23 +1,23 @@
-//! Where the pixels of a picture drawn from others came from.
+//! Origin of the pixels of a warped picture.
 
-/// Where a pixel of a reconstruction came from.
+/// Which picture a pixel came from, and how far to trust it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Origin {
-    /// The source that it came from most, or [`Origin::NOWHERE`].
+    /// Index of the source that contributed most, or [`Origin::NOWHERE`].
     pub source: u8,
-    /// How far it can be trusted, 0 to 255: high where a neighbour saw the ground from the same direction at the same
-    /// resolution and no other contradicts.
+    /// Trust, 0 to 255: high if a neighbour saw the ground from the same direction at the same resolution, and no other
+    /// contradicts it.
     pub trust: u8,
 }
 
 impl Origin {
-    /// No source saw this: the colour is that of the surroundings.
+    /// No source saw this pixel: its colour is continued from the surroundings.
     pub const NOWHERE: u8 = u8::MAX;
 
-    /// The camera sees nothing there, outside its image circle say: the colour is black.
+    /// The camera sees nothing at this pixel, for example outside its image circle: it is black.
     pub const OUTSIDE: u8 = u8::MAX - 1;
 
-    /// Whether some source saw this.
+    /// Returns whether some source saw this pixel.
     pub fn is_recorded(self) -> bool {
         self.source < Self::OUTSIDE
     }

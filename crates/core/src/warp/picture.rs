@@ -1,25 +1,25 @@
-//! Pictures in the form in which warps read them: a word a pixel.
+//! Pictures in the form that warps read: one 32-bit word per pixel.
 
 use image::RgbImage;
 
-/// A picture, a word a pixel: red in the lowest byte, then green and blue.
+/// Picture with one word per pixel: red in the lowest byte, then green and blue.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
-    /// Columns.
+    /// Number of columns.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub height: u32,
-    /// Row by row from the top.
+    /// Pixels, row by row from the top.
     pub pixels: Vec<u32>,
 }
 
 impl Picture {
-    /// Bytes that it takes in memory.
+    /// Returns the number of bytes in memory.
     pub fn bytes(&self) -> usize {
         self.pixels.len() * size_of::<u32>()
     }
 
-    /// The same picture, three bytes a pixel.
+    /// Converts the picture to three bytes per pixel.
     pub fn to_rgb(&self) -> RgbImage {
         RgbImage::from_fn(self.width, self.height, |u, v| {
             let [red, green, blue, _] = self.pixels[(v * self.width + u) as usize].to_le_bytes();

@@ -1,62 +1,62 @@
-//! Proxy geometry: the shape that stands for the world, on which the ray of a pixel ends.
+//! Proxy geometry: the shape that stands for the scene, on which the ray of a pixel ends.
 //!
-//! The ground is the plane z = 0, exactly. Each goal is two upright *billboards*: its frame, from which posts and crossbar
-//! do not stand out by more than half their thickness, and its back. All else (walls, ceiling, what stands in front of
-//! them) is taken to lie on a box around the field. Together they are the *proxy geometry*, which is closed: the map from
-//! one picture to another has no seam where the ground ends.
+//! The ground is exactly the plane z = 0. Each goal is two upright *billboards*: its frame, from which posts and
+//! crossbar stand out by no more than half their thickness, and its back. Everything else (walls, ceiling, whatever
+//! stands in front of them) is taken to lie on a box around the field. The whole is closed, so the map from one picture
+//! to another has no seam where the ground ends.
 
 use glam::{DVec2, DVec3};
 
 use crate::{field::FieldDimensions, pose::CameraPose};
 
-/// Walls stand this far from the carpet until more is known, metres.
+/// Default distance of the walls from the carpet, metres.
 const USUAL_WALLS_M: f64 = 1.5;
-/// The ceiling hangs this high until more is known, metres.
+/// Default height of the ceiling, metres.
 const USUAL_CEILING_M: f64 = 3.0;
 
-/// No hall is larger, metres from the field's centre.
+/// Maximum distance of walls and ceiling from the field's centre, metres.
 const LARGEST_M: f64 = 1000.0;
-/// Room around a camera inside the proxy geometry, metres.
+/// Free space around a camera inside the proxy geometry, metres.
 const ROOM_M: f64 = 0.3;
-/// Nets and backs of goals stand this far behind the posts, metres.
+/// Default distance of nets and backs of goals behind the posts, metres.
 const USUAL_GOAL_DEPTH_M: f64 = 0.5;
 
-/// An upright rectangle on the ground, across the x axis and symmetric to it.
+/// Upright rectangle on the ground, perpendicular to the x axis and symmetric about it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Billboard {
-    /// Where it stands, metres.
+    /// Position along x, metres.
     pub x_m: f64,
     /// Half its width, metres.
     pub half_width_m: f64,
-    /// Metres.
+    /// Height, metres.
     pub height_m: f64,
-    /// Half the width of the opening in its middle, metres: 0 where there is none.
+    /// Half the width of the opening in its middle, metres: 0 without an opening.
     pub opening_half_width_m: f64,
     /// Height of the opening, metres.
     pub opening_height_m: f64,
 }
 
-/// The measures of the hall around a field.
+/// Dimensions of the hall around a field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hall {
-    /// Where the walls stand towards −x and −y, metres.
+    /// Coordinates of the walls towards −x and −y, metres.
     pub min_m: DVec2,
-    /// Where the walls stand towards +x and +y, metres.
+    /// Coordinates of the walls towards +x and +y, metres.
     pub max_m: DVec2,
     /// Height of the ceiling, metres.
     pub ceiling_m: f64,
-    /// From the posts to the back of the goals, metres.
+    /// Distance from the posts to the back of the goals, metres.
     pub goal_depth_m: f64,
 }
 
 impl Hall {
-    /// A usual hall, until more is known.
+    /// Returns a typical hall, for use until more is known.
     pub fn usual(field: &FieldDimensions) -> Self {
         let max_m = field.carpet_half_extent_m() + USUAL_WALLS_M;
         Self { min_m: -max_m, max_m, ceiling_m: USUAL_CEILING_M, goal_depth_m: USUAL_GOAL_DEPTH_M }
     }
 
-    /// Whether the measures are finite numbers of a hall that holds the field.
+    /// Returns whether the dimensions are finite and the hall contains the field.
     pub fn holds(&self, field: &FieldDimensions) -> bool {
         let half = DVec2::new(field.length_m, field.width_m) / 2.0;
         let sizes = [self.ceiling_m, self.goal_depth_m];
@@ -70,19 +70,19 @@ impl Hall {
     }
 }
 
-/// A box around the field with the goals in it, axes as the world's; its floor is the ground.
+/// Box around the field with the goals in it, in world axes; its floor is the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProxyGeometry {
     /// Corner with the smallest coordinates, metres; z is 0.
     pub min_in_world: DVec3,
     /// Corner with the largest coordinates, metres.
     pub max_in_world: DVec3,
-    /// Frame and back of both goals.
+    /// Frames and backs of both goals.
     pub billboards: [Billboard; 4],
 }
 
 impl ProxyGeometry {
-    /// The shape of a hall with a field in it.
+    /// Returns the proxy geometry of a hall with a field in it.
     pub fn new(hall: &Hall, field: &FieldDimensions) -> Self {
         Self {
             min_in_world: hall.min_m.extend(0.0),
@@ -91,7 +91,7 @@ impl ProxyGeometry {
         }
     }
 
-    /// The same geometry, grown where it must be to hold a camera with some room around it.
+    /// Returns the same geometry, enlarged if necessary to contain a camera with some space around it.
     pub fn holding(mut self, pose: CameraPose) -> Self {
         let room = DVec3::splat(ROOM_M);
         self.min_in_world = self.min_in_world.min(pose.position_in_world() - room).with_z(0.0);
@@ -100,7 +100,7 @@ impl ProxyGeometry {
     }
 }
 
-/// Frame and back of both goals.
+/// Returns frame and back of both goals.
 fn goal_billboards(field: &FieldDimensions, depth_m: f64) -> [Billboard; 4] {
     let (inner_half_width, thickness) = (field.goal_width_m / 2.0, field.goal_post_diameter_m);
     let front = Billboard {

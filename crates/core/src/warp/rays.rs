@@ -1,4 +1,4 @@
-//! The directions in which a camera's pixels look, computed once.
+//! Viewing directions of a camera's pixels, computed once.
 
 use std::sync::Arc;
 
@@ -11,19 +11,19 @@ use crate::camera::{Camera, LANES, Lanes};
 /// Unit directions of sixteen neighbouring pixels of a row in the camera's axes; NaN where a pixel sees nothing.
 pub(crate) type RayBlock = [Lanes; 3];
 
-/// The directions of all pixels of a camera.
+/// Viewing directions of all pixels of a camera.
 #[derive(Debug, Clone)]
 pub struct RayTable {
-    /// Columns.
+    /// Number of columns.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub height: u32,
     blocks_in_row: usize,
     blocks: Arc<Vec<RayBlock>>,
 }
 
 impl RayTable {
-    /// Follows every pixel's ray.
+    /// Computes the ray of every pixel.
     pub fn new(camera: &Camera) -> Self {
         let blocks_in_row = (camera.width as usize).div_ceil(LANES);
         let rows = (0..camera.height).into_par_iter();
@@ -33,14 +33,14 @@ impl RayTable {
         Self { width: camera.width, height: camera.height, blocks_in_row, blocks }
     }
 
-    /// Unit directions in the camera's axes, row by row from the top. A block holds the right, down and forward parts of
-    /// sixteen neighbouring pixels of a row; NaN where a pixel sees nothing and beyond the row's end. Clones of a table
-    /// share them.
+    /// Returns unit directions in the camera's axes, row by row from the top. A block holds the right, down and forward
+    /// components of sixteen neighbouring pixels of a row; NaN where a pixel sees nothing and beyond the row's end.
+    /// Clones of a table share them.
     pub fn blocks(&self) -> &Arc<Vec<[Lanes; 3]>> {
         &self.blocks
     }
 
-    /// Marks pixels, row by row, that see nothing: where the lens leaves the picture black.
+    /// Marks the pixels, row by row, that see nothing because the lens leaves them black.
     pub fn mark_outside(&self, origins: &mut [Origin]) {
         for (row, origins) in origins.chunks_mut(self.width as usize).enumerate() {
             for (block, origins) in self.row(row).iter().zip(origins.chunks_mut(LANES)) {
@@ -51,7 +51,7 @@ impl RayTable {
         }
     }
 
-    /// The directions of a row, sixteen pixels a block; the last block is filled up with NaN.
+    /// Returns the directions of a row, sixteen pixels per block; the last block is padded with NaN.
     pub(crate) fn row(&self, row: usize) -> &[RayBlock] {
         &self.blocks[row * self.blocks_in_row..(row + 1) * self.blocks_in_row]
     }

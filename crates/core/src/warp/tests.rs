@@ -31,7 +31,7 @@ fn any_pose() -> impl Strategy<Value = CameraPose> {
     )
 }
 
-/// A pose a few steps away.
+/// Returns a pose a few steps away.
 fn near(pose: CameraPose, forward_m: f64, turn_rad: f64) -> CameraPose {
     pose.with_planar(pose.planar().moved(crate::pose::Motion2 {
         forward_m,
@@ -40,7 +40,7 @@ fn near(pose: CameraPose, forward_m: f64, turn_rad: f64) -> CameraPose {
     }))
 }
 
-/// The colour of a place of the world, changing slowly enough for bilinear interpolation.
+/// Returns the colour of a point in the world, which varies slowly enough for bilinear interpolation.
 fn paint(point: DVec3) -> [f64; 3] {
     [
         128.0 + 60.0 * (1.1 * point.x).sin() + 40.0 * (0.9 * point.z).cos(),
@@ -49,7 +49,7 @@ fn paint(point: DVec3) -> [f64; 3] {
     ]
 }
 
-/// Where a ray from inside the proxy geometry ends, without the code under test.
+/// Returns where a ray from inside the proxy geometry ends, without using the code under test.
 fn end_of_ray(proxy: &ProxyGeometry, from: DVec3, ray: DVec3) -> DVec3 {
     let mut nearest = f64::INFINITY;
     for axis in 0..3 {
@@ -75,7 +75,7 @@ fn end_of_ray(proxy: &ProxyGeometry, from: DVec3, ray: DVec3) -> DVec3 {
     from + nearest * ray
 }
 
-/// The painted world through a lens.
+/// Photographs the painted world through a lens.
 fn photograph(camera: &Camera, pose: CameraPose, proxy: &ProxyGeometry) -> RgbImage {
     RgbImage::from_fn(camera.width, camera.height, |u, v| {
         match camera.unproject(DVec2::new(f64::from(u), f64::from(v))) {
@@ -88,7 +88,7 @@ fn photograph(camera: &Camera, pose: CameraPose, proxy: &ProxyGeometry) -> RgbIm
     })
 }
 
-/// A hall without goals: every place is seen from everywhere.
+/// Returns a hall without goals, in which every point is visible from everywhere.
 fn open_geometry() -> ProxyGeometry {
     let mut proxy = ProxyGeometry::new(&Hall::usual(&field()), &field());
     proxy.billboards.iter_mut().for_each(|billboard| billboard.half_width_m = -1.0);
@@ -137,7 +137,7 @@ proptest! {
             let seen = |index: usize| warped.origins[index].source == 0;
             let count = (0..warped.colors.len()).filter(|index| seen(*index)).count();
             prop_assert!(count > warped.colors.len() / 16, "{count} pixels");
-            // Seen flat over the ground a pixel is metres long: a few far ones may differ by more.
+            // At grazing angles a pixel covers metres of ground: a few far pixels may differ by more.
             let truth = photograph(&target, pose, &proxy);
             let different = warped.colors.iter().zip(truth.pixels()).enumerate()
                 .filter(|(index, (a, b))| seen(*index) && (0..3).any(|i| a[i].abs_diff(b.0[i]) > 5)).count();
@@ -151,7 +151,7 @@ proptest! {
         let camera = fisheye();
         let picture = photograph(&camera, pose, &proxy);
         let warped = drawn(&camera, pose, &proxy, &[Taken::new(&camera, pose, &picture)]);
-        // Right behind the edge of a goal a place counts as hidden, and at the picture's edge rounding decides.
+        // A point right behind the edge of a goal counts as hidden, and at the picture's edge rounding decides.
         let seen = |index: usize| warped.origins[index].source == 0;
         prop_assert!(worst_difference(&warped, &picture, seen) <= 1);
         prop_assert!((0..warped.colors.len()).filter(|index| seen(*index)).count() as f64 > 0.8 * warped.colors.len() as f64);
@@ -177,12 +177,13 @@ proptest! {
         let wrong = warped.colors.iter().zip(truth.pixels()).zip(&warped.origins)
             .filter(|((a, b), origin)| origin.source == 0 && a[0].abs_diff(b.0[0]) > 100).count();
         let goal = truth.pixels().filter(|pixel| pixel.0[0] == 0).count();
-        // Along edges half a pixel decides.
+        // Along edges, half a pixel decides.
         prop_assert!(goal > 100);
         prop_assert!((wrong as f64) < 0.1 * goal as f64, "{wrong} of {goal}");
     }
 
-    /// NaN, under the ground, outside the hall, no room, no picture: nothing panics, and every pixel has a colour.
+    /// NaN, a camera under the ground or outside the hall, no space, no picture: nothing panics, and every pixel has a
+    /// colour.
     #[test]
     fn nothing_panics_whatever_is_asked_for(
         numbers in prop::array::uniform12(prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(0.0), -1e9..1e9, -5.0..5.0]),
