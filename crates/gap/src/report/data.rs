@@ -1,4 +1,4 @@
-//! What was found, as enums and numbers. [`super::text`] makes the words of it, [`super::json`] the file.
+//! Contents of a report as enums and numbers. [`super::text`] puts them into words, [`super::json`] into a file.
 
 use std::collections::BTreeMap;
 
@@ -12,35 +12,35 @@ use crate::{
     recording::ReferenceSource,
 };
 
-/// The answer in one word.
+/// Verdict on a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// Nothing is missing that these frames would show.
+    /// No effect is missing that these frames would show.
     None,
-    /// Effects were named, and nothing significant is left.
+    /// Effects were found, and nothing significant is left unexplained.
     Named,
-    /// An effect was found that these frames cannot tell from others.
+    /// An effect was found that these frames cannot distinguish from others.
     Confusable,
-    /// Something significant is left that is in no effect's shape.
+    /// A significant residual is left that fits no effect.
     Unknown,
-    /// These frames cannot tell.
+    /// These frames do not suffice for a verdict.
     Inconclusive,
 }
 
-/// A number with its standard deviation.
+/// Number with its standard deviation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
-    /// The number.
+    /// Value of the number.
     pub value: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the value.
     pub sigma: f64,
-    /// Its unit, where it has one.
+    /// Unit of the number, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
 }
 
-/// An effect of the extended model.
+/// Effect of the extended model.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct EffectReport {
     /// Id as in `model.toml`.
@@ -50,73 +50,74 @@ pub struct EffectReport {
     /// Correlations of the estimates' errors, −1 to 1, by the names of two parameters: each pair once.
     #[serde(default)]
     pub correlations: BTreeMap<String, BTreeMap<String, f64>>,
-    /// Values that the model had before, by the names of the parameters; empty for an effect that it did not have.
+    /// Values in the given model, by the names of the parameters; empty for an effect that the given model lacks.
     #[serde(default)]
     pub given: BTreeMap<String, f64>,
-    /// How unlikely it is chance, corrected for the number of effects tested.
+    /// P-value of the effect, corrected for the number of effects tested.
     pub p_value: f64,
     /// Gain in log-likelihood on frames that the fit has not seen.
     pub held_out_gain: Estimate,
-    /// Ids of effects that explain these frames as well.
+    /// Ids of effects that explain these frames equally well.
     pub confusable_with: Vec<String>,
-    /// Part of the distance to the noise floor that the effect alone closes, by channel: those in which it closes some.
+    /// Fraction of the distance to the noise floor that this effect alone closes, for the channels in which it closes some.
     pub closes: BTreeMap<Channel, f64>,
 }
 
-/// The whole gap, in noise floors.
+/// Gap over all channels, in units of the noise floor.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Gap {
-    /// With the model as it was given: root mean square over channels of residuals in units of their noise floor.
+    /// Gap with the model as it was given: root mean square over channels of the residuals, in units of each channel's noise
+    /// floor.
     pub before: f64,
-    /// With the extended model.
+    /// Gap with the extended model.
     pub after: f64,
-    /// What noise alone makes.
+    /// Gap that noise alone causes.
     pub floor: f64,
-    /// The gap of every channel.
+    /// Gap of every channel.
     pub channels: BTreeMap<Channel, ChannelGap>,
 }
 
-/// An effect that was not found, with how large it would have to be.
+/// Effect that was not found, with its detection limit.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct NotFoundReport {
     /// Id as in `model.toml`.
     pub id: String,
-    /// Name of the parameter that the limit is of.
+    /// Name of the parameter that the limit refers to.
     pub parameter: String,
-    /// Size at which it would have been found.
+    /// Size at which the effect would have been found.
     pub detection_limit: Limit,
-    /// How unlikely what was seen of it is chance, corrected for the number of effects tested.
+    /// P-value of the effect in this recording, corrected for the number of effects tested.
     pub p_value: f64,
     /// Gain in log-likelihood on frames that the fit has not seen.
     pub held_out_gain: Estimate,
 }
 
-/// A size with its unit.
+/// Size with its unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
-    /// The size.
+    /// Value of the size.
     pub value: f64,
-    /// Its unit.
+    /// Unit of the value.
     pub unit: String,
 }
 
-/// An effect that cannot be seen in these frames.
+/// Effect that cannot be seen in these frames.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Unobservable {
     /// Id as in `model.toml`.
     pub id: String,
-    /// Why it cannot be seen.
+    /// Reason why the effect cannot be seen.
     pub cause: UnobservableCause,
 }
 
-/// Medians of residuals on a grid, row by row; not a number (`null`) where nothing was measured.
+/// Medians of residuals on a grid, row by row; none (`null`) where nothing was measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Map {
-    /// Cells along x.
+    /// Number of cells along x.
     pub columns: usize,
-    /// Cells along y.
+    /// Number of cells along y.
     pub rows: usize,
-    /// Extent of the grid: left, top, right, bottom; pixels for the picture, metres for the field.
+    /// Extent of the grid as left, top, right and bottom; in pixels for the picture, in metres for the field.
     pub extent: [f64; 4],
     /// Medians with the model as it was given.
     pub before: Vec<Option<f64>>,
@@ -129,7 +130,7 @@ pub struct Map {
 pub struct Course {
     /// Times of the frames, seconds.
     pub time_s: Vec<f64>,
-    /// Whether a frame was kept for judging.
+    /// Whether each frame is held out.
     pub judged: Vec<bool>,
     /// Sizes with the model as it was given.
     pub before: Vec<Option<f64>>,
@@ -137,21 +138,21 @@ pub struct Course {
     pub after: Vec<Option<f64>>,
 }
 
-/// Where a channel's residuals are, in the channel's unit.
+/// Distribution of a channel's residuals in the picture, on the field and over time, in the channel's unit.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Maps {
-    /// In the picture.
+    /// Residuals in the picture.
     pub picture: Map,
-    /// On the field, x along the field, y to the left.
+    /// Residuals on the field, with x along the field and y to the left.
     pub field: Map,
-    /// Over time.
+    /// Residuals over time.
     pub time: Course,
 }
 
 /// The reference poses.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct PosesReport {
-    /// What the poses come from.
+    /// Source of the poses.
     pub source: ReferenceSource,
     /// Scatter of rotations about the axes to the right, down and forward of the heading, radians.
     pub rotation_sigma_rad: [f64; 3],
@@ -161,28 +162,27 @@ pub struct PosesReport {
 
 /// Everything that was found in a recording.
 ///
-/// It is written as `report.json`, the words beside the numbers, by its [`serde::Serialize`], and read again by
-/// [`Report::read`].
+/// Its [`serde::Serialize`] writes `report.json`, with the words beside the numbers, and [`Report::read`] reads that file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Report {
     /// Name of the recording.
     pub recording: String,
     /// Number of frames that were compared.
     pub frames: usize,
-    /// Number of those that no fit has seen.
+    /// Number of held-out frames, which no fit has seen.
     pub judged_frames: usize,
-    /// Files of the frames without a whole picture.
+    /// Picture files of frames that were left out because the picture is broken or missing.
     pub left_out: Vec<String>,
-    /// The answer in one word.
+    /// Verdict on the recording.
     pub verdict: Verdict,
-    /// Effects that were found, the surest first.
+    /// Effects that were found, the most certain first.
     pub effects: Vec<EffectReport>,
-    /// Effects that the model had before, refitted.
+    /// Effects of the given model, refitted.
     pub in_model: Vec<EffectReport>,
-    /// What no effect explains.
+    /// Findings that no effect explains.
     #[serde(deserialize_with = "super::json::findings")]
     pub unexplained: Vec<Finding>,
-    /// The gap on frames that no fit has seen.
+    /// Gap on held-out frames.
     pub gap: Gap,
     /// Effects that were not found.
     pub not_found: Vec<NotFoundReport>,
@@ -190,12 +190,12 @@ pub struct Report {
     pub unobservable: Vec<Unobservable>,
     /// The reference poses.
     pub poses: PosesReport,
-    /// Where residuals are, by channel.
+    /// Distribution of the residuals, by channel.
     pub maps: BTreeMap<Channel, Maps>,
-    /// Index in the recording of the frame in the pictures of the report.
+    /// Index in the recording of the frame that the report's pictures show.
     pub shown_frame: usize,
-    /// Seed that chose the frames kept for judging.
+    /// Seed that chose the held-out frames.
     pub seed: u64,
-    /// The field that was recorded.
+    /// Dimensions of the recorded field.
     pub field: FieldDimensions,
 }

@@ -1,4 +1,4 @@
-//! A report read again from its folder.
+//! Reading of a report from its folder.
 
 use std::{
     fmt, fs, io,
@@ -10,79 +10,80 @@ use crate::{
     report::data::{Map, Maps, Report},
 };
 
-/// A report takes less than this, bytes: larger files are something else.
+/// Largest size of a report's file, bytes. Larger files are something else.
 const LARGEST_BYTES: u64 = 64 << 20;
-/// The file in a report's folder.
+/// Name of the file in a report's folder.
 const FILE: &str = "report.json";
 
-/// A report that cannot be read.
+/// Error for a report that cannot be read.
 #[derive(Debug, thiserror::Error)]
 #[error("{}{}: {fault}", .path.display(), Line(*.line))]
 pub struct ReportError {
-    /// The file.
+    /// Path of the file.
     pub path: PathBuf,
-    /// Line in the file, from 1, where the fault has one.
+    /// Line of the fault in the file, counted from 1, if it is known.
     pub line: Option<usize>,
-    /// What is wrong.
+    /// Fault of the file.
     pub fault: ReportFault,
 }
 
-/// What is wrong with a report.
+/// Fault of a report's file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportFault {
-    /// There is no such file.
+    /// The file does not exist.
     #[error("there is no such file")]
     Missing,
-    /// A folder, pipe or device.
+    /// The path is a folder, pipe or device.
     #[error("is not a regular file")]
     NotAFile,
-    /// More bytes than a report has.
+    /// The file is larger than any report.
     #[error("is larger than {LARGEST_BYTES} bytes: it cannot be a report")]
     TooLarge,
-    /// The operating system does not give the bytes.
+    /// The operating system cannot read the file.
     #[error("cannot be read ({0}): check the permissions and the disk")]
     Unreadable(#[source] io::Error),
-    /// Not UTF-8.
+    /// The file is not UTF-8.
     #[error("is not a report (it is no text)")]
     NotText,
-    /// Not JSON, or not what a report holds.
+    /// The file is not JSON, or not that of a report.
     #[error("is not a report ({})", without_place(.0))]
     Malformed(#[source] serde_json::Error),
-    /// A map or a course whose numbers do not fit together.
+    /// The numbers of a map or a time course are inconsistent.
     #[error("the maps of {}: {contradiction}", .channel.name())]
     Contradiction {
         /// Channel of the maps.
         channel: Channel,
-        /// What does not fit.
+        /// Kind of the inconsistency.
         contradiction: Contradiction,
     },
 }
 
-/// Numbers of a channel's maps that do not fit together.
+/// Inconsistency of the numbers in a channel's maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Contradiction {
-    /// Not as many values as cells.
+    /// The number of values differs from the number of cells.
     #[error("not as many values as cells")]
     Cells,
-    /// An extent without an area.
+    /// The extent has no area.
     #[error("an extent without an area")]
     Extent,
-    /// Not as many values as times.
+    /// The number of values differs from the number of times.
     #[error("not as many values as times")]
     Times,
 }
 
-/// The parser's message without the line and the column.
+/// Returns the parser's message without its line and column.
 fn without_place(error: &serde_json::Error) -> String {
     let place = format!(" at line {} column {}", error.line(), error.column());
     error.to_string().replace(&place, "")
 }
 
 impl Report {
-    /// Reads `report.json`, the report as its [`serde::Serialize`] writes it, in a folder. Maps then have as many values as
-    /// cells and an extent with an area, courses as many as times. The error names the file and the fault.
+    /// Reads the report from `report.json` in a folder, in the form that its [`serde::Serialize`] writes. Maps of the result
+    /// have as many values as cells and an extent with an area; time courses have as many values as times. The error names
+    /// the file and the fault.
     pub fn read(folder: &Path) -> Result<Self, ReportError> {
         let path = folder.join(FILE);
         let fail = |line, fault| ReportError { path: path.clone(), line, fault };
@@ -126,7 +127,7 @@ impl Map {
     }
 }
 
-/// The bytes of the file as text.
+/// Reads the file's bytes as text.
 fn text(path: &Path) -> Result<String, ReportFault> {
     let metadata = fs::metadata(path).map_err(|error| match error.kind() {
         io::ErrorKind::NotFound => ReportFault::Missing,
@@ -142,7 +143,7 @@ fn text(path: &Path) -> Result<String, ReportFault> {
     }
 }
 
-/// The line after a file's name, where there is one.
+/// Line number behind a file's name, if it is known.
 struct Line(Option<usize>);
 
 impl fmt::Display for Line {

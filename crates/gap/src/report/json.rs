@@ -1,6 +1,6 @@
-//! `report.json`: the numbers of a report, and beside them the words that [`super::text`] makes of them.
+//! `report.json`: the numbers of a report, together with the words that [`super::text`] makes from them.
 //!
-//! Words are written and not read: a report that is read makes them anew.
+//! The words are only written: a report that is read makes them again from its numbers.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ use crate::{
     },
 };
 
-/// Values by the channels' names, in the order of these names.
+/// Values by the channels' names, in alphabetical order.
 type ByChannel<T> = BTreeMap<&'static str, T>;
 
 #[derive(Serialize)]
@@ -249,7 +249,7 @@ impl<'a> WrittenMaps<'a> {
     }
 }
 
-/// Reads findings, each from beside its words.
+/// Deserializes findings, which stand beside their words.
 pub(super) fn findings<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Finding>, D::Error> {
     #[derive(Deserialize)]
     struct Entry {
@@ -273,7 +273,7 @@ mod tests {
         testing::{self, effect_report},
     };
 
-    /// One of every kind of finding.
+    /// Returns one finding of every kind.
     fn all_findings() -> Vec<Finding> {
         let cells = [
             PatternCell::Picture { column: 2, row: 4, grid: [8, 6] },
@@ -332,7 +332,7 @@ mod tests {
         ]
     }
 
-    /// A report with something in every part of it.
+    /// Returns a report in which no part is empty.
     fn full() -> Report {
         let map = |value: f64| Map {
             columns: 2,

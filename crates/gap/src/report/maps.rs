@@ -1,4 +1,4 @@
-//! Where residuals are: in the picture, on the field, over time.
+//! Maps of residuals: in the picture, on the field, over time.
 
 use std::collections::BTreeMap;
 
@@ -15,14 +15,14 @@ use crate::{
     workflow::selection::SelectedModel,
 };
 
-/// Cells of the picture's map along the longer and the shorter side.
+/// Number of cells of the picture's map along x and y.
 const PICTURE: [usize; 2] = [16, 12];
-/// Side of a cell of the field's map, metres.
+/// Side length of a cell of the field's map, metres.
 const FIELD_M: f64 = 0.5;
-/// Fewer rows in a cell are no mean.
+/// Least number of measurements in a cell for a median.
 const LEAST_ROWS: f64 = 5.0;
 
-/// The maps of every channel that is seen in pictures.
+/// Returns the maps of every channel that was measured.
 pub(crate) fn maps(
     recording: &Recording<'_>,
     found: &SelectedModel,
@@ -51,7 +51,7 @@ pub(crate) fn maps(
             after: means(&after, grid, place),
         };
         let in_picture = |row: &Measurement| (row.pixel + 0.5) / size;
-        // The field's map begins at the upper left as seen from above: x to the right, y up.
+        // The field's map begins at the upper left as seen from above, with x to the right and y up.
         let on_field = |row: &Measurement| {
             let place = (row.ground + half) / (2.0 * half);
             DVec2::new(place.x, 1.0 - place.y)
@@ -70,7 +70,7 @@ pub(crate) fn maps(
     maps
 }
 
-/// Residuals of what is a measurement of line or carpet: frame, row, value.
+/// Returns a channel's residuals without outliers, each with its frame and measurement.
 fn residuals(
     found: &SelectedModel,
     judged: &HeldOutResiduals,
@@ -97,7 +97,7 @@ fn means(
             values[cell.y as usize * grid[0] + cell.x as usize].push(*residual);
         }
     }
-    // Medians: a robot in the way is no pattern.
+    // Medians are robust against a robot in the way.
     let median =
         |values: &mut Vec<f64>| (values.len() as f64 >= LEAST_ROWS).then(|| median(values.iter().copied()));
     values.iter_mut().map(median).collect()

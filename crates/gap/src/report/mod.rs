@@ -1,4 +1,4 @@
-//! What was found: numbers first ([`Report`]), then the text and the page made of them.
+//! Report of an analysis: numbers first ([`Report`]), then the text and the page made from them.
 
 pub(crate) mod data;
 mod file;

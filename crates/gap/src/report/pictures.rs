@@ -1,4 +1,4 @@
-//! The picture that convinces: one frame as it was recorded and as the model draws it, without and with what was found.
+//! Pictures of one frame: as recorded, and as drawn by the given and the extended model.
 
 use glam::DVec2;
 use image::{GrayImage, Luma, RgbImage};
@@ -10,40 +10,40 @@ use crate::{
     workflow::analysis::Analysis,
 };
 
-/// One frame three times.
+/// Frame in three versions, with a mask of the field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pictures {
-    /// As recorded.
+    /// Frame as recorded.
     pub measured: RgbImage,
-    /// As the model that was given draws it.
+    /// Frame as the given model draws it.
     pub before: RgbImage,
-    /// As the extended model draws it.
+    /// Frame as the extended model draws it.
     pub after: RgbImage,
-    /// 255 where the extended model sees the field, on which all that is compared lies; else 0.
+    /// Mask that is 255 where the extended model sees the field, where everything compared lies, and 0 elsewhere.
     pub field: GrayImage,
 }
 
-/// Why there are no pictures.
+/// Reason why the pictures cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum PicturesError {
-    /// The recording.
+    /// The recorded picture cannot be read.
     #[error(transparent)]
     Sequence(#[from] SequenceError),
-    /// The model.
+    /// The model does not describe a valid camera.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The reference pose.
+    /// The frame cannot be drawn at its reference pose.
     #[error("frame {index} cannot be drawn")]
     Pose {
-        /// Of the frame in the recording.
+        /// Index of the frame in the recording.
         index: usize,
-        /// What is wrong with it.
+        /// Fault of the pose.
         source: RenderError,
     },
 }
 
 impl Pictures {
-    /// Of the frame that the report shows.
+    /// Makes the pictures of the frame that the report shows.
     pub fn new(recording: &Recording<'_>, given: &Model, analysis: &Analysis) -> Result<Self, PicturesError> {
         let sequence = recording.sequence;
         let index = analysis.report.shown_frame;

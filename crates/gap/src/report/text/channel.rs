@@ -26,13 +26,13 @@ pub fn channel_meaning(channel: Channel) -> &'static str {
     }
 }
 
-/// Returns the factor and the unit in which a channel's residuals are said: logarithms as percent, plain numbers without a
+/// Returns the factor and the unit in which a channel's residuals are stated: logarithms as percent, plain numbers without a
 /// unit.
 pub fn channel_scale(channel: Channel) -> (f64, &'static str) {
     scale(channel, channel.unit())
 }
 
-/// Returns the factor and the unit in which a size is said that is found in a channel and counted in a unit.
+/// Returns the factor and the unit in which a channel's size is stated, from the unit in which it is stored.
 pub(super) fn scale(channel: Channel, unit: &str) -> (f64, &str) {
     match (channel, unit) {
         (Channel::Photometry | Channel::Noise | Channel::Sharpness, "1") => (100.0, "%"),
@@ -42,7 +42,7 @@ pub(super) fn scale(channel: Channel, unit: &str) -> (f64, &str) {
     }
 }
 
-/// Returns "photometric", as in "the photometric gap".
+/// Returns a channel as an adjective: "photometric", as in "the photometric gap".
 pub(super) fn adjective(channel: Channel) -> &'static str {
     match channel {
         Channel::Color => "colour",
@@ -54,7 +54,7 @@ pub(super) fn adjective(channel: Channel) -> &'static str {
     }
 }
 
-/// Returns "brightness", as in "brightness: in the picture, strongest …".
+/// Returns a channel as a noun: "brightness", as in "brightness: in the picture, strongest …".
 pub(super) fn noun(channel: Channel) -> &'static str {
     match channel {
         Channel::Color => "the colours' offset",

@@ -7,13 +7,13 @@ use reality_sim_sensor::{
 
 use crate::report::data::{EffectReport, Estimate, Limit, NotFoundReport};
 
-/// Returns what the effect does, in the direction of its estimates: "the camera looks higher than the robot believes".
-/// One that the library does not have is called by its id.
+/// Returns what the effect does, in the direction of its estimates: "the camera looks higher than the robot believes". An
+/// effect that is not in the library is called by its id.
 pub fn effect_name(report: &EffectReport) -> &str {
     effect(&report.id).map_or(report.id.as_str(), |known| name_and_signature(known, report).0)
 }
 
-/// Returns the signature that the name rests on, as a clause after "because".
+/// Returns the signature by which the effect was recognised, as a clause after "because".
 pub fn effect_because(report: &EffectReport) -> &'static str {
     effect(&report.id).map_or("", |known| name_and_signature(known, report).1)
 }
@@ -25,13 +25,13 @@ pub fn effect_size(report: &EffectReport) -> String {
     effect(&report.id).map_or_else(|| estimates.listed(), |known| known.size_in_words(&estimates))
 }
 
-/// Returns, for each effect that this one cannot be told from, what to record to tell them apart.
+/// Returns what to record to tell this effect from each one that it is confusable with.
 pub fn deciding_recordings(report: &EffectReport) -> Vec<&'static str> {
     let recording = |id: &String| Some(effect(id)?.recording_that_would_decide());
     report.confusable_with.iter().filter_map(recording).collect()
 }
 
-/// Returns what the library calls an effect; its id where the library does not have it.
+/// Returns the library's name of an effect, or its id if it is not in the library.
 pub fn library_name(id: &str) -> &str {
     effect(id).map_or(id, |known| known.name())
 }

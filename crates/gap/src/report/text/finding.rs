@@ -1,4 +1,4 @@
-//! What no effect explains, in words.
+//! Findings that no effect explains, in words.
 
 use reality_sim_sensor::text::{percent, rounded};
 
@@ -11,7 +11,7 @@ use crate::{
     measurement::quantity::ColorChannel,
 };
 
-/// Returns where it shows, and as what: "in the picture, strongest left of the middle, in the lower part".
+/// Returns where a finding shows, and as what: "in the picture, strongest left of the middle, in the lower part".
 pub fn finding_place(finding: &Finding) -> String {
     match finding {
         Finding::Pattern { strongest, .. } => pattern(*strongest),
@@ -47,12 +47,12 @@ pub fn finding_place(finding: &Finding) -> String {
     }
 }
 
-/// Returns its size with its unit: "0.13 px²", "7.4 %".
+/// Returns a finding's size with its unit: "0.13 px²", "7.4 %".
 pub fn finding_size(finding: &Finding) -> String {
     amount(finding.channel(), finding.size(), finding.unit(), 2)
 }
 
-/// Whether the words of [`finding_place`] state how large it is.
+/// Whether the words of [`finding_place`] already state the finding's size.
 pub(super) fn place_has_size(finding: &Finding) -> bool {
     matches!(
         finding,

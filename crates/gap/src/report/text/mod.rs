@@ -1,4 +1,4 @@
-//! What was found, as a person says it: all words of a report are made here, from its numbers.
+//! Report in words: all words of a report are made here, from its numbers.
 
 mod channel;
 mod effect;

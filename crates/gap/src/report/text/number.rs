@@ -1,26 +1,26 @@
-//! Numbers of the gap and its channels as a person says them.
+//! Numbers of the gap and its channels as readable text.
 
 use reality_sim_sensor::text::digits;
 
 use super::channel::scale;
 use crate::measurement::quantity::Channel;
 
-/// Chance is not told apart below this.
+/// Smallest p-value that is written out.
 const LEAST_PROBABILITY: f64 = 1e-300;
 
-/// Returns how unlikely something is chance: "0.031", "1.2·10⁻⁹".
+/// Returns a p-value as text: "0.031", "1.2·10⁻⁹".
 pub fn probability(p_value: f64) -> String {
     let power_of_ten =
         |exponent: &str| format!("10{}", exponent.chars().map(superscript).collect::<String>());
     said_probability(p_value, |mantissa, exponent| format!("{mantissa}·{}", power_of_ten(exponent)), "10⁻³⁰⁰")
 }
 
-/// Returns the same for fonts that have no superscript digits: "0.031", "1.2e-9".
+/// Returns a p-value as text for fonts without superscript digits: "0.031", "1.2e-9".
 pub fn plain_probability(p_value: f64) -> String {
     said_probability(p_value, |mantissa, exponent| format!("{mantissa}e{exponent}"), "1e-300")
 }
 
-/// `small` makes the text of a mantissa and an exponent, `least` is that of the least probability.
+/// Returns a p-value as text. `small` joins a mantissa and an exponent; `least` is the text of the smallest p-value.
 fn said_probability(p_value: f64, small: impl Fn(&str, &str) -> String, least: &str) -> String {
     if !p_value.is_finite() {
         return "–".to_owned();
@@ -47,13 +47,13 @@ fn superscript(digit: char) -> char {
     }
 }
 
-/// The part of the distance to the noise floor that is closed; none where there was nothing to close.
+/// Returns the fraction of the distance to the noise floor that is closed. None if there was nothing to close.
 pub(crate) fn closed(before: f64, after: f64, floor: f64) -> Option<f64> {
     let part = (before - after) / (before - floor);
     (before > floor && part.is_finite()).then_some(part)
 }
 
-/// Returns a size that is found in a channel and counted in a unit, with so many significant digits: "0.13 px²", "7.4 %".
+/// Returns a channel's size as text with this many significant digits: "0.13 px²", "7.4 %". `unit` is the unit of `size`.
 pub fn amount(channel: Channel, size: f64, unit: &str, significant: i32) -> String {
     let (factor, unit) = scale(channel, unit);
     format!("{} {unit}", digits(factor * size, significant)).trim_end().to_owned()

@@ -1,8 +1,9 @@
-//! Places in the picture and on the field.
+//! Places in the picture and on the field, in words.
 
 use reality_sim_sensor::text::rounded;
 
-/// Where a cell of the picture's grid lies, cells counted from the upper left: "left of the middle, in the lower part".
+/// Returns where a cell of the picture's grid lies: "left of the middle, in the lower part". Cells count from the upper
+/// left.
 pub(super) fn picture_place([column, row]: [usize; 2], grid: [usize; 2]) -> String {
     let across = [
         "at the left edge",
@@ -16,13 +17,13 @@ pub(super) fn picture_place([column, row]: [usize; 2], grid: [usize; 2]) -> Stri
     if (column, row) == (2, 2) { across[2].to_owned() } else { format!("{}, {}", across[column], down[row]) }
 }
 
-/// In which fifth of the cells a cell lies.
+/// Returns the fifth of the grid that a cell lies in.
 fn fifth(cell: usize, cells: usize) -> usize {
     let middle = (cell as f64 + 0.5) / cells.max(1) as f64;
     (5.0 * middle).clamp(0.0, 4.0) as usize
 }
 
-/// A place on the field, world axes, metres: "around x = 1.5 m, y = −0.5 m".
+/// Returns a place on the field, world axes in metres: "around x = 1.5 m, y = −0.5 m".
 pub(super) fn field_place(x_m: f64, y_m: f64) -> String {
     format!("around x = {} m, y = {} m", rounded(x_m, 1), rounded(y_m, 1))
 }

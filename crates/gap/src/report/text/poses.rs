@@ -2,7 +2,7 @@
 
 use crate::recording::ReferenceSource;
 
-/// Returns what the poses come from.
+/// Returns the source of the poses.
 pub fn reference_source(source: ReferenceSource) -> &'static str {
     match source {
         ReferenceSource::Measured => "measured by something else than the pictures",
@@ -10,7 +10,7 @@ pub fn reference_source(source: ReferenceSource) -> &'static str {
     }
 }
 
-/// Returns what poses that were found in the pictures themselves cannot show; nothing for measured ones.
+/// Returns what poses estimated from the pictures themselves cannot show; empty for measured poses.
 pub fn absorbed(source: ReferenceSource) -> &'static str {
     match source {
         ReferenceSource::Measured => "",

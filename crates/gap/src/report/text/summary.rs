@@ -1,4 +1,4 @@
-//! The verdict in a few sentences.
+//! Verdict in a few sentences.
 
 use reality_sim_sensor::{Role, effect, text::percent};
 
@@ -15,9 +15,9 @@ use crate::{
     report::data::{EffectReport, Estimate, Gap, NotFoundReport, Report, Unobservable, Verdict},
 };
 
-/// As many limits are named where nothing was found.
+/// Number of detection limits named if nothing was found.
 const LIMITS: usize = 3;
-/// As many unexplained patterns, or effects that cannot be seen, are named.
+/// Number of unexplained patterns, or of unobservable effects, that are named.
 const NAMED: usize = 2;
 
 /// Returns the verdict as one to a few sentences.
@@ -33,14 +33,14 @@ pub fn summary(report: &Report) -> String {
     std::iter::once(verdict).chain(refitted).collect::<Vec<String>>().join(" ")
 }
 
-/// What is not explained may be a part of what was named.
+/// Introduction to the effects found if something stays unexplained, which may be part of them.
 const UNSURE: &str = "Effects of the library explain a part of it, not for sure while the rest is unknown:";
-/// Sizes that are this many standard deviations from what they were are others.
+/// Number of standard deviations from which on a refitted size counts as changed.
 const MOVED: f64 = 3.0;
-/// An effect shows where it is no chance below this, or closes a part of the gap.
+/// P-value below which an effect of the given model counts as visible. It also counts if it closes a part of the gap.
 const SHOWS: f64 = 0.05;
 
-/// An effect of the given model that these frames do not show, or show in another size.
+/// Returns a sentence on an effect of the given model that these frames do not show, or show in another size.
 fn refitted(report: &EffectReport) -> Option<String> {
     let known = effect(&report.id)?;
     let (name, size) = (effect_name(report), effect_size(report));
@@ -57,7 +57,7 @@ fn refitted(report: &EffectReport) -> Option<String> {
     moved.then(|| format!("An effect of the model has another size than was given, {name}: {size}."))
 }
 
-/// A sentence for each effect, and what they close.
+/// Returns a sentence for each effect, and what the effects close.
 fn named(report: &Report) -> String {
     let (unsure, sure): (Vec<_>, Vec<_>) =
         report.effects.iter().partition(|effect| !effect.confusable_with.is_empty());
@@ -73,8 +73,8 @@ fn named(report: &Report) -> String {
     sentences.iter().map(|text| sentence(text)).collect::<Vec<String>>().join(" ")
 }
 
-/// "adding it closes 93 % of the photometric gap": of every channel in which an effect closes most. One effect's part is
-/// that of it alone, several effects' part that of all.
+/// Returns "adding it closes 93 % of the photometric gap", for every channel in which an effect closes most. The fraction is
+/// the effect's own if there is one effect, and that of all effects together if there are several.
 fn closing(effects: &[EffectReport], gap: &Gap) -> Option<String> {
     let subject = match effects {
         [] => return None,
@@ -101,7 +101,7 @@ fn closing(effects: &[EffectReport], gap: &Gap) -> Option<String> {
     (!texts.is_empty()).then(|| format!("adding {subject} closes {}", enumerated(&texts)))
 }
 
-/// The channel whose distance to the noise floor, in noise floors, the effect shortens most, and by what part of it.
+/// Returns the channel whose gap, in noise floors, the effect reduces most, with the fraction that it closes.
 fn most_closed(effect: &EffectReport, gap: &Gap) -> Option<(Channel, f64)> {
     let distance = |channel: Channel| {
         let gap = gap.channels.get(&channel);
@@ -111,7 +111,7 @@ fn most_closed(effect: &EffectReport, gap: &Gap) -> Option<(Channel, f64)> {
     parts.max_by(|a, b| (a.1 * distance(a.0)).total_cmp(&(b.1 * distance(b.0))))
 }
 
-/// "Either A or B: these frames cannot tell; to find out, …".
+/// Returns "Either A or B: these frames cannot tell; to find out, …".
 fn either(effect: &EffectReport) -> String {
     let rivals: Vec<&str> = effect.confusable_with.iter().map(|id| library_name(id)).collect();
     let name =
@@ -121,7 +121,7 @@ fn either(effect: &EffectReport) -> String {
     format!("either {name} or {}: these frames cannot tell{remedy}", rivals.join(" or "))
 }
 
-/// A sentence for each of the first patterns.
+/// Returns a sentence for each of the first patterns.
 fn unknown(unexplained: &[Finding]) -> String {
     let mut sentences = vec!["something is at work that no effect of the library explains".to_owned()];
     sentences.extend(unexplained.iter().take(NAMED).map(said));
@@ -133,13 +133,13 @@ fn unknown(unexplained: &[Finding]) -> String {
     sentences.iter().map(|text| sentence(text)).collect::<Vec<String>>().join(" ")
 }
 
-/// "sharpness: in the picture left of the middle, in the lower part (0.13 px²)"; its size once.
+/// Returns "sharpness: in the picture left of the middle, in the lower part (0.13 px²)", without stating the size twice.
 fn said(finding: &Finding) -> String {
     let size = if place_has_size(finding) { String::new() } else { format!(" ({})", finding_size(finding)) };
     format!("{}: {}{size}", noun(finding.channel()), finding_place(finding))
 }
 
-/// What is not missing, from which size on, and how many effects nobody could tell of.
+/// Returns which effects are not missing, from which sizes on, and how many effects cannot be judged.
 fn nothing(report: &Report) -> String {
     let subject = match &report.in_model[..] {
         [] => "Nothing is missing".to_owned(),
@@ -155,7 +155,7 @@ fn nothing(report: &Report) -> String {
     std::iter::once(shown).chain(not_judged(report)).collect::<Vec<String>>().join(" ")
 }
 
-/// "9 of 22 effects cannot be judged, most of them because …".
+/// Returns "9 of 22 effects cannot be judged, most of them because …".
 fn not_judged(report: &Report) -> Option<String> {
     let causes = || report.unobservable.iter().map(|effect| &effect.cause);
     let count = causes().count();
@@ -167,7 +167,7 @@ fn not_judged(report: &Report) -> Option<String> {
     Some(format!("{count} of {all} effects cannot be judged{most} because {}.", unobservable_reason(usual)))
 }
 
-/// "a loss of light at the corners from 3.0 % on and …".
+/// Returns "a loss of light at the corners from 3.0 % on and …".
 fn shown_from(not_found: &[NotFoundReport]) -> Option<String> {
     let mut limits: Vec<(u32, String)> = not_found
         .iter()
@@ -200,7 +200,7 @@ fn inconclusive(unobservable: &[Unobservable]) -> String {
     format!("These frames cannot tell {}{remedy}.", names.join(" or "))
 }
 
-/// "a, b and c".
+/// Returns "a, b and c".
 fn enumerated(texts: &[&str]) -> String {
     match texts {
         [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
@@ -208,7 +208,7 @@ fn enumerated(texts: &[&str]) -> String {
     }
 }
 
-/// With a capital letter and a full stop.
+/// Returns a text with a capital letter and a full stop.
 fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     let first: String = letters.next().map(|letter| letter.to_uppercase().collect()).unwrap_or_default();
@@ -228,7 +228,7 @@ mod tests {
         testing::{effect_report, report},
     };
 
-    /// A report with these effects and findings.
+    /// Returns a report with these effects and findings.
     fn of(verdict: Verdict, effects: &[EffectReport], unexplained: &[Finding]) -> Report {
         let channels = [
             (Channel::Photometry, ChannelGap { before: 0.3, after: 0.06, floor: 0.04 }),

@@ -1,4 +1,4 @@
-//! Why effects cannot be seen, in words.
+//! Reasons why effects cannot be seen, in words.
 
 use reality_sim_sensor::effect;
 

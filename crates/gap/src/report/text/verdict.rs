@@ -1,4 +1,4 @@
-//! The verdict in a word.
+//! Verdict in one word.
 
 use crate::report::data::Verdict;
 
