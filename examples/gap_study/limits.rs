@@ -1,4 +1,4 @@
-//! How large an effect is in the detection limits of the very recording that it is hidden in.
+//! Sizes of hidden effects in detection limits of the recording that they are hidden in.
 
 use std::{
     collections::{BTreeMap, btree_map::Entry},
@@ -14,21 +14,21 @@ use crate::{
     truth::{main_size, parameters},
 };
 
-/// No effect is larger than this part of its plausible range.
+/// Largest size of a hidden effect, as a fraction of its plausible range.
 const LARGEST: f64 = 0.8;
-/// The nominal shot noise: the library's numbers are variances, the hidden one is a factor of the standard deviation.
+/// Nominal shot noise. The library's parameters are variances, whereas the hidden one is a factor of the standard deviation.
 const SHOT_NOISE: f64 = 0.0015;
 
-/// A recording's detection limits by effect: the parameter and its size.
+/// Detection limits of a recording by effect: name of the parameter and its size.
 type OfRecording = BTreeMap<String, (String, f64)>;
 
-/// Detection limits of the recordings of some seeds, each found in that recording with nothing hidden.
+/// Detection limits by seed and picture size, each determined in that recording with nothing hidden.
 #[derive(Default)]
 pub struct Limits(BTreeMap<(u64, [u32; 2]), OfRecording>);
 
 impl Limits {
-    /// An effect's size as the multiple of [`Hidden::of`]'s, and in the recording's detection limits. None where it cannot
-    /// be seen in that recording.
+    /// Returns an effect's size as a multiple of [`Hidden::of`]'s, and in the recording's detection limits. None if the
+    /// effect cannot be seen in that recording.
     pub fn size(
         &mut self,
         task: &Task,
@@ -53,7 +53,7 @@ impl Limits {
     }
 }
 
-/// How far an effect's first parameter may plausibly be from where it vanishes, to the side on which it is hidden.
+/// Returns how far an effect's first size may plausibly be from its neutral value, on the side on which it is hidden.
 fn reach(id: &str, unit: &Hidden) -> f64 {
     let first = effect(id)
         .and_then(|effect| effect.parameters().iter().find(|parameter| parameter.role == Role::Size));

@@ -1,10 +1,10 @@
-//! The hidden-effect study of `docs/gap.md`: recordings by a ray caster that shares no code with what is fitted, an effect
-//! or none hidden in each by seed, the workflow's verdict compared with the truth only afterwards.
+//! Hidden-effect study of `docs/gap.md`. A ray caster that shares no code with the fitted model makes recordings, with an
+//! effect, or none, hidden in each by seed. The workflow's verdict is compared with the truth only afterwards.
 //!
-//! `cargo run --release --example gap_study -- --out FOLDER` adds its runs to `FOLDER/runs.jsonl` (a run that is there is
-//! not repeated) and writes `FOLDER/study.md`; `--page docs/gap.md` puts that between the page's marks, too.
+//! `cargo run --release --example gap_study -- --out FOLDER` appends its runs to `FOLDER/runs.jsonl`, skipping those that
+//! are already there, and writes `FOLDER/study.md`. `--page docs/gap.md` also puts the tables between the page's marks.
 //! `--draw N` makes other recordings.
-//! `--part nulls|singles|pairs|removed|foreign|full`, `--effect ID` and `--runs N` make a part of it.
+//! `--part nulls|singles|pairs|removed|foreign|full`, `--effect ID` and `--runs N` select a part of the study.
 
 mod limits;
 mod page;

@@ -1,11 +1,11 @@
-//! The tables' place in a page.
+//! Insertion of the tables into a page.
 
 use std::{error::Error, fs, path::Path};
 
-/// Where they begin and end.
+/// Marks at which the tables begin and end.
 const MARKS: [&str; 2] = ["<!-- study: begin -->\n", "<!-- study: end -->\n"];
 
-/// Puts the tables in the place of those that were there.
+/// Replaces the tables between the marks of a page.
 pub fn put(page: &Path, tables: &str) -> Result<(), Box<dyn Error>> {
     let text = fs::read_to_string(page)?;
     let [begin, end] = MARKS.map(|mark| text.find(mark));

@@ -1,4 +1,4 @@
-//! What is run.
+//! Plan of the study: the recordings to make and the effects hidden in them.
 
 use std::error::Error;
 
@@ -33,38 +33,38 @@ impl Part {
 
 /// Sizes of single effects, in detection limits.
 pub const SIZES: [f64; 3] = [3.0, 6.0, 1.0];
-/// From here on an effect has to be named.
+/// Size from which on an effect has to be named, in detection limits.
 pub const CLEAR: f64 = 3.0;
 const SEEDS_OF_A_DRAW: u64 = 1_000_000;
 const NULLS: u64 = 220;
 const SEEDS: u64 = 3;
 const PAIRS: u64 = 48;
 const FOREIGN_SEEDS: u64 = 6;
-/// Effects of a pair, and those taken out of the library, are so large, in detection limits.
+/// Size of the effects of a pair, and of those taken out of the library, in detection limits.
 const LARGE: f64 = 6.0;
 
-/// One recording and what is asked of it.
+/// Recording with its hidden effects and the options of its analysis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Task {
     pub part: Part,
     pub seed: u64,
-    /// Ids of what is hidden.
+    /// Ids of the hidden effects.
     pub effects: Vec<String>,
-    /// How large each is, in detection limits.
+    /// Size of each hidden effect, in detection limits.
     pub size: f64,
-    /// Left out of the library.
+    /// Effect that is left out of the library.
     pub without: Option<String>,
     pub frames: usize,
     pub picture: [u32; 2],
 }
 
-/// An effect to hide.
+/// Effect to hide.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Chosen {
     pub id: String,
-    /// Of [`reality_sim_hidden::Hidden::of`]'s size.
+    /// Size as a multiple of [`reality_sim_hidden::Hidden::of`]'s.
     pub multiple: f64,
-    /// In the recording's detection limits; 0 where it has none.
+    /// Size in the recording's detection limits; 0 if the effect has none.
     pub in_limits: f64,
 }
 
@@ -76,8 +76,8 @@ impl Task {
         )
     }
 
-    /// What is hidden, and how large. None where one of the effects cannot be seen in the recording, or could not be as
-    /// large as wanted and plausible.
+    /// Returns the effects to hide with their sizes. None if one of them cannot be seen in the recording, or if the wanted
+    /// size is not plausible.
     pub fn chosen(&self, limits: &mut Limits) -> Result<Option<Vec<Chosen>>, Box<dyn Error>> {
         let mut all = Vec::with_capacity(self.effects.len());
         for id in &self.effects {
@@ -110,9 +110,9 @@ impl Task {
     }
 }
 
-/// Sizes of the effects that no library has, in [`reality_sim_hidden::Hidden::of`]'s: dirt that takes 40 % of the light,
-/// bands of 10 %, a line 7.5 cm off, six people, fog of 0.08 per metre (a fifth of what is seen at three metres), waves of
-/// ±15 mm, a dent of half a percent of the picture's width. A missing line has none.
+/// Returns the size of an effect outside the library, as a multiple of [`reality_sim_hidden::Hidden::of`]'s: dirt that takes
+/// 40 % of the light, bands of 10 %, a line displaced by 7.5 cm, six people, fog of 0.08 per metre (a fifth of the contrast
+/// at three metres), waves of ±15 mm, a dent of half a percent of the picture's width. A missing line has no size.
 fn foreign_multiple(id: &str) -> f64 {
     match id {
         "lens_dirt" => 4.0,
@@ -122,7 +122,7 @@ fn foreign_multiple(id: &str) -> f64 {
     }
 }
 
-/// All runs of a part, on recordings that no other draw has.
+/// Returns all runs of a part, on recordings that no other draw has.
 pub fn tasks(part: Part, draw: u64) -> Vec<Task> {
     let of_draw = |task: Task| Task { seed: task.seed + draw * SEEDS_OF_A_DRAW, ..task };
     planned(part, draw).into_iter().map(of_draw).collect()
@@ -149,7 +149,8 @@ fn planned(part: Part, draw: u64) -> Vec<Task> {
     }
 }
 
-/// All effects at one size before the next: a part of the runs is a study, too.
+/// Returns runs with single effects, all effects at one size before the next size, so that the first runs alone are a study
+/// too.
 fn singles(part: Part, sizes: &[f64]) -> Vec<Task> {
     let mut tasks = Vec::new();
     for seed in 0..SEEDS {

@@ -1,4 +1,4 @@
-//! One run: a recording, the workflow, and what came out.
+//! Run of the study: a recording, the workflow, and the outcome.
 
 use std::{collections::BTreeMap, error::Error, path::Path, time::Instant};
 
@@ -18,28 +18,29 @@ use crate::{
     truth::{has_the_librarys_form, main_size, parameters},
 };
 
-/// What came out.
+/// Outcome of a run.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Outcome {
     pub task: Task,
     pub hidden: Vec<Chosen>,
-    /// Numbers of what was hidden.
+    /// Main sizes of the hidden effects.
     pub hidden_sizes: Vec<f64>,
     pub verdict: Verdict,
-    /// Named effects, each with those that it cannot be told from.
+    /// Named effects, each with those that it is confusable with.
     pub named: Vec<(String, Vec<String>)>,
     pub unexplained: Vec<Finding>,
-    /// True value, estimate and its standard deviation, of parameters with a known true value.
+    /// Comparison of estimates with the true values, for parameters whose true value is known.
     pub estimates: Vec<Compared>,
-    /// Of the whole: before, after, and with the true effects added, where the library can express them.
+    /// Gap over all channels, before and after. `oracle` is the gap with the true effects in the model, if the library can
+    /// express them.
     pub gap: [f64; 2],
     pub oracle: Option<f64>,
     pub seconds: f64,
-    /// Detection limits by effect: of which parameter, and its size.
+    /// Detection limits by effect: name of the parameter and its size.
     pub limits: BTreeMap<String, (String, f64)>,
 }
 
-/// A parameter against its true value.
+/// Estimate of a parameter beside its true value.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Compared {
     pub effect: String,
@@ -67,7 +68,7 @@ impl Outcome {
     }
 }
 
-/// Records a task's sequence with these effects hidden, their signs and shapes drawn by the seed.
+/// Records a task's sequence with these effects hidden; the seed draws their signs and shapes.
 pub fn record(
     task: &Task,
     hidden: &[Chosen],
@@ -141,7 +142,8 @@ fn compared(hidden: &Hidden, report: &Report) -> Vec<Compared> {
     parameters(hidden).into_iter().filter_map(one).collect()
 }
 
-/// The gap with the true effects in the model, where the library has all of them in the very form in which they are hidden.
+/// Returns the gap with the true effects in the model. None unless the library has all of them in exactly the form in which
+/// they are hidden.
 fn oracle(sequence: &Sequence, effects: &[Hidden], options: &Options) -> Result<Option<f64>, Box<dyn Error>> {
     let mut model = Model::default();
     for hidden in effects {

@@ -1,4 +1,4 @@
-//! Whether what no library has is in the pictures at all: a line that is missing may never have been in view.
+//! Check that an effect outside the library is visible in the pictures: a missing line may never have been in view.
 
 use std::error::Error;
 
@@ -7,12 +7,12 @@ use crate::{
     run::record,
 };
 
-/// A pixel is another one where a colour differs by more than this many grey levels. Both recordings have the same noise.
+/// Difference of a colour, in grey levels, above which a pixel counts as changed. Both recordings have the same noise.
 const DIFFERS: u8 = 6;
-/// In the mean picture this part of the pixels has to differ from the same recording with nothing hidden.
+/// Least fraction of pixels that differ, averaged over the pictures, from the same recording with nothing hidden.
 const LEAST_PART: f64 = 0.005;
 
-/// Whether the pictures show it.
+/// Whether the pictures show a hidden effect.
 pub fn is_in_sight(task: &Task, hidden: &Chosen) -> Result<bool, Box<dyn Error>> {
     let folders = [tempfile::tempdir()?, tempfile::tempdir()?];
     let (with, _) = record(task, std::slice::from_ref(hidden), folders[0].path())?;

@@ -1,4 +1,4 @@
-//! The study as tables.
+//! Tables of the study.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -12,10 +12,11 @@ use crate::{
     run::{Compared, Outcome},
 };
 
-/// Gaps that are a smaller part of what the true effects leave are none to be closed.
+/// Least part of the gap that the true effects can close, relative to the gap that they leave. Below it, a run does not
+/// count.
 const LEAST_GAP: f64 = 0.02;
 
-/// The tables of `docs/gap.md`.
+/// Returns the tables of `docs/gap.md`.
 pub fn text(outcomes: &[Outcome]) -> String {
     let of = |part: Part| -> Vec<&Outcome> {
         outcomes.iter().filter(|outcome| outcome.task.part == part).collect()
@@ -35,7 +36,7 @@ pub fn text(outcomes: &[Outcome]) -> String {
     text
 }
 
-/// A rate with Wilson's 95 % interval.
+/// Returns a rate with Wilson's 95 % interval.
 fn rate(hits: usize, runs: usize) -> String {
     if runs == 0 {
         return "–".to_owned();
@@ -65,17 +66,17 @@ fn named(outcome: &Outcome) -> BTreeSet<&str> {
     outcome.named.iter().map(|(id, _)| id.as_str()).collect()
 }
 
-/// Named with nothing besides, and nothing that it cannot be told from.
+/// Whether exactly the hidden effects were named, none of them confusable.
 fn is_exact(outcome: &Outcome) -> bool {
     named(outcome) == hidden(outcome) && outcome.named.iter().all(|(_, rivals)| rivals.is_empty())
 }
 
-/// Named, or among those that a named one cannot be told from.
+/// Whether an effect was named, or is confusable with a named one.
 fn in_set(outcome: &Outcome, id: &str) -> bool {
     outcome.named.iter().any(|(named, rivals)| named == id || rivals.iter().any(|rival| rival == id))
 }
 
-/// What was asked for, and what was found.
+/// Writes the targets of the study and the results.
 fn targets(text: &mut String, outcomes: &[Outcome]) {
     let of = |parts: &[Part]| -> Vec<&Outcome> {
         outcomes.iter().filter(|run| parts.contains(&run.task.part)).collect()
@@ -112,7 +113,7 @@ fn targets(text: &mut String, outcomes: &[Outcome]) {
     }
 }
 
-/// Runs in which the library has all of its effects.
+/// Returns the runs in which the library has all of its effects.
 fn whole<'a>(runs: &[&'a Outcome]) -> Vec<&'a Outcome> {
     runs.iter().copied().filter(|run| run.task.without.is_none()).collect()
 }
@@ -121,7 +122,7 @@ fn has_all(run: &Outcome) -> bool {
     hidden(run).iter().all(|id| in_set(run, id))
 }
 
-/// How many of the names are right.
+/// Returns the number of correctly named effects.
 fn right(run: &Outcome) -> usize {
     hidden(run).intersection(&named(run)).count()
 }
@@ -218,7 +219,7 @@ fn confusion(text: &mut String, runs: &[&Outcome]) {
     }
 }
 
-/// The names given, those that cannot be told from each other joined by "or".
+/// Returns the named effects; confusable ones are joined by "or".
 fn answer(run: &Outcome) -> String {
     let name = |(id, rivals): &(String, Vec<String>)| {
         std::iter::once(id).chain(rivals).cloned().collect::<Vec<String>>().join(" or ")
@@ -306,8 +307,8 @@ fn inside(all: &[&Compared]) -> usize {
     all.iter().filter(|c| (c.value - c.truth).abs() <= 1.96 * c.sigma).count()
 }
 
-/// Of the distance from the gap before to that with the true effects in the model, where there is one, the part that is
-/// closed; in order.
+/// Returns the fractions of the gap closed, sorted: of the distance from the gap before to the gap with the true effects in
+/// the model. Runs without the latter are left out.
 fn closed(runs: &[&Outcome]) -> Vec<f64> {
     let mut closed: Vec<f64> = runs
         .iter()

@@ -1,8 +1,8 @@
-//! What is hidden, as the parameters of the library's effects.
+//! Hidden effects as parameters of the library's effects.
 
 use reality_sim_hidden::{Falloff, Hidden};
 
-/// The one number that stands for an effect's size.
+/// Returns the number that stands for an effect's size.
 pub fn main_size(hidden: &Hidden) -> f64 {
     match hidden {
         Hidden::SensorNoise { factor } => *factor,
@@ -16,11 +16,11 @@ pub fn main_size(hidden: &Hidden) -> f64 {
     }
 }
 
-/// Parameters whose true value is known, by their names in the library.
+/// Returns the parameters whose true value is known, by their names in the library.
 pub fn parameters(hidden: &Hidden) -> Vec<(&'static str, f64)> {
     match *hidden {
         Hidden::RadialDistortion { k } => {
-            // What is not hidden is no true value to be met.
+            // A coefficient that is not hidden has no true value to compare with.
             let all = ["k1", "k2", "k3", "k4"].into_iter().zip(k);
             all.filter(|(_, change)| *change != 0.0).collect()
         }
@@ -48,13 +48,13 @@ pub fn parameters(hidden: &Hidden) -> Vec<(&'static str, f64)> {
         Hidden::OdometryScale { scale } => vec![("scale", scale)],
         Hidden::OdometryYawDrift { rate_rad_per_s } => vec![("rad_per_s", rate_rad_per_s)],
         Hidden::OdometryLateralSlip { slip_m_per_m } => vec![("m_per_m", slip_m_per_m)],
-        // Given by other numbers than the library's.
+        // The other effects have other parameters than those of the library.
         _ => Vec::new(),
     }
 }
 
-/// Whether the library's effect draws the very same with the true parameters: it has no disc as a blur, and another course
-/// towards the corners than cos⁴.
+/// Whether the library's effect with the true parameters makes exactly the same pictures. It does not for blur by a disc,
+/// nor for a cos⁴ falloff, which the library does not have.
 pub fn has_the_librarys_form(hidden: &Hidden) -> bool {
     let is_other =
         matches!(hidden, Hidden::Defocus { .. } | Hidden::Vignetting { falloff: Falloff::Cos4, .. });

@@ -24,7 +24,7 @@ use super::output::{create_output_folder, print, print_json};
 pub fn run(args: &GapArgs) -> anyhow::Result<()> {
     let sequence = Sequence::open(&args.sequence)?;
     let given = args.model.as_deref().map_or_else(|| Ok(Model::default()), Model::read)?;
-    // The model may lie where the last report was written: it is read before the folder is written to.
+    // The model may lie in the output folder, so it is read before anything is written there.
     refuse_held(args, &given)?;
     if let Some(path) = &args.model {
         Chain::new(&sequence.setup, &sequence.field, &given).map_err(|error| error.in_file(path))?;
@@ -44,7 +44,7 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
     if args.json { print_json(&analysis.report) } else { print(&text::text(&analysis.report, &args.out)) }
 }
 
-/// An effect cannot be in the model and out of the library.
+/// Refuses effects that are both in the model and left out of the library.
 fn refuse_held(args: &GapArgs, given: &Model) -> anyhow::Result<()> {
     match args.without.iter().find(|id| given.values(id).is_some()) {
         Some(id) => bail!("--without {id}: the model of --model has it: take it out of that file"),
@@ -52,7 +52,7 @@ fn refuse_held(args: &GapArgs, given: &Model) -> anyhow::Result<()> {
     }
 }
 
-/// The report's files; `report.json`, by which others know the folder, comes last.
+/// Writes the report's files. `report.json`, by which other commands recognise the folder, comes last.
 fn write(folder: &Path, analysis: &Analysis, pictures: &Pictures) -> anyhow::Result<()> {
     let shown = folder.join("pictures");
     fs::create_dir_all(&shown).with_context(|| format!("{}: cannot be created", shown.display()))?;
@@ -71,7 +71,7 @@ fn write(folder: &Path, analysis: &Analysis, pictures: &Pictures) -> anyhow::Res
     Ok(())
 }
 
-/// What is being done, on a terminal only.
+/// Returns a progress display; it is visible on a terminal only.
 fn stages() -> anyhow::Result<ProgressBar> {
     if !io::stderr().is_terminal() {
         return Ok(ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()));

@@ -1,4 +1,4 @@
-//! The options of `gap`.
+//! Options of `gap`.
 
 use std::{ops::Range, path::PathBuf};
 

@@ -1,4 +1,4 @@
-//! The reference poses of a comparison: measured, or found in the pictures.
+//! Reference poses of a comparison: measured, or estimated from the pictures.
 
 use std::sync::Arc;
 
@@ -15,13 +15,13 @@ use crate::commands::{
     output::StageProgress,
 };
 
-/// One pose a frame, where there is one, and where they come from.
+/// Reference pose of each frame, if it has one, and the poses' source.
 pub struct Reference {
     pub poses: Vec<Option<CameraPose>>,
     pub source: ReferenceSource,
 }
 
-/// The sequence's own, those of a file, or those of the particle filter.
+/// Returns the sequence's own poses, those of a file, or those of the particle filter.
 pub fn reference(args: &GapArgs, sequence: &Sequence) -> anyhow::Result<Reference> {
     let mut settled = Vec::new();
     let mut found = None;
@@ -48,7 +48,7 @@ pub fn reference(args: &GapArgs, sequence: &Sequence) -> anyhow::Result<Referenc
     })
 }
 
-/// The poses as each picture gave them: smoothing would take in whatever is wrong with the mount.
+/// Plans the localization without smoothing, which would absorb an error of the mount pose.
 fn plan(args: &GapArgs, sequence: &Sequence) -> Plan {
     let poses = match &args.poses {
         Some(file) => PoseChoice::File(file.clone()),
@@ -59,8 +59,8 @@ fn plan(args: &GapArgs, sequence: &Sequence) -> Plan {
     Plan::new([Arc::new(sequence.clone())], poses).with_filter(filter)
 }
 
-/// Places found in the pictures, with the height, pitch and roll that the robot knows of itself: those of the pictures
-/// would have taken in whatever is wrong with the mount.
+/// Combines planar poses from the pictures with the height, pitch and roll that the robot knows. Height, pitch and roll from
+/// the pictures would absorb an error of the mount pose.
 fn tagged(sequence: &Sequence, planar: impl Iterator<Item = Option<Pose2>>) -> Reference {
     let height_m = sequence.setup.mount_height_m;
     let pose = |(planar, frame): (Option<Pose2>, &reality_sim::sequence::FrameRecord)| {

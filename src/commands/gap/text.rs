@@ -1,4 +1,4 @@
-//! The report in a terminal.
+//! Report for a terminal.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -9,7 +9,7 @@ use reality_sim::gap::report::{
 
 use crate::commands::output::aligned;
 
-/// Effects that cannot be seen, by why.
+/// Groups effects that cannot be seen by their reason.
 fn by_reason(unobservable: &[Unobservable]) -> BTreeMap<&str, Vec<&str>> {
     let mut reasons: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for effect in unobservable {
@@ -18,7 +18,7 @@ fn by_reason(unobservable: &[Unobservable]) -> BTreeMap<&str, Vec<&str>> {
     reasons
 }
 
-/// The verdict, the gap, and where the rest is to be read.
+/// Returns the verdict, the gap, and where to read the rest.
 pub fn text(report: &Report, folder: &Path) -> String {
     let mut lines: Vec<(&str, String)> = Vec::new();
     for effect in &report.effects {

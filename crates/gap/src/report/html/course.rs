@@ -1,4 +1,4 @@
-//! A channel's residuals over time, as curves.
+//! Time course of a channel's residuals, as curves.
 
 use std::fmt::Write;
 
@@ -9,14 +9,14 @@ use crate::{
     report::text::{channel_scale, channel_title, rounded},
 };
 
-/// The drawing's width and height.
+/// Width and height of the drawing.
 const SIZE: [f64; 2] = [720.0, 200.0];
-/// Left, top, right, bottom of the curves in it.
+/// Left, top, right and bottom of the plot area within the drawing.
 const PLOT: [f64; 4] = [54.0, 10.0, 710.0, 162.0];
-/// About as many numbers are at an axis.
+/// Approximate number of ticks of an axis.
 const TICKS: f64 = 5.0;
 
-/// From time and value to the drawing.
+/// Mapping from time and value to the drawing.
 struct Scale {
     from_s: f64,
     duration_s: f64,
@@ -33,14 +33,14 @@ impl Scale {
     }
 }
 
-/// The curves before and after, with the frames that no fit has seen, and the noise floor where it is known.
+/// Draws the curves before and after, with the held-out frames marked, and the noise floor if it is known.
 pub(super) fn drawing(course: &Course, channel: Channel, floor: Option<f64>) -> String {
     let (factor, unit) = channel_scale(channel);
     let scaled = |values: &[Option<f64>]| -> Vec<(f64, f64, bool)> {
         let judged = course.judged.iter().copied().chain(std::iter::repeat(false));
         let points = course.time_s.iter().zip(values).zip(judged);
         points
-            // What was not measured interrupts a curve.
+            // Missing measurements interrupt a curve.
             .map(|((time_s, value), judged)| (*time_s, factor * value.unwrap_or(f64::NAN), judged))
             .collect()
     };
@@ -58,7 +58,7 @@ pub(super) fn drawing(course: &Course, channel: Channel, floor: Option<f64>) -> 
         escape(&label),
         axes(&scale),
         floor.map_or_else(String::new, |floor| level(&scale, floor)),
-        // Dashes on top: both are seen where they are the same.
+        // The dashed curve is on top, so that both are visible where they coincide.
         curve(&after, &scale, ["after", "judged"]),
         curve(&before, &scale, ["before", "judged-before"]),
         KEY,
@@ -80,7 +80,7 @@ fn caption(channel: Channel, unit: &str) -> String {
     ))
 }
 
-/// None where nothing was measured.
+/// Returns the scale of the drawing. None if nothing was measured.
 fn scale(before: &[(f64, f64, bool)], after: &[(f64, f64, bool)], floor: Option<f64>) -> Option<Scale> {
     let measured =
         || before.iter().chain(after).filter(|(time_s, value, _)| time_s.is_finite() && value.is_finite());
@@ -120,7 +120,7 @@ fn level(scale: &Scale, value: f64) -> String {
     format!("<path class=\"floor\" d=\"M{} {:.1}H{}\"/>", PLOT[0], scale.y(value), PLOT[2])
 }
 
-/// A curve with gaps, and dots on the frames kept for judging.
+/// Draws a curve with gaps, and dots on the held-out frames.
 fn curve(points: &[(f64, f64, bool)], scale: &Scale, [line, dot]: [&str; 2]) -> String {
     let (mut path, mut dots, mut pen_down) = (String::new(), String::new(), false);
     for &(time_s, value, judged) in points {
@@ -138,7 +138,7 @@ fn curve(points: &[(f64, f64, bool)], scale: &Scale, [line, dot]: [&str; 2]) -> 
     format!("<path class=\"{line}\" d=\"{path}\"/>{dots}")
 }
 
-/// Round numbers from 0 to the largest, with their texts.
+/// Returns round numbers from 0 to the largest value, with their labels.
 fn ticks(largest: f64) -> impl Iterator<Item = (f64, String)> {
     let rough = largest / TICKS;
     let magnitude = 10f64.powf(rough.log10().floor());

@@ -1,4 +1,4 @@
-//! All effects with the evidence, as tables.
+//! Tables of all effects with the evidence for them.
 
 use reality_sim_sensor::effect as library_effect;
 
@@ -13,7 +13,7 @@ use crate::{
     },
 };
 
-/// More are folded.
+/// Largest number of parameters that are shown unfolded.
 const MOST_PARAMETERS: usize = 5;
 
 pub(super) fn section(report: &Report) -> String {
@@ -35,7 +35,7 @@ fn effects(title: &str, effects: &[EffectReport]) -> String {
     format!("<h3>{title}</h3>\n{}", table(&headings, &rows))
 }
 
-/// Two rows: the numbers, and below them on what the name rests.
+/// Returns two rows for an effect: its numbers, and below them the evidence for its name.
 fn effect(effect: &EffectReport) -> String {
     let closes: Vec<String> = effect
         .closes
@@ -56,7 +56,7 @@ fn effect(effect: &EffectReport) -> String {
     )
 }
 
-/// Folded where they are many.
+/// Lists an effect's parameters, folded if there are many.
 fn parameters(effect: &EffectReport) -> String {
     let text = |(name, value): (&String, &Estimate)| {
         let number = escape(&estimate(value));
@@ -111,7 +111,7 @@ fn not_found(effects: &[NotFoundReport]) -> String {
     )
 }
 
-/// The limit as `model.toml` has it.
+/// Returns a detection limit in the form of `model.toml`.
 fn as_in_model(effect: &NotFoundReport) -> String {
     let Limit { value, unit } = &effect.detection_limit;
     let unit = if unit == "1" { "" } else { unit };
@@ -138,7 +138,7 @@ fn unobservable(effects: &[Unobservable]) -> String {
     )
 }
 
-/// What no effect explains.
+/// Returns the table of findings that no effect explains.
 pub(super) fn unexplained(findings: &[Finding]) -> String {
     if findings.is_empty() {
         return "<h2>Unexplained</h2>\n<p>Nothing significant is left.</p>\n".to_owned();

@@ -1,4 +1,4 @@
-//! The gap before and after beside the noise floor, as a table.
+//! Table of the gap before and after, beside the noise floor.
 
 use super::text::{cell, escape, number, table};
 use crate::{
@@ -39,7 +39,7 @@ fn row(class: &str, title: &str, sizes: [f64; 3], (factor, unit): (f64, &str)) -
     )
 }
 
-/// Floor, what is left, what was closed.
+/// Draws a bar of three parts: noise floor, remaining gap, closed gap.
 fn bar(before: f64, after: f64, floor: f64) -> String {
     let largest = before.max(after).max(floor);
     if !(before.is_finite() && after.is_finite() && floor.is_finite() && largest > 0.0) {

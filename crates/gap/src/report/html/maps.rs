@@ -1,4 +1,4 @@
-//! Where residuals are, in the picture and on the field, as drawings.
+//! Maps of residuals in the picture and on the field, as drawings.
 
 use std::fmt::Write;
 
@@ -10,15 +10,16 @@ use crate::{measurement::quantity::Channel, report::data::Map, report::text::amo
 
 /// Width of a map in the drawing's units.
 const WIDTH: f64 = 340.0;
-/// Height of a map by its width.
+/// Least and largest ratio of a map's height to its width.
 const PROPORTIONS: [f64; 2] = [0.2, 1.5];
-/// This part of the cells is within the colours' range: a single far one would make all others pale.
+/// Fraction of the cells within the range of the colours. With the full range, a single outlier would make all other cells
+/// pale.
 const WITHIN: f64 = 0.96;
-/// Steps of the legend.
+/// Number of steps of the legend.
 const LEGEND: u32 = 40;
-/// Points of a line that is not straight.
+/// Number of points that a curved line is drawn with.
 const BENDS: u32 = 48;
-/// From the least to the largest value: ColorBrewer's RdBu.
+/// Colours from the least to the largest value: ColorBrewer's RdBu.
 const COLORS: [[f64; 3]; 5] = [
     [33.0, 102.0, 172.0],
     [146.0, 197.0, 222.0],
@@ -27,17 +28,17 @@ const COLORS: [[f64; 3]; 5] = [
     [178.0, 24.0, 43.0],
 ];
 
-/// What a map shows.
+/// Subject of a map.
 #[derive(Clone, Copy)]
 pub(super) struct Subject<'a> {
     pub(super) channel: Channel,
-    /// "in the picture".
+    /// Place of the residuals as text, such as "in the picture".
     pub(super) place: &'a str,
-    /// Where it is the field, whose lines are drawn.
+    /// Dimensions of the field whose lines are drawn, if the map shows the field.
     pub(super) field: Option<&'a FieldDimensions>,
 }
 
-/// The map before and after, in the same colours, with their legend.
+/// Draws a map before and after in the same colours, with a legend.
 pub(super) fn pair(map: &Map, subject: Subject<'_>) -> String {
     let Some(limit) = limit(map) else {
         return format!("<p class=\"quiet\">Nothing was measured {}.</p>\n", escape(subject.place));
@@ -58,7 +59,7 @@ pub(super) fn pair(map: &Map, subject: Subject<'_>) -> String {
     )
 }
 
-/// The value of the strongest colours; none where nothing was measured.
+/// Returns the value of the strongest colours. None if nothing was measured.
 fn limit(map: &Map) -> Option<f64> {
     let mut sizes: Vec<f64> = map
         .before
@@ -91,7 +92,7 @@ fn drawing(map: &Map, values: &[Option<f64>], limit: f64, subject: Subject<'_>, 
     )
 }
 
-/// What was measured, with the numbers for the mouse.
+/// Draws the measured cells, with their values as tooltips.
 fn cells(map: &Map, values: &[Option<f64>], height: f64, limit: f64, subject: Subject<'_>) -> String {
     let (columns, rows) = (map.columns.max(1), map.rows.max(1));
     let DVec2 { x: cell_width, y: cell_height } =
@@ -111,7 +112,7 @@ fn cells(map: &Map, values: &[Option<f64>], height: f64, limit: f64, subject: Su
     svg
 }
 
-/// The field's lines, dark with a light border: legible on every colour.
+/// Draws the field's lines dark with a light border, which is legible on every colour.
 fn lines(field: &FieldDimensions, from_world: impl Fn(DVec2) -> DVec2) -> String {
     let mut path = String::new();
     for curve in field.curves() {
@@ -159,7 +160,7 @@ fn value_text(value: f64, subject: Subject<'_>) -> String {
     amount(subject.channel, value, subject.channel.unit(), 2)
 }
 
-/// Of a value from −1 to 1.
+/// Returns the colour of a value from −1 to 1.
 fn color(value: f64) -> String {
     let place = (value.clamp(-1.0, 1.0) + 1.0) * 0.5 * (COLORS.len() - 1) as f64;
     let index = (place as usize).min(COLORS.len() - 2);

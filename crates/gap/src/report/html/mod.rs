@@ -1,4 +1,4 @@
-//! The report as a page that needs nothing else: a verdict, pictures, maps and tables.
+//! Report as a self-contained HTML page: a verdict, pictures, maps and tables.
 
 mod course;
 mod effects;
@@ -19,7 +19,7 @@ use crate::{
 
 const STYLE: &str = include_str!("style.css");
 
-/// The whole page, UTF-8, with its pictures inside.
+/// Returns the whole page in UTF-8, with its pictures embedded.
 pub fn page(report: &Report, pictures: &Pictures) -> String {
     let title = escape(&format!("Gap: {}", report.recording));
     let sections = [
@@ -44,7 +44,7 @@ fn verdict(report: &Report) -> String {
         "<h1>Simulation against recording: {}</h1>\n<p class=\"verdict\">{}</p>\n<p class=\"quiet\"><span \
          class=\"word\">{}</span> {} frames, {} of them kept for judging</p>\n",
         escape(&report.recording),
-        // No line starts with a percent sign.
+        // A no-break space keeps a percent sign from starting a line.
         escape(&summary(report)).replace(" %", "&#160;%"),
         verdict_word(report.verdict),
         report.frames,
@@ -52,7 +52,8 @@ fn verdict(report: &Report) -> String {
     )
 }
 
-/// Where residuals are: the channel whose gap was closed most, the others folded but for those that an effect closes, too.
+/// Returns the drawings of all channels. The channel whose gap was closed most comes first; the others are folded, except
+/// those in which an effect closes some of the gap.
 fn channels(report: &Report) -> String {
     let Some(first) = most_closed(report) else { return String::new() };
     let others = report.maps.iter().filter(|(channel, _)| **channel != first);
@@ -70,7 +71,7 @@ fn channels(report: &Report) -> String {
     format!("<h2>Where and when they differ: {title}</h2>\n{shown}{}", folded.collect::<String>())
 }
 
-/// By the noise floor; of those that are not closed at all the first.
+/// Returns the channel whose gap was reduced most, in noise floors; in a tie, the first channel.
 fn most_closed(report: &Report) -> Option<Channel> {
     let closed = |channel: &Channel| {
         let size = |gap: &ChannelGap| (gap.before - gap.after) / gap.floor.max(f64::MIN_POSITIVE);
@@ -89,7 +90,7 @@ fn most_closed(report: &Report) -> Option<Channel> {
 fn drawings(report: &Report, channel: Channel, maps: &Maps) -> String {
     let floor = report.gap.channels.get(&channel).map(|gap| gap.floor);
     let course = course::drawing(&maps.time, channel, floor);
-    // Odometry is not measured in a place.
+    // Odometry has no place in the picture or on the field.
     if channel == Channel::Motion {
         return course;
     }

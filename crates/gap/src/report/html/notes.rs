@@ -1,4 +1,4 @@
-//! What was compared, and how to read the page.
+//! Notes on what was compared and how to read the page.
 
 use super::text::{cell, table};
 use crate::{

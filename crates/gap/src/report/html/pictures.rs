@@ -1,18 +1,19 @@
-//! The pictures, as recorded and as drawn, inside the page.
+//! Recorded and drawn pictures, embedded in the page.
 
 use image::{ExtendedColorType, GrayImage, ImageEncoder, Rgb, RgbImage, codecs::jpeg::JpegEncoder};
 
 use super::text::escape;
 use crate::{measurement::quantity::Channel, report::data::Report, report::pictures::Pictures};
 
-/// Of pictures in the page.
+/// JPEG quality of pictures in the page.
 const JPEG_QUALITY: u8 = 88;
-/// Differences are shown this many times as large.
+/// Factor by which differences on the field are amplified.
 const AMPLIFIED: u8 = 4;
-/// And by this, where nothing is compared.
+/// Factor of differences where nothing is compared.
 const FAINT: u8 = 1;
 
-/// As recorded, before, after; and what differs. Where nothing was added to the model, before and after are one.
+/// Returns the section of pictures: as recorded, before, after, and their differences. Before and after are a single picture
+/// if the model was not extended.
 pub(super) fn section(pictures: &Pictures, report: &Report) -> String {
     let Pictures { measured, before, after, field } = pictures;
     let difference = |drawn: &RgbImage, when: &str| {
@@ -57,7 +58,7 @@ fn figure(picture: &RgbImage, caption: &str) -> String {
     format!("<figure>{shown}<figcaption>{caption}</figcaption></figure>")
 }
 
-/// Amplified on the field; no pixels where the pictures differ in size.
+/// Returns the difference of two pictures, amplified on the field; an empty picture if their sizes differ.
 fn difference(measured: &RgbImage, drawn: &RgbImage, field: &GrayImage) -> RgbImage {
     if measured.dimensions() != drawn.dimensions() || measured.dimensions() != field.dimensions() {
         return RgbImage::new(0, 0);
@@ -69,7 +70,7 @@ fn difference(measured: &RgbImage, drawn: &RgbImage, field: &GrayImage) -> RgbIm
     })
 }
 
-/// None for a picture without pixels, or one too large for JPEG.
+/// Encodes a picture as a data URI. None for a picture without pixels, or one too large for JPEG.
 fn data_uri(picture: &RgbImage) -> Option<String> {
     if picture.width() == 0 || picture.height() == 0 {
         return None;
@@ -82,7 +83,7 @@ fn data_uri(picture: &RgbImage) -> Option<String> {
     Some(format!("data:image/jpeg;base64,{}", base64(&bytes)))
 }
 
-/// RFC 4648, section 4.
+/// Encodes bytes in Base64 (RFC 4648, section 4).
 fn base64(bytes: &[u8]) -> String {
     const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
@@ -103,7 +104,7 @@ mod tests {
 
     use super::*;
 
-    /// Section 10 of RFC 4648.
+    /// Test vectors from RFC 4648, section 10.
     #[test]
     fn base64_is_that_of_its_standard() {
         let cases = [

@@ -43,7 +43,7 @@ fn unobservable(id: &str) -> Unobservable {
     Unobservable { id: id.to_owned(), cause: UnobservableCause::CameraAtRest }
 }
 
-/// Darker towards the corners before, nothing after; a hole in the middle.
+/// Returns a map that is darker towards the corners before and flat after, with a hole in the middle.
 fn map(columns: usize, rows: usize, extent: [f64; 4]) -> Map {
     let value = |index: usize, size: f64| {
         let at = |index: usize, count: usize| 2.0 * (index as f64 + 0.5) / count as f64 - 1.0;
@@ -102,14 +102,14 @@ fn pictures() -> Pictures {
     }
 }
 
-/// The page without the pictures' bytes, in which anything may be.
+/// Returns the page without the pictures' bytes, which may contain any text.
 fn without_pictures(page: &str) -> String {
     let mut parts = page.split("base64,");
     let first = parts.next().unwrap_or_default().to_owned();
     first + &parts.filter_map(|part| part.split_once('"')).map(|(_, rest)| rest).collect::<String>()
 }
 
-/// Every tag that is opened is closed, in order.
+/// Asserts that every opened tag is closed, in order.
 fn assert_balanced(page: &str) {
     let mut open: Vec<&str> = Vec::new();
     for tag in page.split('<').skip(1) {
@@ -124,7 +124,7 @@ fn assert_balanced(page: &str) {
     assert!(open.is_empty(), "{open:?} is not closed");
 }
 
-/// A report in which nothing could be measured.
+/// Returns a report in which nothing could be measured.
 fn hollow() -> Report {
     let empty = Map { columns: 0, rows: 0, extent: [f64::NAN; 4], before: Vec::new(), after: Vec::new() };
     let course =

@@ -1,6 +1,6 @@
 //! Text in HTML.
 
-/// Text that stays text, between tags and in attributes.
+/// Escapes text for use between tags and in attributes.
 pub(super) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -16,14 +16,15 @@ pub(super) fn escape(text: &str) -> String {
     escaped
 }
 
-/// With a capital letter.
+/// Returns a text with a capital letter.
 pub(super) fn capital(text: &str) -> String {
     let mut letters = text.chars();
     let first: String = letters.next().map(|letter| letter.to_uppercase().collect()).unwrap_or_default();
     first + letters.as_str()
 }
 
-/// A table with a row of headings; those that start with `>` are above numbers. Headings are text, rows are HTML.
+/// Returns a table with a row of headings. Headings are plain text, and those that start with `>` are above numbers; rows
+/// are HTML.
 pub(super) fn table(headings: &[&str], rows: &[String]) -> String {
     let heading = |text: &&str| match text.strip_prefix('>') {
         Some(text) => format!("<th class=\"n\" scope=\"col\">{}</th>", escape(text)),
@@ -36,17 +37,17 @@ pub(super) fn table(headings: &[&str], rows: &[String]) -> String {
     )
 }
 
-/// A cell of text.
+/// Returns a table cell with text.
 pub(super) fn cell(text: &str) -> String {
     format!("<td>{}</td>", escape(text))
 }
 
-/// A cell with a number.
+/// Returns a table cell with a number.
 pub(super) fn number(text: &str) -> String {
     format!("<td class=\"n\">{}</td>", escape(text))
 }
 
-/// An effect's name above its id.
+/// Returns a table cell with an effect's name above its id.
 pub(super) fn effect_cell(name: &str, id: &str) -> String {
     format!("<td>{}<br/><code>{}</code></td>", escape(&capital(name)), escape(id))
 }
