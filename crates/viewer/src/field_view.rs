@@ -1,5 +1,5 @@
-//! The field from above, to draw on and to drag things over: +x to the right, +y up, in metres. The wheel zooms, the
-//! secondary button moves the view, a double click on the carpet shows all of it again.
+//! Interactive view of the field from above: +x to the right, +y up, in metres. The wheel zooms, the secondary button moves
+//! the view, and a double click on the carpet resets it.
 
 use eframe::egui::{
     Align2, Color32, CursorIcon, FontId, Painter, PointerButton, Pos2, Rect, Response, Role, Sense, Shape,
@@ -13,19 +13,19 @@ use reality_sim_core::{
 
 use crate::colors;
 
-/// Poses farther apart than this are not joined, metres: the robot was carried, or the filter jumped.
+/// Longest step of a path that is drawn, metres: after a longer one the robot was carried, or the filter jumped.
 const MAX_PATH_STEP_M: f64 = 0.5;
-/// Views narrower than this, points, have no room for words beside the scale.
+/// Least width, points, of views with room for a hint beside the scale.
 const ROOM_FOR_HINT: f32 = 430.0;
-/// The view can be enlarged so many times.
+/// Largest zoom factor.
 const MAX_ZOOM: f32 = 40.0;
 
-/// Which part of the field is looked at.
+/// State of the view: the visible part of the field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FieldView {
     zoom: f32,
     middle_in_world: DVec2,
-    /// Shown around the carpet, metres.
+    /// Margin shown around the carpet, metres.
     margin_m: f64,
 }
 
@@ -36,7 +36,7 @@ impl Default for FieldView {
 }
 
 impl FieldView {
-    /// All of the carpet, and so many metres around it.
+    /// Shows the whole carpet with this margin around it, metres.
     pub fn with_margin(margin_m: f64) -> Self {
         Self { margin_m, ..Self::default() }
     }
@@ -68,7 +68,7 @@ impl FieldView {
         canvas
     }
 
-    /// Keeps a place in the middle of an enlarged view.
+    /// Centres an enlarged view on a position.
     pub fn follow(&mut self, place_in_world: DVec2) {
         if self.zoom > 1.0 {
             self.middle_in_world = place_in_world;
@@ -82,7 +82,7 @@ impl FieldView {
         if let Some(pointer) = response.hover_pos() {
             let factor = ui.input(|input| input.zoom_delta() * (input.smooth_scroll_delta().y / 200.0).exp());
             let zoom = (self.zoom * factor).clamp(1.0, MAX_ZOOM);
-            // The place under the pointer stays there.
+            // The position under the pointer stays there.
             let offset = pointer - rect.center();
             self.middle_in_world += to_world(offset, self.zoom) - to_world(offset, zoom);
             self.zoom = zoom;
@@ -97,7 +97,7 @@ impl FieldView {
     }
 }
 
-/// The field as it was drawn.
+/// The field as drawn in one frame.
 pub struct FieldCanvas {
     pub painter: Painter,
     pub rect: Rect,
@@ -107,25 +107,25 @@ pub struct FieldCanvas {
 }
 
 impl FieldCanvas {
-    /// Where a place on the field is on the screen.
+    /// Returns the screen position of a position on the field.
     pub fn at(&self, place_in_world: DVec2) -> Pos2 {
         let offset = (place_in_world - self.middle_in_world) * f64::from(self.px_per_m);
         self.rect.center() + vec2(offset.x as f32, -offset.y as f32)
     }
 
-    /// Which place on the field is there on the screen.
+    /// Returns the position on the field of a screen position.
     pub fn in_world(&self, position: Pos2) -> DVec2 {
         let offset = position - self.rect.center();
         self.middle_in_world
             + DVec2::new(f64::from(offset.x), f64::from(-offset.y)) / f64::from(self.px_per_m)
     }
 
-    /// A length on the field in points of the screen.
+    /// Converts a length on the field to points on the screen.
     pub fn points(&self, length_m: f64) -> f32 {
         length_m as f32 * self.px_per_m
     }
 
-    /// Joins places, of which only every so many are given, but for steps that no robot walks.
+    /// Draws a path through positions, given every n-th frame, with gaps at steps too long for a walking robot.
     pub fn path(&self, places: &[DVec2], every: usize, stroke: impl Into<Stroke>) {
         let stroke = stroke.into();
         let longest_m = MAX_PATH_STEP_M * every as f64;
@@ -135,7 +135,7 @@ impl FieldCanvas {
         }
     }
 
-    /// The outline of the ground in view, see [`crate::footprint::footprint`].
+    /// Draws the outline of the ground in view, see [`crate::footprint::footprint`].
     pub fn footprint(&self, outline: &[DVec2]) {
         if outline.len() >= 3 {
             let points: Vec<Pos2> = outline.iter().map(|&point| self.at(point)).collect();
@@ -144,7 +144,7 @@ impl FieldCanvas {
         }
     }
 
-    /// An arrow at a pose, as long as a tenth of the view, with a dark rim.
+    /// Draws an arrow at a pose, a tenth of the view long, with a dark rim.
     pub fn arrow(&self, pose: Pose2, color: Color32) {
         let length = self.arrow_length();
         let tail = self.at(pose.position_in_world());
@@ -158,7 +158,7 @@ impl FieldCanvas {
         }
     }
 
-    /// What can be done here, in a few words along the lower edge.
+    /// Writes a hint about the controls along the lower edge.
     pub fn hint(&self, text: &str) {
         if self.rect.width() < ROOM_FOR_HINT {
             return;
@@ -168,7 +168,7 @@ impl FieldCanvas {
         self.painter.text(corner, Align2::RIGHT_BOTTOM, text, FontId::proportional(11.0), color);
     }
 
-    /// Where the tip of a pose's arrow is.
+    /// Returns the screen position of the tip of a pose's arrow.
     pub fn arrow_tip(&self, pose: Pose2) -> Pos2 {
         let direction = vec2(pose.yaw_rad.cos() as f32, -pose.yaw_rad.sin() as f32);
         self.at(pose.position_in_world()) + self.arrow_length() * direction
@@ -184,7 +184,7 @@ impl FieldCanvas {
         self.painter.rect_filled(carpet, 0.0, colors::CARPET);
     }
 
-    /// The field's lines, as wide as they are, in a colour.
+    /// Draws the field's lines at their true width, in one colour.
     pub fn draw_lines(&self, field: &FieldDimensions, color: Color32) {
         let stroke = Stroke::new(self.points(field.line_width_m).max(1.0), color);
         for curve in field.curves() {
@@ -212,7 +212,7 @@ impl FieldCanvas {
         }
     }
 
-    /// A round length, a quarter of the view at most.
+    /// Draws a scale bar of a round length, at most a quarter of the view.
     pub fn draw_scale(&self) {
         const LENGTHS: [(f64, &str); 6] =
             [(5.0, "5 m"), (1.0, "1 m"), (0.5, "50 cm"), (0.2, "20 cm"), (0.1, "10 cm"), (0.02, "2 cm")];

@@ -1,20 +1,20 @@
-//! The ground that a camera sees, from above.
+//! Footprint of a camera: the visible ground, seen from above.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec2;
 use reality_sim_core::{camera::Camera, pose::CameraPose};
 
-/// Ground farther away than this is cut off, metres: a pixel there shows more than a robot's length.
+/// Distance at which the ground is cut off, metres: beyond it, a pixel covers more than a robot's length.
 const FAR_M: f64 = 4.0;
-/// Directions that are looked at, all around.
+/// Number of directions that are sampled, all around.
 const DIRECTIONS: u32 = 120;
-/// Places that are looked at in each direction.
+/// Number of positions that are sampled in each direction.
 const PLACES: u32 = 40;
-/// Halvings of the step between places on the way to where the picture ends: a millimetre is left.
+/// Number of bisections of the step between positions at the picture's edge: they leave a millimetre.
 const HALVINGS: u32 = 7;
 
-/// The footprint of a pose, kept for as long as the pose stays.
+/// Footprint of a pose, cached while the pose stays the same.
 #[derive(Debug, Clone, Default)]
 pub struct Footprint {
     of: Option<CameraPose>,
@@ -22,7 +22,7 @@ pub struct Footprint {
 }
 
 impl Footprint {
-    /// As [`footprint`]. All calls are for the same camera.
+    /// Returns the outline, as [`footprint`]. All calls must be for the same camera.
     pub fn outline(&mut self, camera: &Camera, pose: CameraPose) -> &[DVec2] {
         if self.of != Some(pose) {
             (self.of, self.outline) = (Some(pose), footprint(camera, pose));
@@ -31,15 +31,15 @@ impl Footprint {
     }
 }
 
-/// The outline of the ground in a picture, world axes, metres, cut off at some distance: the far side counter-clockwise,
-/// then the near side back. Empty where no ground is seen.
+/// Returns the outline of the visible ground in the world frame, metres, cut off at some distance: the far side
+/// counter-clockwise, then the near side back. Empty if no ground is visible.
 fn footprint(camera: &Camera, pose: CameraPose) -> Vec<DVec2> {
     let place = pose.planar().position_in_world();
     let seen = |direction: DVec2, distance_m: f64| {
         let point_in_world = (place + distance_m * direction).extend(0.0);
         camera.project(pose.camera_from_world(point_in_world)).is_ok()
     };
-    // From behind the robot around to behind it: what is seen lies in front.
+    // Directions start and end behind the robot, because the visible ground lies in front.
     let mut strips = Vec::new();
     for number in 0..DIRECTIONS {
         let angle_rad = pose.yaw_rad - PI + TAU * f64::from(number) / f64::from(DIRECTIONS);
@@ -50,13 +50,13 @@ fn footprint(camera: &Camera, pose: CameraPose) -> Vec<DVec2> {
     }
     let far = strips.iter().map(|[_, far]| *far);
     if strips.len() == DIRECTIONS as usize && seen(DVec2::X, 0.0) {
-        // The robot itself stands on it: there is no near side.
+        // The robot's own position is visible: there is no near side.
         return far.collect();
     }
     far.chain(strips.iter().rev().map(|[near, _]| *near)).collect()
 }
 
-/// From where to where something is seen along a line, metres.
+/// Returns the interval of distances at which something is visible along a line, metres.
 fn strip(seen: impl Fn(f64) -> bool) -> Option<[f64; 2]> {
     let at = |place: u32| FAR_M * f64::from(place) / f64::from(PLACES);
     let first = (0..=PLACES).find(|&place| seen(at(place)))?;
@@ -66,7 +66,7 @@ fn strip(seen: impl Fn(f64) -> bool) -> Option<[f64; 2]> {
     Some([near, far])
 }
 
-/// Where something is just seen, between where it is and where it is not.
+/// Finds the edge of visibility between an inner and an outer distance by bisection.
 fn edge(seen: impl Fn(f64) -> bool, inside_m: f64, outside_m: f64) -> f64 {
     let (mut inside_m, mut outside_m) = (inside_m, outside_m);
     for _ in 0..HALVINGS {
@@ -93,7 +93,7 @@ mod tests {
         CameraPose::new(Pose2::new(1.0, -0.5, 0.8), 0.5, pitch_rad, 0.0)
     }
 
-    /// A pinhole camera that looks straight down sees a rectangle: what it measures is known from its angles alone.
+    /// A pinhole camera that looks straight down sees a rectangle, whose size follows from its angles.
     #[test]
     fn from_above_the_footprint_is_the_pictures_rectangle_on_the_ground() {
         let outline = footprint(&camera(), pose(std::f64::consts::FRAC_PI_2));

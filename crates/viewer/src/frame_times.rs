@@ -1,16 +1,16 @@
-//! How long the window's own thread takes for a frame.
+//! Times that the window's own thread takes for a frame.
 
 use std::collections::VecDeque;
 
-/// Frames remembered.
+/// Number of frames kept.
 const KEPT: usize = 300;
 
-/// The times of the last frames.
+/// Times of the last frames.
 #[derive(Debug, Default)]
 pub struct FrameTimes(VecDeque<f32>);
 
 impl FrameTimes {
-    /// Adds a frame, milliseconds.
+    /// Adds the time of a frame, milliseconds.
     pub fn add(&mut self, milliseconds: f32) {
         if self.0.len() == KEPT {
             self.0.pop_front();
@@ -18,12 +18,12 @@ impl FrameTimes {
         self.0.push_back(milliseconds);
     }
 
-    /// The last frame, milliseconds.
+    /// Returns the time of the last frame, milliseconds.
     pub fn last(&self) -> Option<f32> {
         self.0.back().copied()
     }
 
-    /// Median, 95 % and slowest in words.
+    /// Returns the median, the 95 % quantile and the maximum in words.
     pub fn summary(&self) -> String {
         let mut sorted: Vec<f32> = self.0.iter().copied().collect();
         sorted.sort_by(f32::total_cmp);

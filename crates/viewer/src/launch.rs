@@ -1,4 +1,4 @@
-//! Opening the window, or saying what is missing.
+//! Opening the window, or reporting why it cannot be opened.
 
 use std::{
     any::Any,
@@ -13,21 +13,21 @@ use eframe::{egui, egui_wgpu::WgpuSetup};
 
 use crate::{ViewerApp, ViewerOptions};
 
-/// Why there is no window.
+/// Error of opening the window.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewerError {
-    /// No screen.
+    /// There is no display.
     #[error(
         "viewer: there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set): start it from a desktop, or under xvfb-run"
     )]
     NoDisplay,
-    /// Nothing that draws.
+    /// No graphics driver can draw the window.
     #[error(
         "viewer: no graphics driver can draw the window ({0}): install a Vulkan driver (on Debian and Ubuntu: apt-get install mesa-vulkan-drivers)"
     )]
     NoGraphics(String),
-    /// The display, or what is between it and us.
+    /// The display, or the connection to it, failed.
     #[error(
         "viewer: the window could not be opened ({0}): check that DISPLAY or WAYLAND_DISPLAY names a display that can be reached, and that the libraries that windows need are there (on Debian and Ubuntu: bash scripts/setup)"
     )]
@@ -46,7 +46,8 @@ pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
         .with_min_inner_size([640.0, 420.0]);
     let mut native = eframe::NativeOptions { viewport, ..Default::default() };
     if let WgpuSetup::CreateNew(setup) = &mut native.wgpu_options.wgpu_setup {
-        // OpenGL is built in only where another package of the same build asks for it: the window is the same everywhere.
+        // OpenGL is only compiled in if another package of the same build asks for it; without it, the window is the same
+        // everywhere.
         setup.instance_descriptor.backends.remove(wgpu::Backends::GL);
     }
     let opened = while_opening(|is_open| {
@@ -57,7 +58,7 @@ pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
         eframe::run_native("Reality Sim", native, Box::new(app))
     })?;
     opened.map_err(|error| match error {
-        // The list of what each kind of driver says, empty where there is none.
+        // The message lists the error of each kind of driver; the list is empty if there is none.
         eframe::Error::Wgpu(error) => ViewerError::NoGraphics(error.to_string().replace(": {}", "")),
         error => ViewerError::NoWindow(reason(&error.to_string())),
     })
@@ -69,8 +70,8 @@ fn has_display() -> bool {
         .any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()))
 }
 
-/// Runs what opens the window. Libraries that are missing make winit panic: until the window is open that is an error,
-/// and nothing of it goes to standard error. A panic afterwards is one.
+/// Runs the function that opens the window. Missing libraries make winit panic: until the window is open, a panic is
+/// returned as an error, and nothing of it goes to standard error. A later panic stays a panic.
 fn while_opening<T>(open: impl FnOnce(&dyn Fn()) -> T) -> Result<T, ViewerError> {
     let is_open = Arc::new(AtomicBool::new(false));
     let (loud, is_loud) = (Arc::new(panic::take_hook()), is_open.clone());
@@ -89,14 +90,14 @@ fn while_opening<T>(open: impl FnOnce(&dyn Fn()) -> T) -> Result<T, ViewerError>
     })
 }
 
-/// What a panic says.
+/// Returns the message of a panic.
 fn words(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str);
     let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
     text.unwrap_or("for an unknown reason").trim_end_matches('.').to_owned()
 }
 
-/// winit's message without the place in winit's code that it begins with.
+/// Returns winit's message without the source location at its beginning.
 fn reason(message: &str) -> String {
     let place = message.split_once("os error at ").and_then(|(_, rest)| rest.split_once(": "));
     place.map_or(message, |(_, reason)| reason).to_owned()

@@ -1,5 +1,5 @@
-//! Reality Sim in a window: the particle filter at work on a recording, a robot driven through recorded pictures, and where a
-//! camera's simulation and its pictures disagree.
+//! Window of Reality Sim: the particle filter running on a recording, a robot driven through recorded pictures, and the
+//! differences between a camera's simulation and its pictures.
 //!
 //! | type | what |
 //! |---|---|
@@ -9,9 +9,9 @@
 //! | [`ViewerApp`] | what is in the window, for tests and pictures without one |
 //! | [`ViewerError`] | why there is no window |
 //!
-//! Nothing that takes longer than a frame runs in the window's thread: recordings are opened, poses found and pictures drawn
-//! by threads of their own, which send messages and ask for a repaint. While nothing happens nothing is drawn. Units and
-//! frames are those of [`reality_sim_core::pose`].
+//! Nothing that takes longer than a frame runs in the window's thread: separate threads open recordings, find poses and draw
+//! pictures. They send messages and request a repaint. While nothing happens, nothing is drawn. Units and frames are those
+//! of [`reality_sim_core::pose`].
 //!
 //! ```no_run
 //! use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! The window that asks what to open: a path to type, the system's own dialogs, and what was open before.
+//! Window for choosing what to open: a path to type, the system's file dialogs, and recent paths.
 
 use std::path::{Path, PathBuf};
 
@@ -6,45 +6,45 @@ use eframe::egui::{self, Key, Ui};
 
 use crate::background::{Outcome, Task};
 
-/// What the path asked for is wanted for.
+/// Purpose of the chosen path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Purpose {
-    /// To look at.
+    /// Opening it in a panel.
     #[default]
     Open,
-    /// Its pictures are the truth that Drive compares with.
+    /// Using its pictures as the truth that Drive compares with.
     Compare,
 }
 
-/// The window.
+/// State of the window.
 #[derive(Default)]
 pub struct OpenWindow {
     is_open: bool,
-    /// Opened in this frame: what is typed next goes to the path.
+    /// Whether the window was opened in this frame, so that the path's field takes the focus.
     wants_focus: bool,
     purpose: Purpose,
     path: String,
-    /// A dialog of the system, and what its answer is wanted for.
+    /// System dialog, and the purpose of its answer.
     dialog: Option<(Purpose, Task<Option<PathBuf>>)>,
-    /// The last dialog gave no path: it was cancelled, or never came up, which nobody can tell apart.
+    /// Whether the last dialog gave no path: it was cancelled or never appeared, which cannot be told apart.
     dialog_gave_nothing: bool,
 }
 
-/// A path that was chosen.
+/// Chosen path with its purpose.
 pub struct Chosen {
     pub purpose: Purpose,
     pub path: PathBuf,
 }
 
 impl OpenWindow {
-    /// Asks for a path.
+    /// Opens the window to ask for a path.
     pub fn ask(&mut self, purpose: Purpose) {
         (self.is_open, self.wants_focus, self.purpose) = (true, true, purpose);
     }
 
-    /// Shows the window while it is open.
+    /// Shows the window while it is open; returns the chosen path.
     pub fn ui(&mut self, ui: &Ui, recent: &[PathBuf], demonstration: Option<&Path>) -> Option<Chosen> {
-        // The answer counts even where this window was closed meanwhile.
+        // The answer counts even if this window has been closed meanwhile.
         if let Some(chosen) = self.take_from_dialog() {
             self.is_open = false;
             return Some(chosen);
@@ -133,7 +133,7 @@ enum Kind {
     File,
 }
 
-/// Opens a dialog of the system: made here, since some systems want that in the window's thread, waited for elsewhere.
+/// Opens a system dialog: created here, since some systems require the window's thread, and awaited in another thread.
 fn dialog(ctx: &egui::Context, kind: Kind) -> Task<Option<PathBuf>> {
     let dialog = rfd::AsyncFileDialog::new().set_title("Open in Reality Sim");
     let path = |file: Option<rfd::FileHandle>| file.map(|file| file.path().to_path_buf());
@@ -155,7 +155,7 @@ mod tests {
 
     use super::*;
 
-    /// An open window whose dialog answers.
+    /// Returns an open window whose dialog answers.
     fn after_dialog(answer: Option<PathBuf>) -> Harness<'static, (OpenWindow, Option<PathBuf>)> {
         let mut window = OpenWindow::default();
         window.ask(Purpose::Open);

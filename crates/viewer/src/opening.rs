@@ -1,4 +1,4 @@
-//! What a path leads to: a recording, a database, or a report of the gap.
+//! Opening of paths: a path leads to a recording, a database, or a report of the gap.
 
 use std::{
     path::{Path, PathBuf},
@@ -10,10 +10,10 @@ use reality_sim_synthesis::Archive;
 
 use crate::gap::Loaded;
 
-/// Bytes spent on decoded pictures of a database.
+/// Memory for decoded pictures of a database, bytes.
 pub const CACHE_BYTES: usize = 512 << 20;
 
-/// Something that was opened.
+/// Opened path.
 pub enum Opened {
     Recording(Arc<Sequence>),
     Database(Arc<Archive>),
@@ -21,7 +21,7 @@ pub enum Opened {
 }
 
 impl Opened {
-    /// What it is, in words.
+    /// Returns its kind in words.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Recording(_) => "a recording",
@@ -31,7 +31,7 @@ impl Opened {
     }
 }
 
-/// Opens a folder as a recording or a report, a file as a database. The error says what is wrong, and what to do.
+/// Opens a folder as a recording or a report, a file as a database. The error names the fault and the remedy.
 pub fn open(path: &Path) -> Result<Opened, String> {
     if is_report(path) {
         Ok(Opened::Report(Box::new(Loaded::read(path)?)))
@@ -44,13 +44,15 @@ pub fn open(path: &Path) -> Result<Opened, String> {
     }
 }
 
-/// Whether a folder is what `reality-sim gap` wrote, whole or not. A recording stays one with reports in its folder.
+/// Whether a folder was written by `reality-sim gap`, complete or not. A recording with reports in its folder remains a
+/// recording.
 fn is_report(folder: &Path) -> bool {
     let has = |name: &str| folder.join(name).exists();
     !has("sequence.toml") && ["report.json", "report.html", "pictures/measured.png"].into_iter().any(has)
 }
 
-/// One name for one thing: from the root on, recordings and reports by their folder.
+/// Returns the canonical path, so that each recording, database or report has one name: absolute, with recordings and
+/// reports named by their folder.
 pub fn whole(path: &Path) -> PathBuf {
     let path = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
     match path.parent() {

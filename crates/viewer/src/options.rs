@@ -1,16 +1,16 @@
-//! What the window is opened with.
+//! Options of the window.
 
 use std::path::PathBuf;
 
 use crate::Device;
 
-/// What the window shows first, and what it may use.
+/// What the window first shows, and what it may use.
 #[derive(Debug, Clone)]
 pub struct ViewerOptions {
-    /// A recording, a database, or a report of the gap.
+    /// Path of a recording, a database, or a report of the gap.
     pub open: PathBuf,
-    /// The recording that ships with the program, where it is found.
+    /// Recording that ships with the program, if it is found.
     pub demonstration: Option<PathBuf>,
-    /// Where filter and pictures can be computed, the usual one first. At least one.
+    /// Devices for the filter and the pictures, the default one first. At least one.
     pub devices: Vec<Device>,
 }

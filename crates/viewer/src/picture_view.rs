@@ -1,4 +1,5 @@
-//! Camera pictures on the screen: uploaded once, drawn as large as fits, with places in them on the screen and back.
+//! Camera pictures on the screen: uploaded once, drawn as large as fits, with conversion between pixels and screen
+//! positions.
 
 use std::sync::Arc;
 
@@ -9,19 +10,19 @@ use eframe::egui::{
 use glam::DVec2;
 use image::{GrayImage, RgbImage};
 
-/// A picture for the screen. Made by the thread that has the picture: converting takes a millisecond.
+/// Converts a picture for the screen. Call it in the thread that has the picture: converting takes a millisecond.
 pub fn color_image(picture: &RgbImage) -> Arc<ColorImage> {
     let size = [picture.width() as usize, picture.height() as usize];
     Arc::new(ColorImage::from_rgb(size, picture.as_raw()))
 }
 
-/// A grey picture for the screen.
+/// Converts a grey picture for the screen.
 pub fn gray_image(picture: &GrayImage) -> Arc<ColorImage> {
     let size = [picture.width() as usize, picture.height() as usize];
     Arc::new(ColorImage::from_gray(size, picture.as_raw()))
 }
 
-/// A picture on the graphics device.
+/// Picture on the graphics device.
 #[derive(Default)]
 pub struct Uploaded {
     texture: Option<TextureHandle>,
@@ -29,7 +30,7 @@ pub struct Uploaded {
 }
 
 impl Uploaded {
-    /// The texture of a picture, uploaded where it is another than last time.
+    /// Returns the texture of a picture, uploading it if it differs from the last one.
     pub fn texture(&mut self, ctx: &Context, picture: &Arc<ColorImage>) -> TextureId {
         let texture = self.texture.get_or_insert_with(|| {
             ctx.load_texture("camera picture", ColorImage::default(), TextureOptions::LINEAR)
@@ -41,25 +42,25 @@ impl Uploaded {
         texture.id()
     }
 
-    /// The picture uploaded last.
+    /// Returns the picture uploaded last.
     pub fn picture(&self) -> Option<&Arc<ColorImage>> {
         self.picture.as_ref()
     }
 }
 
-/// A picture as it was drawn.
+/// A picture as drawn in one frame.
 pub struct PictureCanvas {
     pub painter: Painter,
     pub rect: Rect,
     pub response: Response,
-    /// Points of the screen for a pixel.
+    /// Points on the screen per pixel.
     scale: f32,
 }
 
 const WHOLE: Rect = Rect { min: Pos2::ZERO, max: pos2(1.0, 1.0) };
 
 impl PictureCanvas {
-    /// Room for a picture of `pixels`, as large as fits into `room`, black until something is drawn.
+    /// Allocates space for a picture of `pixels`, as large as fits into `room`, black until something is drawn.
     pub fn allocate(ui: &mut Ui, pixels: [usize; 2], room: Vec2, name: &str) -> Self {
         let pixels = vec2(pixels[0].max(1) as f32, pixels[1].max(1) as f32);
         let scale = (room / pixels).min_elem().max(0.01);
@@ -70,13 +71,13 @@ impl PictureCanvas {
         Self { painter, rect, response, scale }
     }
 
-    /// Fills it with a texture.
+    /// Fills the space with a texture.
     pub fn draw(&self, texture: TextureId, tint: Color32) {
         self.painter.image(texture, self.rect, WHOLE, tint);
     }
 
-    /// One texture left of a line, another right of it, with a handle to drag the line: `share` is 0 at the left edge, 1 at
-    /// the right one.
+    /// Draws one texture left of a line, another right of it, with a handle to drag the line: `share` is 0 at the left edge,
+    /// 1 at the right one.
     pub fn draw_wipe(&self, ui: &Ui, left: TextureId, right: TextureId, share: &mut f32) {
         if let Some(pointer) = self
             .response
@@ -106,14 +107,14 @@ impl PictureCanvas {
         );
     }
 
-    /// Says something in the middle of it, on black.
+    /// Shows text in the middle, on black.
     pub fn words(&self, text: &str) {
         self.painter.rect_filled(self.rect, 0.0, Color32::from_black_alpha(190));
         let font = FontId::proportional(15.0);
         self.painter.text(self.rect.center(), Align2::CENTER_CENTER, text, font, Color32::from_gray(220));
     }
 
-    /// Where a place in the picture is on the screen. A pixel's middle has integer coordinates.
+    /// Returns the screen position of a position in the picture. A pixel's centre has integer coordinates.
     pub fn at(&self, pixel: DVec2) -> Pos2 {
         self.rect.min + self.scale * (vec2(pixel.x as f32, pixel.y as f32) + Vec2::splat(0.5))
     }

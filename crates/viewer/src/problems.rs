@@ -1,10 +1,10 @@
-//! What went wrong, in the window, in words, until it has been read.
+//! Messages about problems, shown in the window until they are dismissed.
 
 use eframe::egui::{self, RichText, Ui};
 
-/// Messages shown at a time: those that come first tell the cause.
+/// Number of messages shown at a time: the first ones name the cause.
 const SHOWN: usize = 4;
-/// Messages kept until those before them are dismissed.
+/// Number of messages kept until earlier ones are dismissed.
 const KEPT: usize = 100;
 
 /// Messages that have not been dismissed.
@@ -12,7 +12,7 @@ const KEPT: usize = 100;
 pub struct Problems(Vec<String>);
 
 impl Problems {
-    /// Adds a message, once.
+    /// Adds a message, unless it is already there.
     pub fn add(&mut self, message: impl Into<String>) {
         let message = message.into();
         if self.0.len() < KEPT && !self.0.contains(&message) {

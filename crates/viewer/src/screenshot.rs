@@ -1,4 +1,4 @@
-//! A picture of the window, as a PNG in the current folder.
+//! Screenshots of the window, as PNG files in the current folder.
 
 use std::{
     fs::File,
@@ -10,20 +10,20 @@ use std::{
 use eframe::egui::{Color32, ColorImage, Context};
 use image::RgbaImage;
 
-/// A picture that was asked for.
+/// State of the requested screenshot.
 #[derive(Default)]
 pub struct Screenshot {
     answers: Vec<mpsc::Receiver<Result<PathBuf, String>>>,
 }
 
 impl Screenshot {
-    /// Asks for one: the next frame is taken, and written by a thread of its own.
+    /// Requests a screenshot: the next frame is captured and written by its own thread.
     pub fn take(&mut self, ctx: &Context) {
         let (sender, receiver) = mpsc::channel();
         let repaint = ctx.clone();
         ctx.request_screenshot(move |picture| {
             std::thread::spawn(move || {
-                // Nobody listens any more once the window is closed.
+                // The receiver is gone once the window is closed.
                 let _ = sender.send(save_here(&picture));
                 repaint.request_repaint();
             });
@@ -31,7 +31,7 @@ impl Screenshot {
         self.answers.push(receiver);
     }
 
-    /// Where one went, once.
+    /// Returns the path of a written screenshot, once.
     pub fn poll(&mut self) -> Option<Result<PathBuf, String>> {
         let answers = self.answers.iter().map(mpsc::Receiver::try_recv).enumerate();
         let (place, answer) =
@@ -46,7 +46,7 @@ fn save_here(picture: &ColorImage) -> Result<PathBuf, String> {
     save(picture, &folder)
 }
 
-/// Writes a picture to a folder, under a name that no file has.
+/// Writes a picture to a folder, under a new file name.
 fn save(picture: &ColorImage, folder: &Path) -> Result<PathBuf, String> {
     let bytes = picture.pixels.iter().flat_map(Color32::to_array).collect();
     let [width, height] = picture.size.map(|pixels| pixels as u32);
@@ -61,14 +61,14 @@ fn save(picture: &ColorImage, folder: &Path) -> Result<PathBuf, String> {
     match reality_sim_core::sequence::save_image(&path, &image) {
         Ok(()) => Ok(path),
         Err(error) => {
-            // The name is given back; that something is wrong here is said already.
+            // The reserved name is released; the error has been reported already.
             let _ = std::fs::remove_file(&path);
             Err(error.to_string())
         }
     }
 }
 
-/// The first name of a row that no file has yet. An empty file is there afterwards: two pictures never get one name.
+/// Reserves the first free name in a sequence by creating an empty file, so that two screenshots never share a name.
 fn free_name(folder: &Path) -> io::Result<PathBuf> {
     for number in 1_u32.. {
         let path = folder.join(format!("reality-sim-{number}.png"));
@@ -88,7 +88,7 @@ mod tests {
 
     use super::*;
 
-    /// Three pixels in a row.
+    /// Returns three pixels in a row.
     fn picture() -> ColorImage {
         ColorImage::new([3, 1], vec![Color32::RED, Color32::from_rgb(1, 2, 3), Color32::WHITE])
     }
@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn a_folder_that_cannot_be_written_to_is_named_with_a_way_out() {
         let folder = tempdir().unwrap();
-        // Not a folder without permissions: root may write to those.
+        // A file in place of the folder, not a folder without permissions: root may write to those.
         let no_folder = folder.path().join("a-file");
         fs::write(&no_folder, "").unwrap();
         let reason = save(&picture(), &no_folder).unwrap_err();

@@ -1,4 +1,4 @@
-//! What is remembered from one start to the next.
+//! Settings that are kept from one start to the next.
 
 use std::path::{Path, PathBuf};
 
@@ -7,15 +7,15 @@ use serde::de::DeserializeOwned;
 
 use crate::{drive::DriveSettings, gap::GapSettings, walk::WalkSettings};
 
-/// Files remembered.
+/// Number of recent paths kept.
 const RECENT: usize = 8;
 
-/// Everything that a person sets. Each part is stored under its own name: where one cannot be read, since another version
-/// wrote it, the others can.
+/// All settings of the user. Each part is stored under its own name, so that the others can still be read if another version
+/// wrote one differently.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings {
     pub theme: ThemePreference,
-    /// Recordings, databases and reports, the last opened first.
+    /// Paths of recordings, databases and reports, the most recent first.
     pub recent: Vec<PathBuf>,
     pub walk: WalkSettings,
     pub drive: DriveSettings,
@@ -23,7 +23,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Those of the last time, and the defaults of what there was not.
+    /// Loads the stored settings, with defaults for what is missing.
     pub fn load(storage: Option<&dyn Storage>) -> Self {
         Self {
             theme: part(storage, "theme"),
@@ -34,7 +34,7 @@ impl Settings {
         }
     }
 
-    /// For the next time.
+    /// Stores the settings for the next start.
     pub fn store(&self, storage: &mut dyn Storage) {
         eframe::set_value(storage, "theme", &self.theme);
         eframe::set_value(storage, "recent", &self.recent);
@@ -43,7 +43,7 @@ impl Settings {
         eframe::set_value(storage, "gap", &self.gap);
     }
 
-    /// Puts a path to the front of the recent ones. One that is no text cannot be stored: it is left out.
+    /// Moves a path to the front of the recent ones. A path that is not valid UTF-8 cannot be stored and is ignored.
     pub fn remember(&mut self, path: &Path) {
         if path.to_str().is_none() {
             return;

@@ -1,8 +1,8 @@
-//! The keys: one table for what they do and for the list of them.
+//! Keyboard shortcuts: one table for their actions and for the list shown.
 
 use eframe::egui::{self, Event, InputState, Key, KeyboardShortcut, Modifiers, Ui};
 
-/// What a key does.
+/// Action of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Action {
     OpenPath,
@@ -32,7 +32,7 @@ pub enum Action {
     EffectBelow,
 }
 
-/// Where a key is heard.
+/// Part of the window in which a key acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
     Everywhere,
@@ -49,7 +49,7 @@ const fn command(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::COMMAND, key)
 }
 
-/// All of them, in the order in which they are listed.
+/// All shortcuts, in the order of the list.
 const TABLE: &[(Place, KeyboardShortcut, Action, &str)] = &[
     (Place::Everywhere, command(Key::O), Action::OpenPath, "open a recording, a database or a report"),
     (Place::Everywhere, command(Key::Num1), Action::Walk, "show Walk"),
@@ -81,13 +81,14 @@ const TABLE: &[(Place, KeyboardShortcut, Action, &str)] = &[
 ];
 
 impl Action {
-    /// Whether it happens again and again while its key is held down.
+    /// Whether the action repeats while its key is held down.
     const fn repeats(self) -> bool {
         matches!(self, Self::StepBack | Self::StepForward | Self::ChannelBefore | Self::ChannelAfter)
     }
 }
 
-/// What was pressed since the last frame in a place. While someone types, only keys with Ctrl (or Command) count.
+/// Returns the actions pressed since the last frame in a place. While a text field has the focus, only keys with Ctrl (or
+/// Command) count.
 pub fn pressed(ui: &Ui, place: Place) -> Vec<Action> {
     let types = ui.ctx().text_edit_focused();
     let here = TABLE.iter().filter(|(heard, ..)| *heard == place);
@@ -100,7 +101,7 @@ pub fn pressed(ui: &Ui, place: Place) -> Vec<Action> {
     })
 }
 
-/// Takes a key out of the input, for nothing else to hear it. Shift is not looked at: on many keyboards `?` needs it.
+/// Removes a key from the input, so that nothing else handles it. Shift is ignored: on many keyboards `?` needs it.
 fn consume(input: &mut InputState, shortcut: &KeyboardShortcut, repeats: bool) -> bool {
     let mut is_pressed = false;
     input.events.retain(|event| match event {
@@ -115,7 +116,7 @@ fn consume(input: &mut InputState, shortcut: &KeyboardShortcut, repeats: bool) -
     is_pressed
 }
 
-/// What is held down in a place.
+/// Returns the actions whose keys are held down in a place.
 pub fn held(ui: &Ui, place: Place) -> Vec<Action> {
     if ui.ctx().text_edit_focused() {
         return Vec::new();
@@ -129,13 +130,13 @@ pub fn held(ui: &Ui, place: Place) -> Vec<Action> {
     })
 }
 
-/// The key of an action, for buttons' hover texts.
+/// Returns the key of an action, for tooltips.
 pub fn name(ui: &Ui, action: Action) -> String {
     let found = TABLE.iter().find(|(_, _, other, _)| *other == action);
     found.map_or_else(String::new, |(_, shortcut, ..)| written(ui, shortcut))
 }
 
-/// As it stands on the key.
+/// Returns a shortcut in the platform's notation.
 fn written(ui: &Ui, shortcut: &KeyboardShortcut) -> String {
     match shortcut.logical_key {
         Key::Questionmark => "?".to_owned(),
@@ -143,7 +144,7 @@ fn written(ui: &Ui, shortcut: &KeyboardShortcut) -> String {
     }
 }
 
-/// The list of all keys.
+/// Shows the list of all keys.
 pub fn window(ui: &Ui, is_open: &mut bool) {
     if *is_open && ui.input(|input| input.key_pressed(Key::Escape)) {
         *is_open = false;

@@ -1,4 +1,4 @@
-//! The bar along the top: panels, what to open, light or dark, a screenshot, help.
+//! Toolbar along the top: panels, opening, light or dark theme, screenshot, help.
 
 use std::path::Path;
 
@@ -15,18 +15,18 @@ pub enum PanelKind {
     Gap,
 }
 
-/// What the bar shows.
+/// Data shown in the toolbar.
 pub struct Toolbar<'a> {
-    /// The panels that have something to show.
+    /// Panels that have something to show.
     pub panels: &'a [PanelKind],
     pub shown: PanelKind,
-    /// What the panel shown shows.
+    /// Path shown by the current panel.
     pub open: Option<&'a Path>,
     pub theme: ThemePreference,
 }
 
 impl Toolbar<'_> {
-    /// Shows it; what was clicked comes back as if its key had been pressed.
+    /// Shows the toolbar; a click returns the same action as its key.
     pub fn ui(&self, ui: &mut Ui) -> Option<Action> {
         egui::Panel::top("toolbar").show(ui, |ui| ui.horizontal(|ui| self.content(ui)).inner).inner
     }

@@ -40,7 +40,7 @@ const NEIGHBOURS_MEAN: &str = "The natural neighbours with their weights by wher
 /// Object grabbed with the mouse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Grip {
-    /// The arrow's tail, this far from where it was caught, metres.
+    /// The arrow's tail, at this offset from the pointer, metres.
     Move(DVec2),
     /// The arrow's tip.
     Turn,

@@ -70,7 +70,7 @@ pub struct Around {
     pub nearest: Option<Neighbour>,
     /// The natural neighbours with their weights.
     pub natural: Vec<Neighbour>,
-    /// What they are found in, where it was wished for.
+    /// Edges of the triangulation, if they were requested.
     pub edges: Vec<Edges>,
     /// The nearest true picture.
     pub probe: Option<NearProbe>,

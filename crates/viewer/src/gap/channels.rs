@@ -1,4 +1,4 @@
-//! The gap of each comparison: before, after, and what noise alone makes.
+//! The gap of each channel: before, after, and the noise floor.
 
 use eframe::egui::{Button, Rect, Role, Sense, Stroke, Ui, WidgetInfo, vec2};
 use reality_sim_gap::{
@@ -11,10 +11,10 @@ use reality_sim_gap::{
 
 use super::{side::Side, table::Table};
 
-/// Narrower tables, points, have no room for bars.
+/// Least width, points, of tables with room for bars.
 const ROOM_FOR_BARS: f32 = 380.0;
 
-/// Draws them; a click on a name shows where its residuals are.
+/// Draws the table; a click on a name shows where the channel's residuals are.
 pub fn ui(ui: &mut Ui, gap: &Gap, chosen: &mut Option<Channel>) {
     let wide: &[_] = &[("channel", 0.24), ("before", 0.15), ("after", 0.15), ("floor", 0.24), ("", 0.22)];
     let narrow: &[_] = &[("channel", 0.34), ("before", 0.2), ("after", 0.2), ("floor", 0.26)];
@@ -38,7 +38,7 @@ pub fn ui(ui: &mut Ui, gap: &Gap, chosen: &mut Option<Channel>) {
     }
 }
 
-/// Before above after, and the floor as a line across both.
+/// Draws the bar before above the bar after, and the noise floor as a line across both.
 fn bars_ui(ui: &mut Ui, channel: Channel, gap: &ChannelGap) {
     let ChannelGap { before, after, floor } = gap;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());

@@ -1,4 +1,4 @@
-//! Residuals over time, with and without what was found.
+//! Residuals over time, without and with the effects found.
 
 use eframe::egui::{Ui, Vec2};
 use egui_plot::{HoverPosition, Line, Plot, PlotPoints, Points};
@@ -12,7 +12,7 @@ use reality_sim_gap::{
 
 use super::{side::Side, table::words, title::title_ui};
 
-/// Draws both curves; frames that no fit has seen have dots.
+/// Draws both curves; held-out frames have dots.
 pub fn ui(ui: &mut Ui, course: &Course, channel: Channel, room: Vec2) {
     title_ui(
         ui,
@@ -39,7 +39,7 @@ pub fn ui(ui: &mut Ui, course: &Course, channel: Channel, room: Vec2) {
         });
     plot.show(ui, |plot| {
         for side in Side::ALL {
-            // Where both are the same, the wider one below is still seen.
+            // Where the curves coincide, the wider one below stays visible.
             let width = *side.of(&[3.5, 1.5]);
             for run in runs(course, side) {
                 let line = Line::new(side.name(), PlotPoints::from(points(course, &run, first_s, factor)));
@@ -53,7 +53,7 @@ pub fn ui(ui: &mut Ui, course: &Course, channel: Channel, room: Vec2) {
     });
 }
 
-/// Frames with their values, cut where nothing was measured: a curve does not lead over that.
+/// Returns runs of frames with values, split where nothing was measured, so that no curve crosses such gaps.
 fn runs(course: &Course, side: Side) -> Vec<Vec<(usize, f64)>> {
     let values = side.of_course(course);
     let runs = values.split(Option::is_none);
@@ -67,7 +67,7 @@ fn runs(course: &Course, side: Side) -> Vec<Vec<(usize, f64)>> {
     .collect()
 }
 
-/// Times from the first frame on, and values times a factor.
+/// Returns times from the first frame on, and values multiplied by a factor.
 fn points(course: &Course, values: &[(usize, f64)], first_s: f64, factor: f64) -> Vec<[f64; 2]> {
     values.iter().map(|(frame, value)| [course.time_s[*frame] - first_s, factor * value]).collect()
 }

@@ -1,4 +1,4 @@
-//! The effects that were found, one a row, and all that is known of the one that was chosen.
+//! The effects found, one per row, and the details of the selected one.
 
 use eframe::egui::{Button, Label, ProgressBar, RichText, Ui};
 use reality_sim_gap::report::{
@@ -11,7 +11,7 @@ use reality_sim_gap::report::{
 
 use super::table::Table;
 
-/// Draws them; a click chooses one.
+/// Draws the table; a click selects an effect.
 pub fn ui(ui: &mut Ui, name: &str, effects: &[EffectReport], chosen: &mut Option<String>) {
     if effects.is_empty() {
         return;
@@ -47,7 +47,7 @@ fn name_ui(ui: &mut Ui, effect: &EffectReport, chosen: &mut Option<String>) {
     }
 }
 
-/// All that is known of one.
+/// Draws the details of an effect.
 fn details_ui(ui: &mut Ui, effect: &EffectReport) {
     ui.group(|ui| {
         ui.set_width(ui.available_width());
@@ -69,7 +69,7 @@ fn details_ui(ui: &mut Ui, effect: &EffectReport) {
     });
 }
 
-/// How much of the distance to the noise floor it closes.
+/// Draws how much of the distance to the noise floor an effect closes.
 fn closes_ui(ui: &mut Ui, effect: &EffectReport) {
     if effect.closes.is_empty() {
         return;

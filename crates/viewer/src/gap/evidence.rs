@@ -1,4 +1,4 @@
-//! What the answer rests on, from top to bottom: what was found, the gap, what is left, what was not found, what cannot be seen.
+//! The evidence from top to bottom: effects found, the gap, what remains, effects not found, and unobservable effects.
 
 use eframe::egui::{Label, RichText, Ui};
 use reality_sim_gap::{
@@ -17,7 +17,7 @@ use super::{
     table::{Table, title},
 };
 
-/// Shows it. `channel` and `effect` are those that are looked at.
+/// Shows the evidence. `channel` and `effect` are the selected ones.
 pub fn ui(ui: &mut Ui, report: &Report, channel: &mut Option<Channel>, effect: &mut Option<String>) {
     title(ui, "Effects found");
     if report.effects.is_empty() {

@@ -1,4 +1,4 @@
-//! The answer: the verdict in a word, and all of it in a sentence.
+//! The answer: the verdict in one word, and the summary in a sentence.
 
 use eframe::egui::{self, Color32, Label, RichText, Ui};
 use reality_sim_gap::{
@@ -9,13 +9,13 @@ use reality_sim_gap::{
     },
 };
 
-/// Largest share of the window's height that the summary has.
+/// Largest share of the window's height that the summary takes.
 const SUMMARY_SHARE: f32 = 0.16;
 
-/// Shows it.
+/// Shows the answer.
 pub fn ui(ui: &mut Ui, report: &Report) {
     ui.add_space(2.0);
-    // A long sentence leaves room for the views.
+    // A long sentence must leave room for the views.
     let height = SUMMARY_SHARE * ui.ctx().content_rect().height();
     egui::ScrollArea::vertical().id_salt("gap summary").max_height(height).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
@@ -49,7 +49,7 @@ fn verdict_ui(ui: &mut Ui, verdict: Verdict) {
         .on_hover_text(verdict_meaning(verdict));
 }
 
-/// A colour on which white is read.
+/// Returns a background colour on which white is readable.
 fn color(verdict: Verdict) -> Color32 {
     match verdict {
         Verdict::None => Color32::from_rgb(45, 115, 75),

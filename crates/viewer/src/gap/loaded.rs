@@ -1,4 +1,4 @@
-//! A report with its pictures, as the thread that opens it reads them.
+//! A report with its pictures, as read by the thread that opens it.
 
 use std::{fs::File, io::BufReader, path::Path, sync::Arc};
 
@@ -13,29 +13,29 @@ use reality_sim_gap::{
 use super::ramp::Ramp;
 use crate::picture_view::color_image;
 
-/// Graphics devices take pictures of this side, pixels.
+/// Largest side of a picture that graphics devices accept, pixels.
 const LARGEST_SIDE: u32 = 8192;
 
-/// Where a report comes from.
+/// Remedy for a report that cannot be read.
 const REMEDY: &str = "give a folder that `reality-sim gap` wrote, or write it again";
 
-/// Everything that is shown of a report.
+/// Everything shown of a report.
 pub struct Loaded {
     pub report: Report,
-    /// The frame as it was recorded.
+    /// Frame as it was recorded.
     pub measured: Option<Arc<ColorImage>>,
-    /// As the given model draws it, and as the extended one does.
+    /// The same frame simulated by the given model and by the extended one.
     pub simulated: [Option<Arc<ColorImage>>; 2],
-    /// Measured minus simulated, in the ramp's colours.
+    /// Measured minus simulated luma, in the ramp's colours.
     pub differences: [Option<Arc<ColorImage>>; 2],
-    /// Those colours, for brightness in grey levels of 255; where there is a difference.
+    /// Those colours, for luma in grey levels of 255; `None` without a difference.
     pub difference_ramp: Option<Ramp>,
-    /// What is missing, in words.
+    /// Missing parts, in words.
     pub problems: Vec<String>,
 }
 
 impl Loaded {
-    /// Reads a report's folder. Without pictures the rest is there; without a report nothing is.
+    /// Reads a report's folder. Without the pictures, the rest is still read; without the report, reading fails.
     pub fn read(folder: &Path) -> Result<Self, String> {
         let report = Report::read(folder).map_err(|error| format!("{error}: {REMEDY}"))?;
         let mut problems = Vec::new();
@@ -65,12 +65,12 @@ impl Loaded {
         })
     }
 
-    /// The effects found, the surest first, then those that the model had before.
+    /// Iterates over the effects found, the surest first, then over those that the model already had.
     pub fn effects(&self) -> impl Iterator<Item = &EffectReport> {
         self.report.effects.iter().chain(&self.report.in_model)
     }
 
-    /// The channel with a map whose gap is the largest against its floor.
+    /// Returns the channel, among those with a map, whose gap is largest relative to its floor.
     pub fn widest_channel(&self) -> Option<Channel> {
         let width = |gap: &ChannelGap| gap.before / gap.floor.max(f64::MIN_POSITIVE);
         let of = |channel: &Channel| self.report.gap.channels.get(channel).map_or(0.0, width);
@@ -100,7 +100,7 @@ fn picture(path: &Path) -> Result<RgbImage, String> {
     Ok(decoded.into_rgb8())
 }
 
-/// The picture, where it can be laid over the measured one.
+/// Returns the picture if it has the same size as the measured one.
 fn same_size(
     measured: Option<&RgbImage>,
     picture: RgbImage,
@@ -118,7 +118,7 @@ fn same_size(
     is_same.then_some(picture)
 }
 
-/// Measured minus simulated luma, pixel by pixel.
+/// Returns measured minus simulated luma for each pixel.
 fn difference(measured: &RgbImage, simulated: &RgbImage) -> Vec<f64> {
     let [red, green, blue] = LUMA_WEIGHTS;
     let luma = |[r, g, b]: [u8; 3]| red * f64::from(r) + green * f64::from(g) + blue * f64::from(b);
@@ -126,7 +126,7 @@ fn difference(measured: &RgbImage, simulated: &RgbImage) -> Vec<f64> {
     pairs.map(|(measured, simulated)| luma(measured.0) - luma(simulated.0)).collect()
 }
 
-/// The values of a picture's pixels in colours.
+/// Colours a picture by a value per pixel.
 fn colored(picture: &RgbImage, values: &[f64], ramp: Ramp) -> Arc<ColorImage> {
     let size = [picture.width() as usize, picture.height() as usize];
     Arc::new(ColorImage::new(size, values.iter().map(|value| ramp.color(*value)).collect()))

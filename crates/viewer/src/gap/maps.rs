@@ -1,4 +1,4 @@
-//! Where residuals sit: in the picture, and on the field from above.
+//! Maps of the residuals: in the picture, and on the field from above.
 
 use eframe::egui::{Color32, Rect, Response, Ui, Vec2};
 use glam::DVec2;
@@ -13,33 +13,33 @@ use crate::{
     picture_view::{PictureCanvas, Uploaded},
 };
 
-/// How much of what is below a cell is hidden.
+/// Opacity of the cells.
 const COVER: f32 = 0.82;
-/// How bright the picture below the cells is, 0 to 255.
+/// Brightness of the picture below the cells, 0 to 255.
 const BACKGROUND: u8 = 110;
-/// The grey of the field's lines, seen on carpet and on pale cells alike.
+/// Grey of the field's lines, visible on carpet and on pale cells alike.
 const LINES: u8 = 125;
 
-/// What is shown of a channel's maps.
+/// Data of a channel's maps.
 #[derive(Clone, Copy)]
 pub struct Shown<'a> {
     pub channel: Channel,
     pub maps: &'a Maps,
     pub side: Side,
-    /// Colours of the values; none where there are too few.
+    /// Colours of the values; `None` if there are too few values.
     pub ramp: Option<Ramp>,
     /// Size of the view.
     pub room: Vec2,
 }
 
 impl Shown<'_> {
-    /// Colours of a map in which anything was measured.
+    /// Returns the colours for a map in which something was measured.
     fn ramp_of(&self, map: &Map) -> Option<Ramp> {
         self.ramp.filter(|_| has_values(map, self.side))
     }
 }
 
-/// What the maps keep from frame to frame.
+/// State of the maps kept from frame to frame.
 #[derive(Default)]
 pub struct MapViews {
     background: Uploaded,
@@ -47,7 +47,7 @@ pub struct MapViews {
 }
 
 impl MapViews {
-    /// Residuals over the picture's shape.
+    /// Shows residuals over the picture.
     pub fn picture_ui(&mut self, ui: &mut Ui, loaded: &Loaded, shown: Shown<'_>) {
         let Shown { channel, maps, side, room, .. } = shown;
         title_ui(ui, &format!("In the picture, {}", side.name()), "Medians of measured minus simulated");
@@ -62,7 +62,7 @@ impl MapViews {
             let texture = self.background.texture(ui.ctx(), measured);
             canvas.draw(texture, Color32::from_gray(BACKGROUND));
         }
-        // A pixel's middle has integer coordinates; the extent is that of its edges.
+        // A pixel's centre has integer coordinates; the extent is given by the pixels' edges.
         let at = |place: DVec2| canvas.at(place - corner - 0.5);
         for cell in cells(map, side) {
             let rect = Rect::from_two_pos(at(cell.corners[0]), at(cell.corners[1]));
@@ -71,7 +71,7 @@ impl MapViews {
         hover(&canvas.response, map, side, channel, |cell| Rect::from_two_pos(at(cell[0]), at(cell[1])));
     }
 
-    /// Residuals over the field from above.
+    /// Shows residuals over the field from above.
     pub fn field_ui(&mut self, ui: &mut Ui, loaded: &Loaded, shown: Shown<'_>) {
         let Shown { channel, maps, side, room, .. } = shown;
         let field = &loaded.report.field;
@@ -98,7 +98,7 @@ impl MapViews {
     }
 }
 
-/// A place with a value: two opposite corners in the map's own axes.
+/// Cell with a value: two opposite corners in the map's own axes.
 struct Cell {
     corners: [DVec2; 2],
     value: f64,
@@ -108,7 +108,7 @@ fn has_values(map: &Map, side: Side) -> bool {
     side.of_map(map).iter().any(Option::is_some)
 }
 
-/// The cells in which something was measured.
+/// Iterates over the cells in which something was measured.
 fn cells(map: &Map, side: Side) -> impl Iterator<Item = Cell> {
     let [left, top, right, bottom] = map.extent;
     let step = DVec2::new((right - left) / map.columns as f64, (bottom - top) / map.rows as f64);
@@ -120,7 +120,7 @@ fn cells(map: &Map, side: Side) -> impl Iterator<Item = Cell> {
     })
 }
 
-/// The value below the pointer.
+/// Shows the value below the pointer.
 fn hover(
     response: &Response,
     map: &Map,

@@ -1,7 +1,7 @@
-//! Gap: where a camera's simulation and its pictures disagree, which effect is missing, and how much of it that explains.
+//! Gap: where a camera's simulation and its pictures disagree, which effects are missing, and how much they explain.
 //!
 //! A report is [`loaded`] once, by the thread that opens it; everything else only draws. [`pictures`], [`maps`] and
-//! [`course`] are the views, [`evidence`], [`channels`] and [`effects`] what stands beside them.
+//! [`course`] are the views; [`evidence`], [`channels`] and [`effects`] form the panel beside them.
 
 mod channels;
 mod course;
@@ -24,20 +24,20 @@ use self::views::Views;
 pub use self::{loaded::Loaded, settings::GapSettings};
 use crate::shortcuts::{self, Action, Place};
 
-/// Share of the width that the evidence has, within these widths, points.
+/// Share of the width that the evidence takes, within these widths, points.
 const EVIDENCE_SHARE: f32 = 0.36;
 const EVIDENCE_WIDTHS: std::ops::RangeInclusive<f32> = 270.0..=520.0;
 
-/// A report, and what is looked at in it.
+/// Report, and the selection in it.
 pub struct GapPanel {
     loaded: Loaded,
     views: Views,
-    /// The id of the effect whose details are shown.
+    /// Id of the effect whose details are shown.
     effect: Option<String>,
 }
 
 impl GapPanel {
-    /// Shows the surest effect first.
+    /// Makes the panel, showing the surest effect first.
     pub fn new(loaded: Loaded) -> Self {
         let effect = loaded.effects().next().map(|effect| effect.id.clone());
         Self { loaded, views: Views::default(), effect }
@@ -80,7 +80,7 @@ impl GapPanel {
     }
 }
 
-/// What is after or before one in a list that has it; at the ends, that one.
+/// Returns the entry after or before `one` in a list, or `one` itself at the ends.
 fn neighbour<T: PartialEq>(all: impl Iterator<Item = T>, one: Option<T>, is_after: bool) -> Option<T> {
     let one = one?;
     let mut all: Vec<T> = all.collect();

@@ -1,4 +1,4 @@
-//! The same frame, measured and simulated: a line to drag between them, or their difference.
+//! The same frame, measured and simulated: both with a line to drag between them, or their difference.
 
 use eframe::egui::{Color32, Ui, Vec2};
 
@@ -7,7 +7,7 @@ use reality_sim_gap::report::text::digits;
 use super::{loaded::Loaded, settings::GapSettings, side::Side, table::words, title::title_ui};
 use crate::picture_view::{PictureCanvas, Uploaded};
 
-/// The pictures on the graphics device.
+/// Pictures on the graphics device.
 #[derive(Default)]
 pub struct Pictures {
     measured: Uploaded,
@@ -16,7 +16,7 @@ pub struct Pictures {
 }
 
 impl Pictures {
-    /// Draws them into the room.
+    /// Draws the pictures into the room.
     pub fn ui(&mut self, ui: &mut Ui, loaded: &Loaded, settings: &mut GapSettings, room: Vec2) {
         let side = settings.side;
         if settings.is_difference {
@@ -51,7 +51,7 @@ impl Pictures {
             &format!("Frame {}: drag the line", loaded.report.shown_frame),
         );
         let simulated = side.of(&loaded.simulated).as_ref();
-        // One of them is better than none.
+        // If one picture is missing, the other is shown alone.
         let (Some(left), Some(right)) =
             (loaded.measured.as_ref().or(simulated), simulated.or(loaded.measured.as_ref()))
         else {

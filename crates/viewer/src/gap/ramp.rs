@@ -1,4 +1,4 @@
-//! Colours for numbers with a sign: blue below zero, white at it, red above, told apart with any kind of colour vision.
+//! Diverging colours for signed numbers, distinguishable with any colour vision: blue below zero, white at zero, red above.
 
 use eframe::egui::{Align2, Color32, FontId, Rect, Role, Sense, Ui, WidgetInfo, lerp, pos2, vec2};
 use reality_sim_gap::{
@@ -6,22 +6,22 @@ use reality_sim_gap::{
     report::text::{amount, channel_scale, digits},
 };
 
-/// From the lowest value to the highest, evenly.
+/// Colours from the lowest value to the highest, evenly spaced.
 const STOPS: [[u8; 3]; 5] =
     [[33, 102, 172], [146, 197, 222], [247, 247, 247], [244, 165, 130], [178, 24, 43]];
-/// This share of the values is within the limits; the others have the colours at the ends.
+/// Share of the values within the limits; the others have the colours at the ends.
 const WITHIN: f64 = 0.97;
-/// Steps in which the legend is drawn.
+/// Number of colours in the legend.
 const STEPS: usize = 48;
 
-/// Colours between two limits, one the other's negative.
+/// Colours between two limits that are symmetric about zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ramp {
     limit: f64,
 }
 
 impl Ramp {
-    /// For values of which few are allowed to be beyond the limits. `None` where there are no values.
+    /// Chooses the limits so that few values lie beyond them. `None` if there are no values.
     pub fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
         let mut sizes: Vec<f64> = values.map(f64::abs).collect();
         sizes.sort_by(f64::total_cmp);
@@ -29,12 +29,12 @@ impl Ramp {
         sizes.get(place).map(|size| Self { limit: size.max(f64::MIN_POSITIVE) })
     }
 
-    /// The upper one.
+    /// Returns the upper limit.
     pub fn limit(self) -> f64 {
         self.limit
     }
 
-    /// The colour of a value.
+    /// Returns the colour of a value.
     pub fn color(self, value: f64) -> Color32 {
         let place = (0.5 + 0.5 * value / self.limit).clamp(0.0, 1.0) as f32 * (STOPS.len() - 1) as f32;
         let below = (place as usize).min(STOPS.len() - 2);
@@ -45,7 +45,7 @@ impl Ramp {
         Color32::from_rgb(channel(0), channel(1), channel(2))
     }
 
-    /// The colours with the values that they stand for.
+    /// Shows the colours with their values.
     pub fn legend_ui(self, ui: &mut Ui, channel: Channel, width: f32) {
         let number = digits(channel_scale(channel).0 * self.limit, 3);
         let limit = amount(channel, self.limit, channel.unit(), 3);

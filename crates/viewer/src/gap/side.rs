@@ -1,4 +1,4 @@
-//! The two models that are compared: as it was given, and with what was found.
+//! The two models that are compared: the given one, and the one with the effects found.
 
 use eframe::egui::Color32;
 use reality_sim_gap::report::{Course, Map};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::colors;
 
-/// One of them.
+/// One of the two models.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Side {
@@ -16,10 +16,10 @@ pub enum Side {
 }
 
 impl Side {
-    /// Both, the one that comes first before.
+    /// Both models in order.
     pub const ALL: [Self; 2] = [Self::Without, Self::With];
 
-    /// What it is called.
+    /// Returns the name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Without => "without the effect",
@@ -27,7 +27,7 @@ impl Side {
         }
     }
 
-    /// What it is, in a sentence.
+    /// Returns a description in one sentence.
     pub fn meaning(self) -> &'static str {
         match self {
             Self::Without => "As the given model draws it",
@@ -35,7 +35,7 @@ impl Side {
         }
     }
 
-    /// The colour of its curve.
+    /// Returns the colour of the model's curve.
     pub fn color(self) -> Color32 {
         match self {
             Self::Without => colors::GIVEN,
@@ -43,7 +43,7 @@ impl Side {
         }
     }
 
-    /// The other one.
+    /// Returns the other model.
     pub fn other(self) -> Self {
         match self {
             Self::Without => Self::With,
@@ -51,12 +51,12 @@ impl Side {
         }
     }
 
-    /// Its part of a pair.
+    /// Returns this model's element of a pair.
     pub fn of<T>(self, pair: &[T; 2]) -> &T {
         &pair[usize::from(self == Self::With)]
     }
 
-    /// Its values in a map.
+    /// Returns this model's values in a map.
     pub fn of_map(self, map: &Map) -> &[Option<f64>] {
         match self {
             Self::Without => &map.before,
@@ -64,7 +64,7 @@ impl Side {
         }
     }
 
-    /// Its values over time.
+    /// Returns this model's values over time.
     pub fn of_course(self, course: &Course) -> &[Option<f64>] {
         match self {
             Self::Without => &course.before,

@@ -1,12 +1,12 @@
-//! Tables whose cells wrap: columns have shares of the width, rows the height that their words need.
+//! Tables with wrapped cells: columns have fixed shares of the width, and rows grow with their text.
 
 use eframe::egui::{self, Label, RichText, Ui};
 
-/// A table's columns: for each one its head, and its share of the width.
+/// Table with a title and a share of the width for each column.
 pub struct Table<'a>(pub &'a [(&'a str, f32)]);
 
 impl Table<'_> {
-    /// The heads, and a line below them.
+    /// Shows the column titles, and a line below them.
     pub fn heads_ui(&self, ui: &mut Ui) {
         self.row_ui(ui, |ui, column| {
             ui.add(Label::new(RichText::new(self.0[column].0).weak()).wrap());
@@ -14,7 +14,7 @@ impl Table<'_> {
         ui.separator();
     }
 
-    /// A row; `cell` fills the column of a number.
+    /// Shows a row; `cell` fills the column with the given number.
     pub fn row_ui(&self, ui: &mut Ui, mut cell: impl FnMut(&mut Ui, usize)) {
         let gap = ui.spacing().item_spacing.x;
         let width = ui.available_width() - gap * (self.0.len() - 1) as f32;
@@ -28,7 +28,7 @@ impl Table<'_> {
         });
     }
 
-    /// A row of texts.
+    /// Shows a row of texts.
     pub fn texts_ui(&self, ui: &mut Ui, texts: &[&str]) {
         self.row_ui(ui, |ui, column| {
             ui.add(Label::new(texts[column]).wrap());
@@ -36,13 +36,13 @@ impl Table<'_> {
     }
 }
 
-/// What stands above a part of the evidence.
+/// Shows the title of a part of the evidence.
 pub fn title(ui: &mut Ui, text: &str) {
     ui.add_space(8.0);
     ui.label(RichText::new(text).strong().size(15.0));
 }
 
-/// Words in the middle of a rectangle that has nothing else to show.
+/// Shows text in the middle of an otherwise empty rectangle.
 pub fn words(ui: &mut Ui, size: egui::Vec2, text: &str) {
     let layout = egui::Layout::centered_and_justified(egui::Direction::TopDown);
     ui.allocate_ui_with_layout(size, layout, |ui| ui.add(Label::new(RichText::new(text).weak()).wrap()));

@@ -1,4 +1,4 @@
-//! Pictures, maps and course on one page, two beside two.
+//! Pictures, maps and course on one page, in a two-by-two grid.
 
 use eframe::egui::{Align, ComboBox, Layout, Ui, Vec2, vec2};
 use reality_sim_gap::{
@@ -24,7 +24,7 @@ use crate::shortcuts::{self, Action};
 /// Width of the legend, points.
 const LEGEND: f32 = 190.0;
 
-/// What the views keep from frame to frame.
+/// State of the views kept from frame to frame.
 #[derive(Default)]
 pub struct Views {
     pictures: Pictures,
@@ -32,7 +32,7 @@ pub struct Views {
 }
 
 impl Views {
-    /// Draws them.
+    /// Draws the views.
     pub fn ui(&mut self, ui: &mut Ui, loaded: &Loaded, settings: &mut GapSettings) {
         pictures_choice_ui(ui, loaded, settings);
         let maps = settings.channel.and_then(|channel| Some((channel, loaded.report.maps.get(&channel)?)));
@@ -71,7 +71,7 @@ impl Views {
     }
 }
 
-/// Two views beside each other.
+/// Draws two views side by side.
 fn row(ui: &mut Ui, view: Vec2, left: impl FnOnce(&mut Ui), right: impl FnOnce(&mut Ui)) {
     let size = view + vec2(0.0, TITLE_HEIGHT + ui.spacing().item_spacing.y);
     ui.horizontal_top(|ui| {
@@ -91,7 +91,7 @@ fn nothing(ui: &mut Ui, text: &str) {
     ui.weak(text);
 }
 
-/// Without or with what was found; wipe or difference.
+/// Shows the choices of the model, and of wipe or difference.
 fn pictures_choice_ui(ui: &mut Ui, loaded: &Loaded, settings: &mut GapSettings) {
     ui.horizontal_wrapped(|ui| {
         let key = shortcuts::name(ui, Action::OtherModel);
@@ -114,7 +114,7 @@ fn pictures_choice_ui(ui: &mut Ui, loaded: &Loaded, settings: &mut GapSettings) 
     });
 }
 
-/// Which comparison's residuals, and their colours.
+/// Shows the choice of the channel, and its colours.
 fn channel_choice_ui(ui: &mut Ui, loaded: &Loaded, chosen: &mut Option<Channel>, ramp: Option<Ramp>) {
     ui.horizontal_wrapped(|ui| {
         let label = ui.label("Residuals of");

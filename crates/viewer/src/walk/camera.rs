@@ -1,4 +1,4 @@
-//! The camera's picture, and what is drawn over it.
+//! The camera's picture and its overlays.
 
 use eframe::egui::{Color32, Ui};
 
@@ -8,7 +8,7 @@ use crate::{
     picture_view::{PictureCanvas, Uploaded},
 };
 
-/// The picture and its veil on the graphics device.
+/// Picture and veil on the graphics device.
 #[derive(Default)]
 pub struct CameraTextures {
     picture: Uploaded,
@@ -16,7 +16,7 @@ pub struct CameraTextures {
 }
 
 impl CameraTextures {
-    /// Draws picture and layers.
+    /// Draws the picture and its layers.
     pub fn draw(&mut self, ui: &Ui, canvas: &PictureCanvas, frame: &FrameView, layers: &Layers) {
         canvas.draw(self.picture.texture(ui.ctx(), &frame.picture), Color32::WHITE);
         if let Some(veil) = &frame.veil {

@@ -1,4 +1,4 @@
-//! What can be set: the filter, and what is drawn. Everything acts at once.
+//! Settings of the filter and of the layers. Changes take effect at once.
 
 use eframe::egui::{self, Color32, ComboBox, DragValue, RichText, Ui};
 use reality_sim_core::{filter::Resampling, observation::ObservationKind};
@@ -30,7 +30,7 @@ const SCHEMES: [(Resampling, &str); 4] = [
     (Resampling::Multinomial, "multinomial"),
 ];
 
-/// The filter's settings.
+/// Shows the filter's settings.
 pub fn filter(ui: &mut Ui, settings: &mut FilterSettings, devices: &[Device]) {
     ui.strong("Filter");
     egui::Grid::new("filter").num_columns(2).spacing([8.0, 4.0]).show(ui, |ui| {
@@ -56,7 +56,7 @@ pub fn filter(ui: &mut Ui, settings: &mut FilterSettings, devices: &[Device]) {
     }
 }
 
-/// A name and a widget that is called by it.
+/// Shows a name and a widget labelled by it.
 fn row(ui: &mut Ui, name: &str, explanation: &str, widget: impl FnOnce(&mut Ui) -> egui::Response) {
     let label = ui.label(name).on_hover_text(explanation);
     widget(ui).labelled_by(label.id).on_hover_text(explanation);
@@ -80,7 +80,7 @@ fn model(ui: &mut Ui, settings: &mut FilterSettings) {
     }
 }
 
-/// What the model in use reads.
+/// Shows the settings of the chosen observation model.
 fn observation(ui: &mut Ui, settings: &mut FilterSettings) {
     let observation = &mut settings.observation;
     if observation.kind != ObservationKind::Distance {
@@ -116,7 +116,7 @@ fn resampling(ui: &mut Ui, settings: &mut FilterSettings) {
     });
 }
 
-/// What is drawn; each switch in the colour of what it draws.
+/// Shows a switch for each layer, in the layer's colour.
 pub fn layers(ui: &mut Ui, layers: &mut Layers, has_truth: bool) {
     let switch = |ui: &mut Ui, is_on: &mut bool, color: Color32, name: &str, explanation: &str| {
         ui.horizontal(|ui| {
@@ -176,7 +176,7 @@ fn veil(ui: &mut Ui, layers: &mut Layers) {
     }
 }
 
-/// A fact and its value.
+/// Shows a fact and its value.
 pub fn fact(ui: &mut Ui, name: &str, value: impl Into<RichText>) {
     ui.label(RichText::new(name).weak());
     ui.label(value.into());

@@ -1,4 +1,4 @@
-//! Curves over the time as it is played; a click leads to that time.
+//! Curves over playback time; a click jumps to that time.
 
 use eframe::egui::{self, Color32, Ui};
 use egui_plot::{GridMark, HoverPosition, Line, Plot, PlotPoints, Points, VLine};
@@ -10,7 +10,7 @@ use super::{
 };
 use crate::colors;
 
-/// One curve: its title with the unit, and where its values come from.
+/// One curve: its title with the unit, and the source of its values.
 struct Curve {
     title: &'static str,
     explanation: &'static str,
@@ -46,10 +46,10 @@ const OTHERS: [Curve; 3] = [
     },
 ];
 
-/// What all hover texts end with.
+/// Text at the end of all tooltips.
 const SIGNS: &str = "White dots: the field was searched. Broken lines: settings were changed. Time as it is played, pauses cut short; a click leads there.";
 
-/// Draws the curves side by side; gives the frame that was clicked.
+/// Draws the curves side by side; returns the frame that was clicked.
 pub fn ui(
     ui: &mut Ui,
     timeline: &Timeline,
@@ -113,14 +113,14 @@ impl Curve {
     }
 }
 
-/// Records that follow each other: a curve does not lead over frames that were never seen.
+/// Splits the records into runs of consecutive frames, so that no curve crosses frames that were never seen.
 fn runs(records: &Thinned<Record>) -> impl Iterator<Item = &[Record]> {
-    // Thinned records of frames that all were seen are a step apart; a frame left out here and there does not show.
+    // Thinned records of consecutive frames are a step apart; a single missing frame is not shown as a gap.
     let widest = if records.step == 1 { 1 } else { 2 * records.step };
     records.points.chunk_by(move |a, b| b.index - a.index <= widest)
 }
 
-/// Axes over the whole recording, that neither move nor zoom.
+/// Returns a plot over the whole recording that can be neither moved nor zoomed.
 fn plot<'a>(name: &str, timeline: &Timeline, height: f32) -> Plot<'a> {
     let marks = time_marks(timeline.end_s());
     Plot::new(name)
@@ -144,7 +144,7 @@ fn plot<'a>(name: &str, timeline: &Timeline, height: f32) -> Plot<'a> {
         })
 }
 
-/// Round times, two or three of them with zero.
+/// Returns two or three round times, including zero.
 fn time_marks(end_s: f64) -> Vec<GridMark> {
     let rough_s = (0.45 * end_s).max(0.01);
     let power = 10_f64.powf(rough_s.log10().floor());
@@ -157,7 +157,7 @@ fn time_marks(end_s: f64) -> Vec<GridMark> {
     (0..=count).map(|number| GridMark { value: number as f64 * step_size, step_size }).collect()
 }
 
-/// Three digits.
+/// Writes a value with three digits.
 fn rounded(value: f64) -> String {
     let decimals = if value < 1.0 { 2 } else { usize::from(value < 100.0) };
     format!("{value:.decimals$}")

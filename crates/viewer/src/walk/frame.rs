@@ -1,4 +1,4 @@
-//! What is to be seen of one picture once the filter has looked at it. Made by the filter's thread, so that the window only
+//! Everything shown of one picture after the filter has processed it. The filter's thread makes it, so that the window only
 //! draws.
 
 use std::sync::Arc;
@@ -19,15 +19,15 @@ use reality_sim_core::{
 use super::settings::Veil;
 use crate::picture_view::{color_image, gray_image};
 
-/// Particles shown at most: more cannot be told apart.
+/// Largest number of particles shown: more cannot be distinguished.
 const SHOWN_PARTICLES: usize = 2000;
 
-/// A curve's values for one picture, and what a path needs of it.
+/// A curve's values for one picture, and the data for its paths.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Record {
     pub index: usize,
     pub pose: CameraPose,
-    /// From the truth on the ground, where it is known.
+    /// Horizontal distance from the ground truth, if it is known.
     pub error_m: Option<f64>,
     pub error_yaw_rad: Option<f64>,
     pub effective_sample_size: f64,
@@ -57,15 +57,15 @@ impl Record {
     }
 }
 
-/// A particle to be drawn.
+/// Particle to be drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeightedParticle {
     pub pose: Pose2,
-    /// Over that of the best one.
+    /// Weight relative to the best particle's.
     pub relative_weight: f32,
 }
 
-/// Everything to be seen of one picture.
+/// Everything shown of one picture.
 pub struct FrameView {
     pub record: Record,
     pub picture: Arc<ColorImage>,
@@ -73,22 +73,23 @@ pub struct FrameView {
     pub particles: Vec<WeightedParticle>,
     pub best_particle: CameraPose,
     pub truth: Option<CameraPose>,
-    /// Polylines, pixels: both edges of the lines at the pose found and at the best particle, the centres at the true pose.
+    /// Polylines in pixels: both edges of the lines at the estimated pose and at the best particle, the centre lines at the
+    /// true pose.
     pub pose_lines: Vec<Vec<DVec2>>,
     pub best_lines: Vec<Vec<DVec2>>,
     pub truth_lines: Vec<Vec<DVec2>>,
-    /// The field's border as it was found.
+    /// Detected border of the field.
     pub border: Vec<Vec<DVec2>>,
 }
 
-/// A picture that was tagged, with what drawing it needs.
+/// Localized picture with the data for drawing it.
 pub struct Seen {
     pub index: usize,
     pub prepared: Prepared,
     pub mount: MountPose,
     pub tagged: LocalizedFrame,
     pub particles: Vec<CameraPose>,
-    /// Made once: only the veil changes while a picture stays.
+    /// Converted once: only the veil changes while the picture stays.
     pub picture: Arc<ColorImage>,
 }
 
@@ -104,7 +105,7 @@ impl Seen {
         Self { index, prepared, mount, tagged, particles, picture }
     }
 
-    /// What is to be seen of it.
+    /// Prepares everything shown of the picture.
     pub fn view(
         &self,
         sequence: &Sequence,
@@ -143,7 +144,7 @@ impl Seen {
         }
     }
 
-    /// The particles by the weight that the observation model gives each of them: of many every so many, and the best one.
+    /// Returns the particles weighted by the observation model: every n-th of many, and always the best one.
     fn weighted_particles(&self, scorer: &mut CpuScorer) -> Vec<WeightedParticle> {
         scorer.set_picture(&self.prepared);
         let log_weights = scorer.log_weights_of(&self.particles);

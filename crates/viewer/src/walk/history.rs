@@ -1,5 +1,5 @@
-//! What was found so far, by frame: for the curves and the paths. Long ones are thinned, so that a frame of the window costs the
-//! same however long the recording is.
+//! Results so far, by frame, for the curves and the paths. Long ones are thinned, so that the cost of a window frame does
+//! not depend on the length of the recording.
 
 use glam::DVec2;
 use reality_sim_core::{
@@ -9,28 +9,28 @@ use reality_sim_core::{
 
 use super::frame::Record;
 
-/// Points of a curve or a path at most: more cannot be told apart.
+/// Largest number of points of a curve or a path: more cannot be distinguished.
 pub const MOST_POINTS: usize = 1000;
 
-/// A record for every frame that was seen.
+/// Record for every frame that was seen.
 #[derive(Debug, Default)]
 pub struct History {
-    /// In the order of the frames.
+    /// Records in the order of the frames.
     records: Vec<Record>,
-    /// The frames among them for which the field was searched.
+    /// Frames among them at which the field was searched.
     searched: Vec<usize>,
-    /// The frames at which settings were changed.
+    /// Frames at which settings were changed.
     changes: Vec<usize>,
 }
 
-/// Every so many of a list.
+/// Every n-th element of a list.
 pub struct Thinned<T> {
     pub points: Vec<T>,
-    /// This many steps of the list lie between two points.
+    /// Steps of the list between two points.
     pub step: usize,
 }
 
-/// Thins a list; its last one stays.
+/// Thins a list, keeping its last element.
 fn thin<T, U>(list: &[T], point: impl Fn(&T) -> U) -> Thinned<U> {
     let step = list.len().div_ceil(MOST_POINTS).max(1);
     let mut points: Vec<U> = list.iter().step_by(step).map(&point).collect();
@@ -41,7 +41,7 @@ fn thin<T, U>(list: &[T], point: impl Fn(&T) -> U) -> Thinned<U> {
 }
 
 impl History {
-    /// Keeps a record, in place of an older one of the same frame.
+    /// Adds a record, replacing an older one of the same frame.
     pub fn add(&mut self, record: Record) {
         match self.records.binary_search_by_key(&record.index, |record| record.index) {
             Ok(place) => self.records[place] = record,
@@ -54,47 +54,47 @@ impl History {
         }
     }
 
-    /// Remembers that settings were changed at a frame.
+    /// Records that settings were changed at a frame.
     pub fn mark_change(&mut self, index: usize) {
         if let Err(place) = self.changes.binary_search(&index) {
             self.changes.insert(place, index);
         }
     }
 
-    /// The frames at which settings were changed.
+    /// Returns the frames at which settings were changed.
     pub fn changes(&self) -> &[usize] {
         &self.changes
     }
 
-    /// What was found in a frame.
+    /// Returns the record of a frame.
     pub fn get(&self, index: usize) -> Option<&Record> {
         let place = self.records.binary_search_by_key(&index, |record| record.index).ok()?;
         self.records.get(place)
     }
 
-    /// What was found, in the order of the frames.
+    /// Returns the records in the order of the frames.
     pub fn records(&self) -> Thinned<Record> {
         thin(&self.records, |record| *record)
     }
 
-    /// What was found where the field was searched.
+    /// Returns the records at which the field was searched.
     pub fn searched(&self) -> Vec<Record> {
         thin(&self.searched, |index| self.get(*index).copied()).points.into_iter().flatten().collect()
     }
 
-    /// Places found up to a frame.
+    /// Returns the estimated positions up to a frame.
     pub fn path(&self, last: usize) -> Thinned<DVec2> {
         let end = self.records.partition_point(|record| record.index <= last);
         thin(&self.records[..end], |record| record.pose.planar().position_in_world())
     }
 
-    /// The first frame seen, as the start of what the odometry says.
+    /// Returns the first frame seen with its pose, from which the odometry path starts.
     pub fn first(&self) -> Option<(usize, Pose2)> {
         self.records.first().map(|record| (record.index, record.pose.planar()))
     }
 }
 
-/// True places up to a frame.
+/// Returns the true positions up to a frame.
 pub fn true_path(sequence: &Sequence, last: usize) -> Thinned<DVec2> {
     let frames = &sequence.frames[..=last.min(sequence.frames.len() - 1)];
     let position = |frame: &FrameRecord| Some(frame.reference_pose?.planar().position_in_world());
@@ -102,7 +102,8 @@ pub fn true_path(sequence: &Sequence, last: usize) -> Thinned<DVec2> {
     Thinned { points: points.into_iter().flatten().collect(), step }
 }
 
-/// Where the odometry alone leads from a frame whose pose is known, up to a frame; without those that have none.
+/// Returns the path of the odometry alone from a frame with a known pose up to a frame, without frames that have no
+/// odometry.
 pub fn odometry_path(sequence: &Sequence, (known, pose): (usize, Pose2), last: usize) -> Thinned<DVec2> {
     let odometry = |index: usize| sequence.frames[index].odometry;
     let indices: Vec<usize> = (known..=last).collect();

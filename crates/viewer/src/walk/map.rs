@@ -1,4 +1,4 @@
-//! The field from above: particles, paths, the pose found and the true one; particles can be dragged away.
+//! The field from above: particles, paths, the estimated pose and the true one. The particles can be dragged.
 
 use eframe::egui::{Color32, CursorIcon, PointerButton, Stroke, Ui, Vec2};
 use glam::DVec2;
@@ -18,7 +18,7 @@ use crate::{
     footprint::Footprint,
 };
 
-/// The view, and the place that the particles are being dragged to.
+/// View of the field, and the pose to which the particles are being dragged.
 #[derive(Default)]
 pub struct Map {
     view: FieldView,
@@ -27,7 +27,7 @@ pub struct Map {
 }
 
 impl Map {
-    /// Draws it into the room; gives the place where the particles were dropped.
+    /// Draws the map into the room; returns the pose at which the particles were dropped.
     pub fn ui(
         &mut self,
         ui: &mut Ui,
@@ -48,7 +48,7 @@ impl Map {
         let at = frame.record.index;
         let pans = [PointerButton::Secondary, PointerButton::Middle];
         if pans.iter().any(|button| canvas.response.dragged_by(*button)) {
-            // Who moves the view wants to look elsewhere.
+            // A user who moves the view wants to see another part.
             layers.follow = false;
         }
         if layers.footprint {
@@ -77,7 +77,7 @@ impl Map {
         self.drag(ui, &canvas, frame.record.pose.planar())
     }
 
-    /// A drag with the primary button takes the particles along, keeping their heading.
+    /// Drags the particles with the primary button, keeping their heading.
     fn drag(&mut self, ui: &Ui, canvas: &FieldCanvas, pose: Pose2) -> Option<Pose2> {
         let response = &canvas.response;
         if response.dragged_by(PointerButton::Primary)
@@ -86,7 +86,7 @@ impl Map {
             let place = canvas.in_world(pointer);
             self.dragged = Some(Pose2::new(place.x, place.y, pose.yaw_rad));
         } else if !response.drag_stopped() {
-            // A drag may end where this field is not shown.
+            // A drag may end while this field is not shown.
             self.dragged = None;
         }
         if let Some(dragged) = self.dragged {
@@ -113,7 +113,7 @@ fn draw_odometry(canvas: &FieldCanvas, sequence: &Sequence, history: &History, a
     }
 }
 
-/// The heavier a particle, the brighter and larger.
+/// Draws the particles: brighter and larger with more weight.
 fn draw_particles(canvas: &FieldCanvas, frame: &FrameView) {
     for particle in &frame.particles {
         let shown = particle.relative_weight.sqrt();

@@ -1,4 +1,4 @@
-//! Walk: the particle filter at work on a recording.
+//! Walk: the particle filter running on a recording.
 
 mod camera;
 mod controls;
@@ -35,27 +35,27 @@ use crate::{
     shortcuts::{self, Place},
 };
 
-/// Width of the settings beside the views, with its margins, points.
+/// Width of the settings beside the views, including margins, points.
 const SETTINGS_WIDTH: f32 = 234.0;
-/// Height of everything along the bottom but the curves, points.
+/// Height of the part along the bottom without the curves, points.
 const TRANSPORT_HEIGHT: f32 = 108.0;
-/// Curves take what picture and field side by side leave, within these heights, points.
+/// Range of the curves' height, points; within it, they take the space left by picture and field side by side.
 const CURVE_HEIGHTS: std::ops::RangeInclusive<f32> = 72.0..=330.0;
-/// From this width on picture and field stand side by side, else one above the other, in heights.
+/// Least ratio of width to height at which picture and field are side by side; below it, one is above the other.
 const WIDE: f32 = 1.25;
 
-/// A recording, the player that works on it, and what it has sent.
+/// Recording, the player that processes it, and what the player has sent.
 pub struct WalkPanel {
     sequence: Arc<Sequence>,
     player: Player,
-    /// What the player was told last.
+    /// Settings sent to the player last.
     told: WalkSettings,
-    /// How many commands it was told, for it to say how many it has heard.
+    /// Number of commands sent to the player, compared with the number it has received.
     commands: u64,
     state: State,
     timeline: Timeline,
     has_truth: bool,
-    /// There was a frame, or a problem in its place.
+    /// Whether there was a frame, or a problem in its place.
     has_answered: bool,
     frame: Option<Box<FrameView>>,
     history: History,
@@ -84,7 +84,7 @@ impl WalkPanel {
         }
     }
 
-    /// Takes what the player has sent; of several frames the last one is drawn.
+    /// Receives the player's messages; of several frames, the last one is drawn.
     fn listen(&mut self, problems: &mut Problems) {
         while let Some(message) = self.player.poll() {
             match message {
@@ -103,7 +103,7 @@ impl WalkPanel {
         }
     }
 
-    /// What was set since the player was told the last time.
+    /// Returns commands for settings changed since the player was last told.
     fn new_settings(&mut self, settings: &WalkSettings) -> Vec<Command> {
         let told = std::mem::replace(&mut self.told, settings.clone());
         let changed = [
@@ -117,7 +117,7 @@ impl WalkPanel {
         changed.into_iter().flatten().collect()
     }
 
-    /// Shows it.
+    /// Shows the panel.
     pub fn ui(
         &mut self,
         ui: &mut Ui,
@@ -134,7 +134,7 @@ impl WalkPanel {
         commands.into_iter().for_each(|command| self.player.tell(command));
     }
 
-    /// Whether the player works on something that was asked for.
+    /// Whether the player still works on a command.
     fn is_working(&self) -> bool {
         !self.has_answered || self.state.heard < self.commands
     }
@@ -161,7 +161,7 @@ impl WalkPanel {
                 controls::filter(ui, &mut settings.filter, devices);
             });
         });
-        // Curves take what picture and field side by side leave.
+        // The curves take the space left by picture and field side by side.
         let views_height = height_within(ui.available_width(), &self.sequence);
         let left = ui.available_height() - TRANSPORT_HEIGHT - views_height;
         let curve_height = left.clamp(*CURVE_HEIGHTS.start(), *CURVE_HEIGHTS.end());
@@ -170,7 +170,7 @@ impl WalkPanel {
         commands
     }
 
-    /// Everything along the bottom.
+    /// Shows the curves and the transport controls along the bottom.
     fn time_ui(&self, ui: &mut Ui, settings: &mut WalkSettings, curve_height: f32) -> Vec<Command> {
         let Self { sequence, timeline, history, state, has_truth, .. } = self;
         ui.add_space(4.0);
@@ -179,7 +179,7 @@ impl WalkPanel {
         asked.into_iter().chain(clicked.map(Command::GoTo)).collect()
     }
 
-    /// The camera's picture and the field, side by side or one above the other.
+    /// Shows the camera's picture and the field, side by side or one above the other.
     fn views(
         &mut self,
         ui: &mut Ui,
@@ -191,7 +191,7 @@ impl WalkPanel {
         let camera = &self.sequence.setup.camera;
         let aspect = camera.width as f32 / camera.height as f32;
         let (picture, field) = if is_wide {
-            // As high as both can be side by side; the field gets the rest of the width.
+            // Both have the height at which they fit side by side; the field takes the rest of the width.
             let height = height_within(room.x, &self.sequence).min(room.y);
             let width = (aspect * height).min(0.7 * room.x);
             (vec2(width, height), vec2(room.x - width - ui.spacing().item_spacing.x, height))
@@ -217,13 +217,13 @@ impl WalkPanel {
     }
 }
 
-/// The height at which picture and field side by side fill the width.
+/// Returns the height at which picture and field side by side fill the width.
 fn height_within(width: f32, sequence: &Sequence) -> f32 {
     let (camera, half) = (&sequence.setup.camera, sequence.field.carpet_half_extent_m());
     width / (camera.width as f32 / camera.height as f32 + (half.x / half.y) as f32)
 }
 
-/// What was found in the picture shown.
+/// Shows the results for the current picture.
 fn facts(ui: &mut Ui, record: Option<&Record>, is_working: bool) {
     let Some(record) = record else {
         ui.weak(if is_working { "working …" } else { "nothing seen yet" });

@@ -1,4 +1,4 @@
-//! The filter at work: a thread that plays a recording, does what it is told, and sends what is to be seen.
+//! The filter's thread: plays a recording, follows commands, and sends everything to be shown.
 //!
 //! It owns the filter. The window sends commands and never waits; frames come back through a short queue, so that a window
 //! that does not draw stops the player and not the other way round.
@@ -27,47 +27,47 @@ use super::{
 };
 use crate::device::{Device, by_name};
 
-/// Frames on their way to the window at most.
+/// Largest number of frames on their way to the window.
 const QUEUE: usize = 2;
 
-/// What the window wants.
+/// Command of the window.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Command {
     Play,
     Pause,
-    /// Shows a frame, by its number.
+    /// Shows the frame with this number.
     GoTo(usize),
-    /// Begins again at the first frame, as if nothing had been seen.
+    /// Starts again at the first frame and forgets everything seen.
     Restart,
     Filter(FilterSettings),
     Speed(Speed),
     Veil(Veil),
-    /// Moves all particles to a place.
+    /// Moves all particles to a pose.
     Place(Pose2),
 }
 
-/// What the window is told.
+/// Message to the window.
 pub enum Message {
-    /// It begins again: what was found before counts no longer.
+    /// The player starts again: earlier results are no longer valid.
     Begun,
     Frame(Box<FrameView>),
-    /// Sent after every piece of work.
+    /// State, sent after every piece of work.
     State(State),
-    /// In words.
+    /// Problem, in words.
     Problem(String),
 }
 
-/// Where the player is.
+/// State of the player.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct State {
-    /// The frame that it is at; the last [`Message::Frame`] is of another one where this one's picture cannot be read.
+    /// Current frame; the last [`Message::Frame`] is of another one if this frame's picture cannot be read.
     pub at: usize,
     pub is_playing: bool,
-    /// Commands heard so far.
+    /// Number of commands received so far.
     pub heard: u64,
 }
 
-/// The window's end.
+/// The window's handle of the player.
 pub struct Player {
     commands: mpsc::Sender<Command>,
     messages: mpsc::Receiver<Message>,
@@ -75,7 +75,7 @@ pub struct Player {
 }
 
 impl Player {
-    /// Starts the thread; it shows the first frame and waits. It ends when this is dropped.
+    /// Starts the thread; it shows the first frame and waits. It ends when the handle is dropped.
     pub fn spawn(
         ctx: &Context,
         sequence: Arc<Sequence>,
@@ -91,13 +91,13 @@ impl Player {
         Self { commands, messages, is_gone: false }
     }
 
-    /// Tells it what to do next.
+    /// Sends a command.
     pub fn tell(&self, command: Command) {
-        // It is gone only after a fault, which the end of the messages tells.
+        // The thread is gone only after a fault, which the end of its messages reports.
         let _ = self.commands.send(command);
     }
 
-    /// The next message, if there is one.
+    /// Returns the next message, if there is one.
     pub fn poll(&mut self) -> Option<Message> {
         match self.messages.try_recv() {
             Ok(message) => Some(message),
@@ -116,7 +116,7 @@ struct Outbox {
     ctx: Context,
 }
 
-/// The window was closed.
+/// The window has been closed.
 struct Closed;
 
 impl Outbox {
@@ -127,22 +127,22 @@ impl Outbox {
     }
 }
 
-/// What is to be done after the commands were heard: of several places and frames the last ones count.
+/// Work that follows from the commands received: of several poses and frames, the last ones count.
 #[derive(Default)]
 struct Todo {
-    /// Forget everything first.
+    /// Whether to forget everything first.
     restart: bool,
     go_to: Option<usize>,
     place: Option<Pose2>,
-    /// Send what was seen last once more: the window wants other layers.
+    /// Whether to send the last frame once more, because the window wants other layers.
     show: bool,
 }
 
-/// What went wrong.
+/// Fault during the work.
 enum Fault {
-    /// With one picture; the next one may be whole.
+    /// Fault of one picture; the next one may be readable.
     Picture(String),
-    /// With the device.
+    /// Fault of the device.
     Device(String),
 }
 
@@ -161,7 +161,7 @@ impl From<LocalizationError> for Fault {
     }
 }
 
-/// The thread's own state.
+/// State of the thread.
 struct Playing {
     sequence: Arc<Sequence>,
     devices: Vec<Device>,
@@ -170,19 +170,19 @@ struct Playing {
     veil: Veil,
     outbox: Outbox,
     preprocessor: Preprocessor,
-    /// With the name of the device it was opened for.
+    /// Backend with the name of the device for which it was opened.
     backend: Option<(String, Arc<dyn Backend>)>,
     scorer: CpuScorer,
-    /// None before the first frame, after settings that it does not have yet, and after a fault.
+    /// `None` before the first frame, after a change of settings that it has not taken yet, and after a fault.
     localizer: Option<Localizer>,
-    /// What the localizer has seen counts no longer.
+    /// Whether the localizer has to start again, forgetting what it has seen.
     begins_anew: bool,
     state: State,
     seen: Option<Seen>,
     timeline: Timeline,
-    /// The poses found so far: where the filter goes on when it is sent back.
+    /// Poses estimated so far, from which the filter continues when it is sent back.
     poses: Vec<Option<Pose2>>,
-    /// When the next frame is due; `None` while paused.
+    /// Time when the next frame is due; `None` while paused.
     due: Option<Instant>,
 }
 
@@ -227,7 +227,7 @@ impl Playing {
         }
     }
 
-    /// The next command, or none when the next frame is due.
+    /// Waits for the next command; returns `None` when the next frame is due.
     fn wait(&self, commands: &mpsc::Receiver<Command>) -> Result<Option<Command>, Closed> {
         let Some(due) = self.due else { return commands.recv().map(Some).map_err(|_| Closed) };
         match commands.recv_timeout(due.saturating_duration_since(Instant::now())) {
@@ -237,7 +237,7 @@ impl Playing {
         }
     }
 
-    /// Hears a command and all that wait behind it.
+    /// Receives a command and all that are queued behind it.
     fn hear(&mut self, first: Command, commands: &mpsc::Receiver<Command>) -> Todo {
         let mut todo = Todo::default();
         for command in std::iter::once(first).chain(commands.try_iter()) {
@@ -274,7 +274,7 @@ impl Playing {
         }
     }
 
-    /// The next frame, or the end.
+    /// Returns the work for the next frame, or for the end of the recording.
     fn advance(&mut self) -> Todo {
         if self.state.at < self.last() {
             return Todo { go_to: Some(self.state.at + 1), ..Todo::default() };
@@ -287,7 +287,7 @@ impl Playing {
         self.sequence.frames.len() - 1
     }
 
-    /// Does it, and sends what came of it.
+    /// Does the work and sends its result.
     fn work(&mut self, todo: &Todo) -> Result<(), Closed> {
         if todo.restart {
             self.outbox.send(Message::Begun)?;
@@ -316,8 +316,8 @@ impl Playing {
         self.outbox.send(Message::Frame(Box::new(view)))
     }
 
-    /// Looks at the frame that is wanted. From the frame before the filter follows; where it has been, it begins where it
-    /// was; elsewhere it is carried on by the odometry, and searches the field where that is not enough.
+    /// Processes the requested frame. From the previous frame, the filter continues; at a frame seen before, it starts at
+    /// the pose found there; elsewhere it starts at a pose from the odometry, and searches the field if that is not enough.
     fn look(&mut self, todo: &Todo) -> Result<(), Fault> {
         let before = self.state.at;
         let index = todo.go_to.unwrap_or(if todo.restart { 0 } else { before });
@@ -331,7 +331,7 @@ impl Playing {
         self.localize(index, &Arc::new(picture))
     }
 
-    /// The pose of the last frame that was seen before this one, or the recording's start, carried on by the odometry.
+    /// Returns the pose of the last frame seen before this one, or the recording's start, moved by the odometry since then.
     fn nearest_known(&self, index: usize) -> Option<Pose2> {
         let seen = (0..index).rev().find_map(|known| Some((known, self.poses[known]?)));
         let (known, pose) = seen.or(self.sequence.start.map(|start| (0, start)))?;
@@ -342,7 +342,7 @@ impl Playing {
         Some(pose.moved(odometry(known)?.motion_to(odometry(index)?)))
     }
 
-    /// The filter anew around a pose, or all over the field.
+    /// Initializes the filter around a pose, or over the whole field.
     fn begin(&mut self, start: Option<Pose2>) -> Result<(), Fault> {
         self.begins_anew = false;
         if let Some(localizer) = &mut self.localizer {
@@ -373,7 +373,7 @@ impl Playing {
         let observation = Observation::of_frame(&self.sequence, index, picture);
         let found = localizer.update(&observation);
         let found = found.and_then(|frame| Ok((frame, localizer.particles()?)));
-        // A device that has failed is opened anew the next time.
+        // A device that has failed is opened again the next time.
         let (frame, particles) = found.inspect_err(|_| (self.localizer, self.backend) = (None, None))?;
         let prepared = self.preprocessor.prepare(picture.clone(), observation.mount);
         self.poses[index] = Some(frame.pose.planar());
@@ -381,11 +381,11 @@ impl Playing {
         Ok(())
     }
 
-    /// Says when the frame after this one is due, while playing.
+    /// Sets the time when the frame after this one is due, while playing.
     fn schedule(&mut self, index: usize) {
         let Some(due) = self.due else { return };
         let pause_s = self.timeline.pause_after_s(index) / self.speed.factor();
-        // A player that lags behind does not hurry to make up for it.
+        // A player that lags behind does not catch up.
         self.due = Some((due + Duration::from_secs_f64(pause_s)).max(Instant::now()));
     }
 }

@@ -1,4 +1,4 @@
-//! What a person sets in Walk.
+//! Settings of Walk.
 
 use reality_sim_core::{
     filter::Resampling,
@@ -7,7 +7,7 @@ use reality_sim_core::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Everything in Walk that is remembered.
+/// All settings of Walk that are kept.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct WalkSettings {
@@ -16,7 +16,7 @@ pub struct WalkSettings {
     pub layers: Layers,
 }
 
-/// What the filter is run with.
+/// Settings of the filter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct FilterSettings {
@@ -24,11 +24,11 @@ pub struct FilterSettings {
     pub particles: usize,
     pub iterations: u32,
     pub resampling: Resampling,
-    /// Search the field when the filter seems to be lost.
+    /// Whether to search the field when the filter seems to be lost.
     pub recovery: bool,
     pub odometry: bool,
     pub seed: u64,
-    /// The name of one of the devices; the first where there is none of this name.
+    /// Name of the chosen device; the first device if no device has it.
     pub device: String,
 }
 
@@ -50,12 +50,12 @@ impl Default for FilterSettings {
 }
 
 impl FilterSettings {
-    /// Takes another model, with its own defaults.
+    /// Sets another observation model, with its own defaults.
     pub fn set_model(&mut self, kind: ObservationKind) {
         self.observation = ObservationConfig::new(kind);
     }
 
-    /// As the filter takes it.
+    /// Returns the configuration of the localizer.
     pub fn config(&self) -> LocalizerConfig {
         let mut config = LocalizerConfig::new(self.observation.kind);
         config.observation = self.observation;
@@ -69,15 +69,15 @@ impl FilterSettings {
     }
 }
 
-/// How fast a recording is played.
+/// Playback speed of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Speed {
-    /// As it was recorded.
+    /// The speed of the recording.
     #[default]
     Recorded,
-    /// Five times as fast.
+    /// Five times the speed of the recording.
     Fast,
-    /// As fast as the filter is.
+    /// As fast as the filter runs.
     Filter,
 }
 
@@ -92,7 +92,7 @@ impl Speed {
         }
     }
 
-    /// Times the recording's own speed.
+    /// Returns the factor on the recording's own speed.
     pub fn factor(self) -> f64 {
         match self {
             Self::Recorded => 1.0,
@@ -102,7 +102,7 @@ impl Speed {
     }
 }
 
-/// A picture that can be laid over the camera's.
+/// Picture that can be laid over the camera's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Veil {
     #[default]
@@ -140,7 +140,7 @@ impl Veil {
     }
 }
 
-/// What is drawn into picture and field.
+/// Layers drawn into picture and field.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Layers {
@@ -149,13 +149,13 @@ pub struct Layers {
     pub truth: bool,
     pub border: bool,
     pub veil: Veil,
-    /// How much the veil hides, 0 to 1.
+    /// Opacity of the veil, 0 to 1.
     pub veil_opacity: f32,
     pub particles: bool,
     pub path: bool,
     pub odometry: bool,
     pub footprint: bool,
-    /// Keep the pose found in the middle of an enlarged view.
+    /// Whether to keep the estimated pose in the centre of an enlarged view.
     pub follow: bool,
 }
 

@@ -1,4 +1,4 @@
-//! The player without a window: what it sends when it is told something.
+//! Tests of the player without a window: what it sends after commands.
 
 use std::{
     path::Path,
@@ -22,7 +22,7 @@ use super::{
 };
 use crate::Device;
 
-/// Longer than anything here takes, on the slowest machine.
+/// Time limit, longer than any test takes on the slowest machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 fn walk(frames: usize) -> Arc<Sequence> {
@@ -55,7 +55,7 @@ fn next(player: &mut Player) -> Message {
     panic!("the player says nothing");
 }
 
-/// The next frame; a problem ends the test.
+/// Returns the next frame; panics on a problem.
 fn next_frame(player: &mut Player) -> FrameView {
     loop {
         match next(player) {
@@ -74,7 +74,7 @@ fn next_problem(player: &mut Player) -> String {
     }
 }
 
-/// All frames until it stands still.
+/// Returns all frames until the player stops.
 fn play(player: &mut Player) -> Vec<FrameView> {
     player.tell(Command::Play);
     let (mut frames, mut has_played) = (Vec::new(), false);
@@ -97,7 +97,7 @@ fn error_m(frame: &FrameView) -> f64 {
 fn every_picture_is_played_once_in_its_order_and_found_to_a_centimetre() {
     let mut player = player(&walk(12), FilterSettings::default());
     assert_eq!(next_frame(&mut player).record.index, 0);
-    // The window is slow: nothing gets lost, and nothing is played ahead without end.
+    // The window is slow: nothing is lost, and the queue does not grow without bound.
     player.tell(Command::Play);
     thread::sleep(Duration::from_millis(300));
     let frames = play(&mut player);
@@ -144,7 +144,7 @@ fn a_frame_seen_before_is_found_again_where_it_was() {
     assert_eq!(after.index, before.index);
     let moved_m = (after.pose.x_m - before.pose.x_m).hypot(after.pose.y_m - before.pose.y_m);
     assert!(moved_m < 0.005, "{moved_m}");
-    // And from there it goes on.
+    // The filter continues from there.
     player.tell(Command::GoTo(before.index + 1));
     assert!(error_m(&next_frame(&mut player)) < 0.01);
 }
@@ -168,7 +168,7 @@ fn settings_act_on_the_picture_shown() {
     player.tell(Command::Filter(filter));
     let frame = next_frame(&mut player);
     assert_eq!((frame.record.index, frame.record.particles), (0, 300));
-    // The paper's models have no fit: the filter's own pose is the one given.
+    // The paper's models have no refinement: the result is the filter's own pose.
     assert_eq!(frame.record.pose, frame.best_particle);
     assert!(error_m(&frame) < 0.1);
 }
@@ -193,7 +193,7 @@ fn the_heaviest_particle_is_bright_and_the_lines_run_through_the_picture() {
     let heaviest = frame.particles.iter().map(|particle| particle.relative_weight).fold(0.0, f32::max);
     assert_eq!(heaviest, 1.0);
     assert_eq!(frame.particles.len(), 800);
-    // Found and true lines lie on each other: a point of the centre line is half a line from the nearest edge at most.
+    // Estimated and true lines coincide: a point of the centre line is at most half a line width from the nearest edge.
     let truth: Vec<_> = frame.truth_lines.iter().flatten().collect();
     let found: Vec<_> = frame.pose_lines.iter().flatten().collect();
     assert!(truth.len() > 100 && found.len() > 200 && !frame.border.is_empty());
@@ -201,7 +201,7 @@ fn the_heaviest_particle_is_bright_and_the_lines_run_through_the_picture() {
     assert!(near * 20 > truth.len() * 19, "{near} of {}", truth.len());
 }
 
-/// What is sent until the player has heard so many commands and stands still.
+/// Returns everything sent until the player has received this many commands and stands still.
 fn until_still(player: &mut Player, commands: u64) -> (Vec<FrameView>, Vec<String>, State) {
     let (mut frames, mut problems) = (Vec::new(), Vec::new());
     loop {
@@ -262,7 +262,7 @@ fn settings_and_a_frame_asked_for_at_once_both_count() {
     for is_settings_first in [true, false] {
         let mut player = player(&walk(12), FilterSettings::default());
         next_frame(&mut player);
-        // The player is busy while these three come in.
+        // The player is busy while these three arrive.
         player.tell(Command::GoTo(1));
         let filter = Command::Filter(FilterSettings { particles: 300, ..FilterSettings::default() });
         let both = if is_settings_first { [filter, Command::GoTo(9)] } else { [Command::GoTo(9), filter] };

@@ -1,18 +1,18 @@
-//! A recording's time as it is played: long pauses are cut short.
+//! Playback times of a recording: long pauses are shortened.
 
 use reality_sim_core::sequence::Sequence;
 
-/// Pauses in a recording longer than this are played as this long, seconds.
+/// Longest pause during playback, seconds.
 const LONGEST_PAUSE_S: f64 = 2.0;
 
-/// When each frame is played, seconds after the first.
+/// Playback time of each frame, seconds after the first.
 #[derive(Debug, Clone)]
 pub struct Timeline {
     played_s: Vec<f64>,
 }
 
 impl Timeline {
-    /// Of a recording, which has at least one frame.
+    /// Makes the timeline of a recording with at least one frame.
     pub fn new(sequence: &Sequence) -> Self {
         let mut now_s = 0.0;
         let pauses = sequence.frames.windows(2).map(|pair| pair[1].timestamp_s - pair[0].timestamp_s);
@@ -24,22 +24,22 @@ impl Timeline {
         Self { played_s }
     }
 
-    /// When a frame is played.
+    /// Returns the playback time of a frame.
     pub fn at_s(&self, index: usize) -> f64 {
         self.played_s[index]
     }
 
-    /// When the last one is.
+    /// Returns the playback time of the last frame.
     pub fn end_s(&self) -> f64 {
         self.played_s[self.played_s.len() - 1]
     }
 
-    /// How long a frame stays; the last one for no time.
+    /// Returns how long a frame is shown; 0 for the last one.
     pub fn pause_after_s(&self, index: usize) -> f64 {
         self.played_s.get(index + 1).map_or(0.0, |next_s| next_s - self.played_s[index])
     }
 
-    /// The frame nearest to a time.
+    /// Returns the frame nearest to a time.
     pub fn frame_at(&self, time_s: f64) -> usize {
         let after = self.played_s.partition_point(|played_s| *played_s < time_s);
         let before = after.saturating_sub(1);

@@ -1,4 +1,4 @@
-//! Play, pause, step and scrub.
+//! Transport controls: play, pause, step and scrub.
 
 use eframe::egui::{self, ComboBox, Slider, Ui};
 use reality_sim_core::sequence::Sequence;
@@ -9,7 +9,7 @@ use super::{
 };
 use crate::shortcuts::{self, Action};
 
-/// Shows the controls; what was asked for comes back.
+/// Shows the controls; returns the command that the user gave.
 pub fn ui(ui: &mut Ui, sequence: &Sequence, state: State, speed: &mut Speed) -> Option<Command> {
     let State { at, is_playing, .. } = state;
     let mut asked = None;
@@ -38,7 +38,7 @@ pub fn ui(ui: &mut Ui, sequence: &Sequence, state: State, speed: &mut Speed) -> 
     asked.or(scrub(ui, at, last))
 }
 
-/// A line of its own: what is beside a slider must not move while it is dragged.
+/// Shows the slider on a line of its own, so that nothing beside it moves while it is dragged.
 fn scrub(ui: &mut Ui, at: usize, last: usize) -> Option<Command> {
     let mut wanted = at;
     ui.spacing_mut().slider_width = ui.available_width();
@@ -47,7 +47,7 @@ fn scrub(ui: &mut Ui, at: usize, last: usize) -> Option<Command> {
     (wanted != at).then_some(Command::GoTo(wanted))
 }
 
-/// What a key or a button asks of the player.
+/// Returns the player's command for an action of a key or a button.
 pub fn command(action: Action, at: usize, last: usize, is_playing: bool) -> Option<Command> {
     match action {
         Action::PlayPause if is_playing => Some(Command::Pause),
