@@ -10,10 +10,11 @@ use crate::{
         pose_projection::PoseProjection,
     },
     measurement::quantity::Quantity,
+    thresholds::Thresholds,
 };
 
 /// Side of a cell of the field, metres.
-const CELL_M: f64 = 0.5;
+const CELL_M: f64 = Thresholds::DEFAULT.linear_model.cluster_cell_m;
 
 /// Normal equations of each frame, and the pose's projection in it.
 pub(super) fn by_frame(

@@ -1,4 +1,4 @@
-//! What the camera's file says is not exact: nominal values are trusted this far, and left free within it in every fit.
+//! Nuisance parameters: nominal values are not exact, and are free within a standard deviation in every fit.
 
 use std::collections::BTreeSet;
 
@@ -8,6 +8,7 @@ use crate::{
     measurement::frame::FrameMeasurements,
     measurement::quantity::{ColorChannel, Quantity},
     measurement::scalar::Measurement,
+    thresholds::{NuisanceThresholds, Thresholds},
 };
 
 /// A nominal value that may be a little off.
@@ -51,42 +52,23 @@ pub(crate) enum Nuisance {
     },
 }
 
-/// How white a line is: worn and dusty ones differ by a few percent.
-const LINE: f64 = 0.02;
-/// How bright carpet is: rolls and dirt.
-const CARPET: f64 = 0.07;
-/// The nominal blur's variance, pixels squared.
-const BLUR: f64 = 0.03;
-/// Its change with the width of lines, pixels squared for each factor of e.
-const WIDTH: f64 = 0.02;
-/// What a disc's or a bar's fitted variance is off by: 10 % on broad lines, up to 28 % on the thinnest (a uniform disc's
-/// edge and line spread, fitted as in [`crate::measurement::line_profile`]).
-const KERNEL: f64 = 0.12;
-const THIN_KERNEL: f64 = 0.2;
-/// The nominal noise's variance, of which fine texture of the carpet cannot be told: natural logarithm.
-const NOISE: f64 = 0.2;
-/// The carpet's sheen, linear.
-const SHEEN: f64 = 0.01;
-/// How much patches of carpet differ, logarithm.
-const PATCH: f64 = 0.05;
-/// Side of a patch, metres.
-const PATCH_M: f64 = 0.5;
+const THRESHOLDS: NuisanceThresholds = Thresholds::DEFAULT.linear_model.nuisance;
 
 /// Those that every recording has.
 const COMMON: [Nuisance; 13] = [
-    offset(Quantity::LineLevel(ColorChannel::Red), LINE),
-    offset(Quantity::LineLevel(ColorChannel::Green), LINE),
-    offset(Quantity::LineLevel(ColorChannel::Blue), LINE),
-    offset(Quantity::CarpetLevel(ColorChannel::Red), CARPET),
-    offset(Quantity::CarpetLevel(ColorChannel::Green), CARPET),
-    offset(Quantity::CarpetLevel(ColorChannel::Blue), CARPET),
-    offset(Quantity::LineBlur, BLUR),
-    offset(Quantity::NoiseVariance, NOISE),
-    Nuisance::Width { sigma: WIDTH },
-    Nuisance::Kernel { sigma: KERNEL },
-    Nuisance::ThinKernel { sigma: THIN_KERNEL },
-    Nuisance::Sheen { power: 1, sigma: SHEEN },
-    Nuisance::Sheen { power: 2, sigma: SHEEN },
+    offset(Quantity::LineLevel(ColorChannel::Red), THRESHOLDS.line_level),
+    offset(Quantity::LineLevel(ColorChannel::Green), THRESHOLDS.line_level),
+    offset(Quantity::LineLevel(ColorChannel::Blue), THRESHOLDS.line_level),
+    offset(Quantity::CarpetLevel(ColorChannel::Red), THRESHOLDS.carpet_level),
+    offset(Quantity::CarpetLevel(ColorChannel::Green), THRESHOLDS.carpet_level),
+    offset(Quantity::CarpetLevel(ColorChannel::Blue), THRESHOLDS.carpet_level),
+    offset(Quantity::LineBlur, THRESHOLDS.blur_px2),
+    offset(Quantity::NoiseVariance, THRESHOLDS.noise_variance),
+    Nuisance::Width { sigma: THRESHOLDS.blur_by_width_px2 },
+    Nuisance::Kernel { sigma: THRESHOLDS.blur_shape },
+    Nuisance::ThinKernel { sigma: THRESHOLDS.thin_blur_shape },
+    Nuisance::Sheen { power: 1, sigma: THRESHOLDS.sheen },
+    Nuisance::Sheen { power: 2, sigma: THRESHOLDS.sheen },
 ];
 
 const fn offset(quantity: Quantity, sigma: f64) -> Nuisance {
@@ -95,7 +77,7 @@ const fn offset(quantity: Quantity, sigma: f64) -> Nuisance {
 
 /// Which square of the field a point of it is in.
 pub(crate) fn cell_of(ground: DVec2) -> [i32; 2] {
-    let cell = (ground / PATCH_M).floor();
+    let cell = (ground / THRESHOLDS.patch_m).floor();
     [cell.x as i32, cell.y as i32]
 }
 
@@ -103,7 +85,7 @@ pub(crate) fn cell_of(ground: DVec2) -> [i32; 2] {
 pub(crate) fn tolerances(looks: &[FrameMeasurements]) -> Vec<Nuisance> {
     let blocks = looks.iter().flat_map(|look| &look.blocks);
     let cells: BTreeSet<[i32; 2]> = blocks.map(|block| cell_of(block.ground)).collect();
-    let patches = cells.into_iter().map(|cell| Nuisance::Patch { cell, sigma: PATCH });
+    let patches = cells.into_iter().map(|cell| Nuisance::Patch { cell, sigma: THRESHOLDS.patch_level });
     COMMON.into_iter().chain(patches).collect()
 }
 
@@ -170,7 +152,10 @@ mod tests {
     #[test]
     fn shapes_of_kernels_have_nothing_to_do_with_other_rows() {
         let line = measurement(Quantity::LineOffset);
-        for tolerance in [Nuisance::Kernel { sigma: KERNEL }, Nuisance::ThinKernel { sigma: THIN_KERNEL }] {
+        for tolerance in [
+            Nuisance::Kernel { sigma: THRESHOLDS.blur_shape },
+            Nuisance::ThinKernel { sigma: THRESHOLDS.thin_blur_shape },
+        ] {
             assert_eq!(tolerance.change(&line, 1.0), 0.0);
         }
     }
@@ -178,8 +163,8 @@ mod tests {
     #[test]
     fn a_patch_changes_the_carpet_in_its_own_square_only() {
         let carpet = |ground: DVec2| carpet_measurement(DVec2::ZERO, ground);
-        let patch = Nuisance::Patch { cell: cell_of(DVec2::new(0.7, -0.2)), sigma: PATCH };
-        assert_eq!(patch.change(&carpet(DVec2::new(0.9, -0.4)), -2.0), PATCH);
+        let patch = Nuisance::Patch { cell: cell_of(DVec2::new(0.7, -0.2)), sigma: THRESHOLDS.patch_level };
+        assert_eq!(patch.change(&carpet(DVec2::new(0.9, -0.4)), -2.0), THRESHOLDS.patch_level);
         assert_eq!(patch.change(&carpet(DVec2::new(1.1, -0.4)), -2.0), 0.0);
     }
 
@@ -189,7 +174,7 @@ mod tests {
             cos_incidence,
             ..measurement(Quantity::CarpetLevel(ColorChannel::Red))
         };
-        let sheen = Nuisance::Sheen { power: 1, sigma: SHEEN };
+        let sheen = Nuisance::Sheen { power: 1, sigma: THRESHOLDS.sheen };
         assert_eq!(sheen.change(&at(1.0), -3.0), 0.0);
         assert!(sheen.change(&at(0.2), -3.0) > sheen.change(&at(0.2), -2.0));
         assert!(sheen.change(&at(0.2), -3.0) > sheen.change(&at(0.6), -3.0));

@@ -2,10 +2,13 @@
 
 use reality_sim_core::pose::Motion2;
 
-use crate::recording::{Frame, Recording};
+use crate::{
+    recording::{Frame, Recording},
+    thresholds::Thresholds,
+};
 
-/// Steps so many before and after one stand for it.
-const AROUND: std::ops::RangeInclusive<usize> = 2..=3;
+/// Fewest and most steps between a step and those that stand for it.
+const AROUND: [usize; 2] = Thresholds::DEFAULT.linear_model.instrument_steps;
 
 /// The mean of the steps before and after each: the reference poses' own errors are in a step's movement and in what it is
 /// compared with, and would make a scale of what they have in common. Those of other steps have none in common with it
@@ -14,7 +17,7 @@ pub(crate) fn around(recording: &Recording<'_>, frames: &[&Frame]) -> Vec<Option
     let own: Vec<Option<Motion2>> = frames.iter().map(|frame| movement(recording, frame)).collect();
     let about = |index: usize| {
         let alone = own[index]?;
-        let near = (0..own.len()).filter(|&other| AROUND.contains(&other.abs_diff(index)));
+        let near = (0..own.len()).filter(|&other| (AROUND[0]..=AROUND[1]).contains(&other.abs_diff(index)));
         let steps: Vec<Motion2> = near.filter_map(|other| own[other]).collect();
         Some(if steps.is_empty() { alone } else { mean(&steps) })
     };

@@ -9,10 +9,11 @@ use nalgebra::{DMatrix, DVector};
 use crate::{
     linear_model::column::ColumnIndex,
     linear_model::normal_equations::{NormalEquations, PRIOR},
+    thresholds::Thresholds,
 };
 
-/// Where a fit leaves more than this part of what was unknown of a column, it cannot be seen.
-pub(crate) const UNSEEN: f64 = 0.1;
+/// Largest part of a column's prior variance that a fit may leave where the recording shows the column at all.
+pub(crate) const UNSEEN: f64 = Thresholds::DEFAULT.linear_model.most_prior_share;
 
 /// A set of columns fitted to some frames; the other effects are held where they vanish.
 #[derive(Debug, Clone)]

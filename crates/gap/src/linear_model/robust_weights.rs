@@ -7,12 +7,13 @@ use reality_sim_core::statistics::median;
 use crate::{
     linear_model::linearized_frame::LinearizedFrame,
     measurement::{quantity::Quantity, scalar::Measurement},
+    thresholds::Thresholds,
 };
 
-/// Cut-off of Tukey's biweight, standard deviations: residuals beyond it have no weight.
-const TUKEY: f64 = 5.0;
-/// Measurements of one frame are correlated: their information counts as that of this part of as many independent ones.
-pub(crate) const INDEPENDENT: f64 = 0.15;
+/// Cut-off of Tukey's biweight, standard deviations.
+const TUKEY: f64 = Thresholds::DEFAULT.linear_model.tukey_sigmas;
+/// Information of a picture's measurements, as a part of that of as many independent ones.
+pub(crate) const INDEPENDENT: f64 = Thresholds::DEFAULT.linear_model.independent_share;
 /// Standard deviation of a normal distribution by its median absolute deviation.
 pub(super) const SIGMA_BY_MAD: f64 = 1.4826;
 

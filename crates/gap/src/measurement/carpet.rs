@@ -5,25 +5,17 @@ use image::RgbImage;
 
 use reality_sim_core::statistics::median;
 
-use crate::measurement::{
-    camera::FrameCamera,
-    luma::LUMA,
-    quantization::{BLOCK, cosines},
-    visibility::Surroundings,
+use crate::{
+    measurement::{
+        camera::FrameCamera,
+        luma::LUMA,
+        quantization::{BLOCK, cosines},
+        visibility::Surroundings,
+    },
+    thresholds::{CarpetThresholds, Thresholds},
 };
 
-/// Frequencies in which noise is measured, as the sum of row and column: lower ones hold the carpet's texture, and of
-/// higher ones a JPEG file keeps little.
-const FREQUENCIES: std::ops::RangeInclusive<usize> = 3..=6;
-/// Largest quantisation step of a coefficient that noise is measured in, grey levels.
-const MAX_STEP: f64 = 12.0;
-
-/// A pixel shows carpet where its ratios of red and blue to green are the carpet's within this factor,
-const SAME_HUE: f64 = 1.3;
-/// and its green is the carpet's within this one, as lenses vignette and lamps light the field unevenly.
-const SAME_BRIGHTNESS: f64 = 2.0;
-/// Half the side of the square of pixels that is averaged for that.
-const AROUND_PX: i64 = 1;
+const THRESHOLDS: CarpetThresholds = Thresholds::DEFAULT.measurement.carpet;
 
 /// Measurements of a square of plain carpet.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,8 +44,12 @@ pub(crate) struct Spectrum {
 impl Spectrum {
     pub(crate) fn new(steps: &[[f64; BLOCK]; BLOCK]) -> Self {
         let all = (0..BLOCK).flat_map(|row| (0..BLOCK).map(move |column| (row, column)));
+        let [lowest, highest] = THRESHOLDS.noise_frequencies;
         let chosen: Vec<_> = all
-            .filter(|&(row, column)| FREQUENCIES.contains(&(row + column)) && steps[row][column] <= MAX_STEP)
+            .filter(|&(row, column)| {
+                (lowest..=highest).contains(&(row + column))
+                    && steps[row][column] <= THRESHOLDS.most_quantization_step
+            })
             .collect();
         let kept = chosen.iter().map(|&(row, column)| steps[row][column]).collect();
         Self { cosines: cosines(), chosen, steps: kept }
@@ -141,11 +137,12 @@ pub(crate) fn usual(blocks: &[CarpetBlock]) -> Option<[f64; 3]> {
         .then(|| [0, 1, 2].map(|channel| median(blocks.iter().map(|block| block.level[channel]))))
 }
 
-/// Whether the pixels around a point have the carpet's colour.
+/// Returns whether the pixels around a point have the carpet's colour.
 pub(crate) fn is_carpet(picture: &RgbImage, pixel: DVec2, usual: [f64; 3]) -> bool {
+    let around_px = THRESHOLDS.averaged_half_side_px;
     let mut sums = [0.0; 3];
-    for dv in -AROUND_PX..=AROUND_PX {
-        for du in -AROUND_PX..=AROUND_PX {
+    for dv in -around_px..=around_px {
+        for du in -around_px..=around_px {
             let (u, v) = (pixel.x.round() as i64 + du, pixel.y.round() as i64 + dv);
             let at = u32::try_from(u).ok().zip(u32::try_from(v).ok());
             let Some(color) = at.and_then(|(u, v)| picture.get_pixel_checked(u, v)) else { return false };
@@ -154,8 +151,10 @@ pub(crate) fn is_carpet(picture: &RgbImage, pixel: DVec2, usual: [f64; 3]) -> bo
     }
     let within = |ratio: f64, factor: f64| (1.0 / factor..=factor).contains(&ratio);
     let [red, green, blue] = [0, 1, 2].map(|channel| sums[channel] / usual[channel].max(1e-3));
-    let pixels = 255.0 * ((2 * AROUND_PX + 1) * (2 * AROUND_PX + 1)) as f64;
-    within(red / green, SAME_HUE) && within(blue / green, SAME_HUE) && within(green / pixels, SAME_BRIGHTNESS)
+    let pixels = 255.0 * ((2 * around_px + 1) * (2 * around_px + 1)) as f64;
+    within(red / green, THRESHOLDS.same_hue_factor)
+        && within(blue / green, THRESHOLDS.same_hue_factor)
+        && within(green / pixels, THRESHOLDS.same_brightness_factor)
 }
 
 #[cfg(test)]

@@ -7,26 +7,20 @@ use reality_sim_core::{
     preprocess::{Texture, luma},
 };
 
-use crate::measurement::{
-    camera::{FrameCamera, PixelVelocity},
-    carpet::{self, CarpetBlock},
-    line_profile::{self, LinePiece, Profile},
-    line_search::{Coarse, search},
-    visibility::Surroundings,
+use crate::{
+    measurement::{
+        camera::{FrameCamera, PixelVelocity},
+        carpet::{self, CarpetBlock},
+        line_profile::{self, LinePiece, Profile},
+        line_search::{Coarse, search},
+        visibility::Surroundings,
+    },
+    thresholds::{LineThresholds, Thresholds},
 };
 
-/// Distance between samples along a line on the ground, metres.
-const SPACING_M: f64 = 0.03;
-/// Distance between samples in the picture, pixels.
-const SPACING_PX: f64 = 9.0;
-/// Half widths in the picture of lines that can be measured: thinner ones are too faint, wider ones too near, pixels.
-const HALF_WIDTH_PX: std::ops::RangeInclusive<f64> = 0.5..=30.0;
-/// Least half width in standard deviations of the blur: of thinner lines less contrast is left than carpet has of its own.
-const THINNEST: f64 = 0.25;
+const THRESHOLDS: LineThresholds = Thresholds::DEFAULT.measurement.line;
 /// Variance of the blur by a pixel's own square aperture of side 1, pixels squared.
 pub(crate) const APERTURE_PX2: f64 = 1.0 / 12.0;
-/// Margin that a profile needs beyond a line's sides and the search, pixels.
-const ROOM_PX: f64 = 8.0;
 
 /// A piece of line that the model predicts in the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,10 +59,11 @@ pub(crate) struct Line {
 pub(crate) fn expected_lines(camera: &FrameCamera<'_>) -> Vec<VisibleSample> {
     let field = camera.chain.field();
     let surroundings = Surroundings::new(camera);
-    let samples = sample_lines(field, SPACING_M);
-    let visible = visible_samples(field, &samples, camera.chain.camera(), camera.pose, SPACING_PX);
+    let samples = sample_lines(field, THRESHOLDS.spacing_m);
+    let visible = visible_samples(field, &samples, camera.chain.camera(), camera.pose, THRESHOLDS.spacing_px);
+    let [thinnest, widest] = THRESHOLDS.half_width_px;
     let alone = visible.into_iter().filter(|visible| {
-        HALF_WIDTH_PX.contains(&visible.half_width_px) && surroundings.stands_alone(visible)
+        (thinnest..=widest).contains(&visible.half_width_px) && surroundings.stands_alone(visible)
     });
     let placed = alone.filter_map(|visible| {
         Some(VisibleSample { pixel: camera.project(visible.sample.point_in_world, 1)?, ..visible })
@@ -114,7 +109,7 @@ impl LineFinder<'_> {
     fn has_room(&self, visible: &VisibleSample) -> bool {
         let size = DVec2::new(f64::from(self.picture.width()), f64::from(self.picture.height()));
         let room = visible.pixel.min(size - 1.0 - visible.pixel).min_element();
-        room > self.search_px + 2.0 * visible.half_width_px + ROOM_PX
+        room > self.search_px + 2.0 * visible.half_width_px + THRESHOLDS.border_margin_px
     }
 
     /// The piece's measurements; `None` where it is too thin for its blur or its profile cannot be fitted.
@@ -128,7 +123,7 @@ impl LineFinder<'_> {
         let expected_px2 = chain.psf_variance_px2(pixel) + APERTURE_PX2 + smear_px * smear_px / 12.0;
         let variance_px2 = expected_px2 + found.extra_px2;
         let half_width_px = visible.half_width_px;
-        (half_width_px > THINNEST * variance_px2.sqrt()).then_some(())?;
+        (half_width_px > THRESHOLDS.least_half_width_sigmas * variance_px2.sqrt()).then_some(())?;
         let piece = LinePiece { pixel, normal, half_width_px, variance_px2 };
         let profile = line_profile::fit(self.picture, self.gamma, &piece, found.offset_px)?;
         let curve = visible.sample.curve;

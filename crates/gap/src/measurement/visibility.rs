@@ -1,32 +1,25 @@
-//! What else is where something is measured: other lines, marks, goals and the carpet's end.
+//! Visibility: whether a piece of line or a block of carpet stands alone in the picture, so that it can be measured.
 
 use glam::{DVec2, DVec3};
 use reality_sim_core::field::{GoalPost, LineSample, VisibleSample};
 
-use crate::measurement::camera::FrameCamera;
+use crate::{
+    measurement::camera::FrameCamera,
+    thresholds::{Thresholds, VisibilityThresholds},
+};
 
-/// Blocks of carpet stay this far from lines and the carpet's edge beside what the blur takes, metres.
-const CARPET_MARGIN_M: f64 = 0.03;
-/// And from posts.
-const POST_MARGIN_M: f64 = 0.05;
-/// Sides of marks on the field, metres: lines beside them are left out.
-const MARK_M: f64 = 0.15;
-/// A goal's net is at least this far behind the line, metres.
-const NET_M: f64 = 0.3;
-/// Pixels beyond a line's side that a profile needs, and the standard deviations of the blur with which what is there
-/// reaches into them.
-const FLANK: (f64, f64) = (5.0, 4.5);
+const THRESHOLDS: VisibilityThresholds = Thresholds::DEFAULT.measurement.visibility;
 
-/// What stands and lies around, from a view.
+/// Everything on the field that can be in the way of a measurement, as one camera sees it.
 pub(crate) struct Surroundings<'a> {
     view: &'a FrameCamera<'a>,
-    /// The camera's place.
+    /// Projection centre in the world, metres.
     camera: DVec3,
     half_extent_m: DVec2,
     line_width_m: f64,
-    /// Half the field's length.
+    /// Half the field's length, metres.
     half_length_m: f64,
-    /// Half the width of what may stand behind a goal's line.
+    /// Half the width of what may stand behind a goal line, metres.
     half_net_m: f64,
     marks: [DVec2; 3],
     posts: Vec<GoalPost>,
@@ -41,19 +34,19 @@ impl<'a> Surroundings<'a> {
             half_extent_m: field.carpet_half_extent_m(),
             line_width_m: field.line_width_m,
             half_length_m: 0.5 * field.length_m,
-            half_net_m: 0.5 * field.goal_width_m + NET_M,
+            half_net_m: 0.5 * field.goal_width_m + THRESHOLDS.net_m,
             marks: field.marks(),
             posts: field.goals().into_iter().flat_map(|goal| goal.posts).collect(),
         }
     }
 
-    /// Whether nothing else is so near to a line in the picture that it is in the profile: no other line, no mark, not the
-    /// carpet's end, no goal.
+    /// Returns whether the profile of a piece of line contains nothing else: no other line, no mark, no edge of the carpet, no
+    /// goal.
     pub(crate) fn stands_alone(&self, visible: &VisibleSample) -> bool {
         let LineSample { point_in_world, clearance_m, .. } = visible.sample;
         let blur_px = self.view.chain.psf_variance_px2(visible.pixel).sqrt();
-        let needed_px = visible.half_width_px + FLANK.0 + FLANK.1 * blur_px;
-        let to_marks = self.marks.into_iter().map(|mark| mark.distance(point_in_world) - MARK_M);
+        let needed_px = visible.half_width_px + THRESHOLDS.flank_px + THRESHOLDS.flank_sigmas * blur_px;
+        let to_marks = self.marks.into_iter().map(|mark| mark.distance(point_in_world) - THRESHOLDS.mark_m);
         let to_edge_m = (self.half_extent_m - point_in_world.abs()).min_element();
         let nearest_m =
             to_marks.fold(clearance_m.min(to_edge_m), f64::min).min(self.to_nets_m(point_in_world));
@@ -67,7 +60,7 @@ impl<'a> Surroundings<'a> {
         free_m > 0.0 && is_free(-free_m) && is_free(free_m) && self.off_posts(point_in_world, 0.0, needed_m)
     }
 
-    /// The ground's point in the middle of a square of pixels, where all of the square shows plain carpet.
+    /// Returns the ground point at the centre of a square of pixels; `None` unless all of it shows plain carpet.
     pub(crate) fn plain_carpet(&self, corner: [u32; 2], side: u32) -> Option<DVec2> {
         let middle = DVec2::new(f64::from(corner[0]), f64::from(corner[1])) + 0.5 * f64::from(side - 1);
         let camera = self.view.chain.camera();
@@ -83,14 +76,15 @@ impl<'a> Surroundings<'a> {
         {
             radius_m = radius_m.max(at(middle + reach_px * offset)?.distance(center));
         }
-        let free_m = radius_m + CARPET_MARGIN_M + 0.5 * self.line_width_m;
-        let inside = (center.abs() + radius_m + CARPET_MARGIN_M).cmple(self.half_extent_m).all();
+        let free_m = radius_m + THRESHOLDS.carpet_margin_m + 0.5 * self.line_width_m;
+        let inside = (center.abs() + radius_m + THRESHOLDS.carpet_margin_m).cmple(self.half_extent_m).all();
         let off_lines = self.view.curves.iter().all(|curve| curve.distance_m(center) > free_m);
-        let off_marks = self.marks.iter().all(|mark| mark.distance(center) > radius_m + MARK_M);
-        (inside && off_lines && off_marks && self.off_posts(center, POST_MARGIN_M, 0.0)).then_some(center)
+        let off_marks = self.marks.iter().all(|mark| mark.distance(center) > radius_m + THRESHOLDS.mark_m);
+        (inside && off_lines && off_marks && self.off_posts(center, THRESHOLDS.post_margin_m, 0.0))
+            .then_some(center)
     }
 
-    /// Whether a pixel shows the field, with its lines and marks: no goal, nothing beyond the carpet.
+    /// Returns whether a pixel shows carpet, a line or a mark, and neither a goal nor anything beyond the carpet.
     pub(crate) fn shows_field(&self, pixel: DVec2) -> bool {
         let camera = self.view.chain.camera();
         let ground = camera.unproject_to_ground(self.view.pose, pixel);
@@ -98,19 +92,19 @@ impl<'a> Surroundings<'a> {
             && ground.is_ok_and(|ground| {
                 ground.abs().cmple(self.half_extent_m).all()
                     && self.to_nets_m(ground) > 0.0
-                    && self.off_posts(ground, POST_MARGIN_M, 0.0)
+                    && self.off_posts(ground, THRESHOLDS.post_margin_m, 0.0)
             })
     }
 
-    /// From a point to what may stand behind a goal's line between its posts: nets and bars, of which a field's file does
-    /// not tell.
+    /// Distance from a point to the space behind a goal line between the posts, metres: nets and bars stand there, which a
+    /// field's file does not describe.
     fn to_nets_m(&self, point: DVec2) -> f64 {
-        let beyond_m = self.half_length_m + NET_M - point.x.abs();
+        let beyond_m = self.half_length_m + THRESHOLDS.net_m - point.x.abs();
         if point.y.abs() < self.half_net_m { beyond_m } else { f64::INFINITY }
     }
 
-    /// Whether no post, `thicker_m` thicker than it is, stands between the camera and a point of the ground, or so near
-    /// beside that in the picture that it would be `beside_m` away from the point.
+    /// Returns whether no post stands between the camera and a point of the ground. Posts are taken to be `thicker_m` thicker
+    /// than they are, and the line of sight to be `beside_m` wide to either side at the point.
     fn off_posts(&self, ground: DVec2, thicker_m: f64, beside_m: f64) -> bool {
         let camera = self.camera.truncate();
         let way = ground - camera;

@@ -4,11 +4,12 @@ use nalgebra::{SMatrix, SVector};
 use statrs::function::erf::erf;
 
 use super::samples::{LinePiece, Sample};
+use crate::thresholds::Thresholds;
 
 /// Most iterations of the Levenberg–Marquardt method.
 const MAX_STEPS: usize = 12;
-/// Variances of a line's blur that are believed, pixels squared; the least is a part of the pixel's own.
-const VARIANCE_PX2: std::ops::RangeInclusive<f64> = 0.02..=60.0;
+/// Smallest and largest variance of the blur, pixels squared.
+const VARIANCE_PX2: [f64; 2] = Thresholds::DEFAULT.measurement.profile.variance_px2;
 
 /// Parameters of the bar: middle, variance of the blur, and the linear levels of the line and of the flanks before and
 /// after it.
@@ -36,7 +37,7 @@ pub(super) fn fit_bar(samples: &[Sample], gamma: f64, piece: &LinePiece, found_p
         }
         let step = damped.cholesky()?.solve(&equations.gradient);
         let mut next = values + step;
-        next[1] = next[1].clamp(*VARIANCE_PX2.start(), *VARIANCE_PX2.end());
+        next[1] = next[1].clamp(VARIANCE_PX2[0], VARIANCE_PX2[1]);
         for level in next.iter_mut().skip(2) {
             *level = level.max(1e-5);
         }
@@ -57,8 +58,7 @@ pub(super) fn fit_bar(samples: &[Sample], gamma: f64, piece: &LinePiece, found_p
     }
     let degrees = samples.len().checked_sub(5).filter(|&degrees| degrees > 10)? as f64;
     let covariance = equations.normal.try_inverse()? * (equations.squares / degrees);
-    let edge = [*VARIANCE_PX2.start(), *VARIANCE_PX2.end()];
-    let inside = edge.iter().all(|edge| (values[1] - edge).abs() > 1e-6);
+    let inside = VARIANCE_PX2.iter().all(|edge| (values[1] - edge).abs() > 1e-6);
     let near = (values[0] - found_px).abs() < piece.half_width_px + 2.0;
     (inside && near).then(|| Bar {
         values,

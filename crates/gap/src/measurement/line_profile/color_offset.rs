@@ -1,12 +1,12 @@
 //! Offsets of the colour channels against luma across a line, and the line's own colour.
 
 use super::samples::Sample;
-use crate::measurement::luma::LUMA;
+use crate::{
+    measurement::luma::LUMA,
+    thresholds::{ProfileThresholds, Thresholds},
+};
 
-/// Standard deviation of the blur by chroma stored at half the resolution: averaged in pairs, and interpolated, pixels.
-const CHROMA_PX: f64 = 0.9;
-/// Flank that is left for colours at least, pixels.
-const LEAST_FLANK_PX: f64 = 1.5;
+const THRESHOLDS: ProfileThresholds = Thresholds::DEFAULT.measurement.profile;
 
 /// Offsets of red and blue against luma, by the centroid of the contrast against the flanks, and each colour's share of
 /// luma's contrast. Averaging moves no centroid, so that chroma stored at half the resolution does not bias it.
@@ -18,8 +18,8 @@ pub(super) fn colors(
 ) -> Option<(Option<[f64; 2]>, [f64; 3])> {
     let reach =
         |side: f64| samples.iter().map(|sample| side * (sample.across_px - center)).fold(0.0, f64::max);
-    let inner = half_width_px + 2.0 * sharp_px.hypot(CHROMA_PX) + 1.0;
-    let inner = inner.min(reach(1.0).min(reach(-1.0)) - LEAST_FLANK_PX);
+    let inner = half_width_px + 2.0 * sharp_px.hypot(THRESHOLDS.chroma_sigma_px) + 1.0;
+    let inner = inner.min(reach(1.0).min(reach(-1.0)) - THRESHOLDS.least_color_flank_px);
     let mut flank = [[0.0; 5]; 2];
     for sample in samples {
         let across = sample.across_px - center;
@@ -52,7 +52,7 @@ pub(super) fn colors(
     (total > 0.0).then_some(())?;
     let share = [0, 1, 2].map(|channel| LUMA[channel] * mass[channel] / total);
     let middle = |channel: usize| moment[channel] / mass[channel] - moment[3] / mass[3];
-    let clear = (0..3).all(|channel| mass[channel] > 0.3 * total);
+    let clear = (0..3).all(|channel| mass[channel] > THRESHOLDS.least_color_contrast * total);
     Some((clear.then(|| [middle(0), middle(2)]), share))
 }
 

@@ -18,9 +18,9 @@ use self::{
     color_offset::{colors, inner_level},
     samples::samples,
 };
+use crate::thresholds::{ProfileThresholds, Thresholds};
 
-/// A fit is refused where its residuals are more than this part of the line's contrast.
-const MAX_RESIDUAL: f64 = 0.2;
+const THRESHOLDS: ProfileThresholds = Thresholds::DEFAULT.measurement.profile;
 
 /// Measurements of a piece of line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +50,8 @@ pub(crate) fn fit(picture: &RgbImage, gamma: f64, piece: &LinePiece, found_px: f
     let levels =
         [bar.values[2], bar.values[3], bar.values[4]].map(|linear| linear.max(0.0).powf(1.0 / gamma));
     let contrast = levels[0] - 0.5 * (levels[1] + levels[2]);
-    (contrast > 0.02 && bar.residual < MAX_RESIDUAL * contrast).then_some(())?;
+    (contrast > THRESHOLDS.least_contrast && bar.residual < THRESHOLDS.most_residual * contrast)
+        .then_some(())?;
     let sharp_px = bar.values[1].sqrt();
     let (color_offset_px, contrast_share) = colors(&samples, center, piece.half_width_px, sharp_px)?;
     Some(Profile {

@@ -3,12 +3,12 @@
 use glam::DVec2;
 use image::RgbImage;
 
-use crate::measurement::luma::LUMA;
+use crate::{
+    measurement::luma::LUMA,
+    thresholds::{ProfileThresholds, Thresholds},
+};
 
-/// Half the length of the piece of line, pixels.
-const HALF_LENGTH_PX: f64 = 2.5;
-/// Flank taken beyond the blurred side of the line, pixels.
-const FLANK_PX: f64 = 4.0;
+const THRESHOLDS: ProfileThresholds = Thresholds::DEFAULT.measurement.profile;
 
 /// A piece of line whose profile is to be measured.
 #[derive(Debug, Clone, Copy)]
@@ -35,19 +35,19 @@ pub(super) struct Sample {
 
 /// Returns the piece's pixels around `found_px` along the normal; `None` where some are outside the picture.
 pub(super) fn samples(picture: &RgbImage, piece: &LinePiece, found_px: f64) -> Option<Vec<Sample>> {
-    let reach = piece.half_width_px + 2.5 * piece.variance_px2.sqrt() + FLANK_PX;
+    let reach = piece.half_width_px + 2.5 * piece.variance_px2.sqrt() + THRESHOLDS.flank_px;
     let middle = piece.pixel + found_px * piece.normal;
     let along = piece.normal.perp();
-    let extent = reach * piece.normal.abs() + HALF_LENGTH_PX * along.abs();
+    let extent = reach * piece.normal.abs() + THRESHOLDS.half_length_px * along.abs();
     let (from, to) = ((middle - extent).ceil(), (middle + extent).floor());
     let size = DVec2::new(f64::from(picture.width()), f64::from(picture.height()));
     (from.cmpge(DVec2::ZERO).all() && to.cmple(size - 1.0).all()).then_some(())?;
-    let mut samples = Vec::with_capacity((4.0 * reach * HALF_LENGTH_PX) as usize + 16);
+    let mut samples = Vec::with_capacity((4.0 * reach * THRESHOLDS.half_length_px) as usize + 16);
     for v in from.y as u32..=to.y as u32 {
         for u in from.x as u32..=to.x as u32 {
             let place = DVec2::new(f64::from(u), f64::from(v)) - middle;
             let across = place.dot(piece.normal);
-            if across.abs() <= reach && place.dot(along).abs() <= HALF_LENGTH_PX {
+            if across.abs() <= reach && place.dot(along).abs() <= THRESHOLDS.half_length_px {
                 let rgb = picture.get_pixel(u, v).0.map(|value| f64::from(value) / 255.0);
                 let luma = rgb.iter().zip(LUMA).map(|(value, weight)| value * weight).sum();
                 samples.push(Sample { across_px: across + found_px, rgb, luma });

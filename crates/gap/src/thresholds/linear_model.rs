@@ -1,0 +1,90 @@
+//! Weights of measurements, and how far nominal values and reference poses are trusted.
+
+/// Weights of measurements, and how far nominal values and reference poses are trusted.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LinearModelThresholds {
+    pub(crate) nuisance: NuisanceThresholds,
+    pub(crate) pose_error: PoseErrorThresholds,
+    /// Cut-off of Tukey's biweight, standard deviations: residuals beyond it have no weight (Huber and Ronchetti 2009,
+    /// section 4.8). Chosen: a little above the 4.685 of 95 % efficiency.
+    pub(crate) tukey_sigmas: f64,
+    /// Information of a picture's measurements, which are correlated, as a part of that of as many independent ones. Chosen.
+    pub(crate) independent_share: f64,
+    /// Largest part of a column's prior variance that a fit may leave where the recording shows the column at all. Chosen.
+    pub(crate) most_prior_share: f64,
+    /// Side of the cells of the field that are clusters of the covariance, metres. Chosen.
+    pub(crate) cluster_cell_m: f64,
+    /// Fewest and most steps of the odometry between a step and those that stand for its movement: they share no pose with it,
+    /// and so none of the reference's errors (instrumental variables). Two is the least distance; the most is chosen.
+    pub(crate) instrument_steps: [usize; 2],
+}
+
+/// Standard deviations of the nuisance parameters.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct NuisanceThresholds {
+    /// Brightness of a line, natural logarithm: worn and dusty lines differ by a few percent. Chosen.
+    pub(crate) line_level: f64,
+    /// Brightness of the carpet, natural logarithm: rolls and dirt. Chosen.
+    pub(crate) carpet_level: f64,
+    /// Brightness of a patch of carpet against the rest, natural logarithm. Chosen.
+    pub(crate) patch_level: f64,
+    /// Side of such a patch, metres. Chosen.
+    pub(crate) patch_m: f64,
+    /// Sheen of the carpet at grazing incidence, as a part of full scale in linear light. Chosen.
+    pub(crate) sheen: f64,
+    /// Variance of the nominal blur, pixels squared. Chosen.
+    pub(crate) blur_px2: f64,
+    /// Change of that variance for each factor of e in a line's width, pixels squared. Chosen.
+    pub(crate) blur_by_width_px2: f64,
+    /// Part by which the fitted variance of a disc's or a bar's blur is off: 10 % on broad lines, up to 28 % on the thinnest,
+    /// by the edge and the line spread of a uniform disc, fitted as in [`crate::measurement::line_profile`].
+    pub(crate) blur_shape: f64,
+    /// Part by which it is off beyond that on lines thinner than the blur. From the same fits.
+    pub(crate) thin_blur_shape: f64,
+    /// Variance of the nominal noise, natural logarithm: the carpet's fine texture looks the same. Chosen.
+    pub(crate) noise_variance: f64,
+}
+
+/// Standard deviations of the reference poses' errors. Pairs are of rotations (radians) and of positions (metres).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PoseErrorThresholds {
+    /// Those that the first fit assumes. Chosen.
+    pub(crate) initial: [f64; 2],
+    /// Those of usual motion capture, the centre of the prior. Chosen; not measured.
+    pub(crate) usual: [f64; 2],
+    /// Weight of the prior, as a part of the weight of a recording. Chosen.
+    pub(crate) prior_weight: f64,
+    /// Smallest that are believed. Chosen.
+    pub(crate) least: [f64; 2],
+    /// Those of yaw (radians), x and y (metres) where these come from the pictures: as good as free. Chosen.
+    pub(crate) free: [f64; 3],
+}
+
+impl LinearModelThresholds {
+    pub(super) const DEFAULT: Self = Self {
+        nuisance: NuisanceThresholds {
+            line_level: 0.02,
+            carpet_level: 0.07,
+            patch_level: 0.05,
+            patch_m: 0.5,
+            sheen: 0.01,
+            blur_px2: 0.03,
+            blur_by_width_px2: 0.02,
+            blur_shape: 0.12,
+            thin_blur_shape: 0.2,
+            noise_variance: 0.2,
+        },
+        pose_error: PoseErrorThresholds {
+            initial: [0.01, 0.02],
+            usual: [0.0025, 0.003],
+            prior_weight: 0.3,
+            least: [2e-4, 5e-4],
+            free: [0.1, 0.3, 0.3],
+        },
+        tukey_sigmas: 5.0,
+        independent_share: 0.15,
+        most_prior_share: 0.1,
+        cluster_cell_m: 0.5,
+        instrument_steps: [2, 3],
+    };
+}

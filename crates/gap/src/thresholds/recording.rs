@@ -1,0 +1,37 @@
+//! Which frames of a recording are compared.
+
+/// Which frames of a recording are compared, and how many it needs.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RecordingThresholds {
+    /// Fewest frames that are compared: a quarter of them is held out. Chosen.
+    pub(crate) least_frames: usize,
+    /// Of more frames than this every second, third … is compared. Chosen for the time that it takes.
+    pub(crate) most_frames: usize,
+    /// Frames in a row show one view where the camera moved by less than this, metres: several times the usual error of
+    /// motion capture. Chosen.
+    pub(crate) same_view_m: f64,
+    /// And turned by less than this, radians. Chosen.
+    pub(crate) same_view_rad: f64,
+    /// Fewest views among the fitted frames with which an effect is named or something called unknown. Chosen.
+    pub(crate) least_views: usize,
+    /// Odometry between frames farther apart than this is not compared, seconds. The same as the longest step that a
+    /// trajectory joins by a curve, see [`reality_sim_sensor::Trajectory`].
+    pub(crate) longest_step_s: f64,
+    /// The camera moves where its distance from the first frame is more than this on average, metres. Chosen.
+    pub(crate) moves_m: f64,
+    /// Or where it is turned from the first frame by more than this on average, radians. Chosen.
+    pub(crate) moves_rad: f64,
+}
+
+impl RecordingThresholds {
+    pub(super) const DEFAULT: Self = Self {
+        least_frames: 12,
+        most_frames: 240,
+        same_view_m: 0.025,
+        same_view_rad: 0.02,
+        least_views: 8,
+        longest_step_s: 0.6,
+        moves_m: 0.05,
+        moves_rad: 0.05,
+    };
+}
