@@ -5,10 +5,10 @@ use reality_sim::preprocess::gaussian_blur;
 
 use crate::scene::Scene;
 
-/// The widths of `contrast` and `gauss`, and one twice as wide, pixels.
+/// Standard deviations of the blur: those of `contrast` and `gauss`, and one twice as wide, pixels.
 const SIGMAS_PX: [f32; 3] = [0.7, 1.5, 3.0];
 
-/// Elements are pixels.
+/// Measures the blur; elements are pixels.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let luma = &scene.prepared().luma();
     let mut group = criterion.benchmark_group("blur");

@@ -1,11 +1,11 @@
-//! The border of the field, carpet colour included.
+//! Detection of the field's border, carpet colour included.
 
 use criterion::Criterion;
 use reality_sim::preprocess::{BorderDetector, Preprocessor};
 
 use crate::scene::Scene;
 
-/// The border alone, and all of preprocessing that every model needs.
+/// Measures the border alone, and the whole preprocessing that every model needs.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let detector = BorderDetector::new(&scene.walk.setup.camera);
     let preprocessor = Preprocessor::new(&scene.walk.setup.camera, scene.walk.field.line_width_m);

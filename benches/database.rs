@@ -1,4 +1,4 @@
-//! Images on their way into a database, and a large database opened.
+//! Ingestion of images into a database, and opening of a large database.
 
 use std::{
     cell::LazyCell,
@@ -13,14 +13,14 @@ use tempfile::TempDir;
 
 use crate::{poses::random_poses, scene::Scene};
 
-/// Times that the demonstration walk is added, each time as another recording.
+/// Number of times that the demonstration walk is added, each time as another recording.
 const WALKS: usize = 10;
-/// Images of the database that is opened.
+/// Number of images in the database that is opened.
 const IMAGES: usize = 10_000;
-/// For decoded pictures, of which there are none.
+/// Size of the cache for decoded pictures, bytes; nothing is decoded here.
 const CACHE_BYTES: usize = 1 << 20;
 
-/// Elements are images.
+/// Measures ingestion and opening; elements are images.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let walk = Sequence::open(&scene.walk.folder).expect("the demonstration walk is part of the repository");
     let mut group = criterion.benchmark_group("database");
@@ -51,7 +51,7 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     group.finish();
 }
 
-/// The walk's pictures over and over, at other poses.
+/// Makes a database of the walk's pictures, repeated at other poses.
 fn large_database(walk: &Sequence) -> TempDir {
     let mut recording = walk.clone();
     recording.frames = walk.frames.iter().cycle().take(IMAGES).cloned().collect();

@@ -1,11 +1,11 @@
-//! Whole frames: what `reality-sim tag` does with every picture once it is decoded.
+//! Whole frames: everything that `reality-sim tag` does with a picture once it is decoded.
 
 use criterion::{BatchSize, Criterion, SamplingMode, Throughput};
 use reality_sim::{Localizer, LocalizerConfig};
 
 use crate::{scene::Scene, scoring::MODELS};
 
-/// Elements are frames, tagged one after the other as in a recording.
+/// Measures localization; elements are frames, processed one after the other as in a recording.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let walk = &scene.walk;
     let mut group = criterion.benchmark_group("frame");

@@ -1,4 +1,4 @@
-//! The gap workflow, whole, on small recordings of the tests' ray caster.
+//! The whole gap workflow, on small recordings of the tests' ray caster.
 
 use criterion::{Criterion, Throughput};
 use reality_sim::{
@@ -14,7 +14,7 @@ use crate::scene::Scene;
 const FRAMES: usize = 40;
 const SIZE: [u32; 2] = [320, 240];
 
-/// Elements are frames. Reading and decoding the pictures is part of the workflow, and stands beside it.
+/// Measures the workflow; elements are frames. Reading and decoding the pictures is part of it, and also measured alone.
 pub fn bench(criterion: &mut Criterion, _: &Scene) {
     let mut group = criterion.benchmark_group("gap");
     group.throughput(Throughput::Elements(FRAMES as u64));

@@ -1,5 +1,6 @@
-//! The graphics device beside the CPU: whole frames of the filter, many particles, the search of the whole field, pictures
-//! drawn from others. The groups carry the adapter's name; without an adapter there are none, and a line says so.
+//! The graphics device compared with the CPU: whole frames of the filter, many particles, search of the whole field, and
+//! pictures drawn from others. The groups are named after the adapter; without an adapter there are none, and a line says
+//! so.
 
 #![expect(
     clippy::print_stdout,
@@ -22,14 +23,14 @@ use reality_sim::{
 use crate::{scene::Scene, scoring::MODELS, warp};
 
 const SIGMA: PlanarSigma = PlanarSigma { position_m: 0.03, yaw_rad: 0.03 };
-/// Scored at once by one iteration of the filter.
+/// Numbers of particles scored at once by one iteration of the filter.
 const PARTICLES: [usize; 4] = [800, 10_000, 100_000, 1_000_000];
-/// A driver that runs on the processor is spared the largest numbers.
+/// Largest number of particles for a driver that runs on the processor.
 const MOST_ON_PROCESSOR: usize = 100_000;
-/// 0.1 m and 1° on the demonstration walk's carpet: at least the paper's 720,000 poses.
+/// Grid of 0.1 m and 1° on the demonstration walk's carpet: at least the paper's 720,000 poses.
 const GRID: SearchGrid = SearchGrid { step_m: 0.1, headings: 360 };
 
-/// Nothing but the adapter's name is printed where there is none.
+/// Measures on the CPU and on the best adapter. If there is no adapter, only a line that says so is printed.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     match GpuContext::new(None) {
         Ok(context) => bench_on(criterion, scene, &Arc::new(context)),
@@ -50,8 +51,8 @@ fn bench_on(criterion: &mut Criterion, scene: &Scene, context: &Arc<GpuContext>)
     start(criterion, scene, context, &adapter.name);
 }
 
-/// Upload, blur, five iterations of 800 particles, and the estimate read back; the border of the field, which is the
-/// CPU's work with both, excluded.
+/// Measures a whole frame: upload, blur, five iterations of 800 particles, and read-back of the estimate. The border of
+/// the field is excluded: the CPU finds it in both cases.
 fn whole_frames(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dyn Backend)]) {
     let walk = &scene.walk;
     for (name, kind) in MODELS {
@@ -75,7 +76,8 @@ fn whole_frames(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dy
     }
 }
 
-/// Where a frame's time goes, by the device's own clock: every kernel in a pass of its own, the mean of some frames.
+/// Prints where a frame's time goes, by the device's own clock: every kernel in its own pass, averaged over several
+/// frames.
 fn print_stages(scene: &Scene, context: &Arc<GpuContext>) {
     use reality_sim::filter::Filter;
 
@@ -93,7 +95,7 @@ fn print_stages(scene: &Scene, context: &Arc<GpuContext>) {
         let mut filter = filter.expect("a device that works");
         filter.initialize(&[(scene.pose(), 1.0)], SIGMA).expect("a device that works");
         let mut stages: Vec<(&str, f64)> = Vec::new();
-        // The first frame warms everything up.
+        // The first frame is a warm-up.
         for frame in 0..=FRAMES {
             filter.load(scene.prepared()).expect("a device that works");
             filter.predict(None).expect("a device that works");
@@ -116,7 +118,7 @@ fn print_stages(scene: &Scene, context: &Arc<GpuContext>) {
     }
 }
 
-/// One iteration of `gauss`. Elements are samples scored.
+/// Measures one iteration of `gauss`; elements are samples scored.
 fn many_particles(
     criterion: &mut Criterion,
     scene: &Scene,
@@ -144,7 +146,8 @@ fn many_particles(
     }
 }
 
-/// Elements are poses. Nothing is known of the place: half the carpet is searched, the other half is its mirror image.
+/// Measures the search without any prior on the place; elements are poses. Half the carpet is searched: the other half is
+/// its mirror image.
 fn search(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dyn Backend)]) {
     let walk = &scene.walk;
     let poses = GRID.places(&walk.field).len() / 2 * GRID.headings as usize;
@@ -162,7 +165,7 @@ fn search(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dyn Back
     group.finish();
 }
 
-/// From nothing to a device, and from a device to a filter with all its pipelines.
+/// Measures opening a device, and making a filter with all its pipelines on an open device.
 fn start(criterion: &mut Criterion, scene: &Scene, context: &Arc<GpuContext>, adapter: &str) {
     let walk = &scene.walk;
     let mut group = criterion.benchmark_group("start");

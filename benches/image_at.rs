@@ -1,5 +1,5 @@
-//! A whole picture at a pose, as a simulator asks for it: neighbours found and chosen, brightness matched, drawn, filled.
-//! Their pictures are decoded before. Elements are pictures.
+//! A whole picture at a pose, as a simulator requests it: neighbours are found and chosen, brightness is matched, the
+//! picture is drawn and filled. The neighbours' pictures are decoded beforehand. Elements are pictures.
 
 use std::{cell::LazyCell, hint::black_box, sync::Arc};
 
@@ -14,10 +14,10 @@ use tempfile::TempDir;
 
 use crate::scene::Scene;
 
-/// The pictures in between are in the database, these are not.
+/// Interval of the pictures that are not in the database; those in between are.
 const LEFT_OUT: usize = 5;
 
-/// By every method, `blend` from four and from six pictures.
+/// Measures every method, with `blend` from four and from six pictures.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let walk = Sequence::open(&scene.walk.folder).expect("the demonstration walk is part of the repository");
     let poses: Vec<CameraPose> = walk.reference_poses().step_by(LEFT_OUT).flatten().collect();
@@ -52,7 +52,7 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     group.finish();
 }
 
-/// The walk without every fifth picture.
+/// Stores the walk without every fifth picture.
 fn store(walk: &Sequence) -> (TempDir, Arc<Archive>) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("walk.db");

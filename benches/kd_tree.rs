@@ -1,14 +1,14 @@
-//! What most would use in place of our index: a kd-tree over points whose Euclidean distances are nearly those of the
-//! metric. It proposes candidates, and the metric chooses among them.
+//! The usual alternative to our index: a kd-tree over points whose Euclidean distances approximate the metric. It proposes
+//! candidates, from which the metric chooses.
 
 use kdtree::{KdTree, distance::squared_euclidean};
 use reality_sim::CameraPose;
 use reality_sim::db::metric::PixelMetric;
 
-/// Place, the heading as a place on a circle, height, pitch and roll, pixels.
+/// Number of coordinates: place, the heading as a point on a circle, height, pitch and roll, pixels.
 const AXES: usize = 7;
 
-/// Poses as points.
+/// Embedding of poses as points.
 #[derive(Debug, Clone, Copy)]
 struct Embedding {
     px_per_m: f64,
@@ -17,7 +17,7 @@ struct Embedding {
 }
 
 impl Embedding {
-    /// By how much the picture moves with every motion alone; forward and left have no place in it, so their mean.
+    /// Scales every motion by how far it alone moves the picture; forward and left share their mean.
     fn new(metric: &PixelMetric) -> Self {
         let matrix = metric.matrix();
         let [_, _, px_per_rad, height, pitch, roll] = std::array::from_fn(|axis| matrix[(axis, axis)].sqrt());
@@ -40,7 +40,7 @@ impl Embedding {
     }
 }
 
-/// Finds images by pose, most of the time those that are nearest.
+/// Index that usually finds the nearest images by pose.
 pub struct KdIndex {
     tree: KdTree<f64, u32, [f64; AXES]>,
     embedding: Embedding,
@@ -49,7 +49,7 @@ pub struct KdIndex {
 }
 
 impl KdIndex {
-    /// An index of images taken at these poses.
+    /// Builds an index of images taken at these poses.
     pub fn new(metric: PixelMetric, poses: Vec<CameraPose>) -> Self {
         let embedding = Embedding::new(&metric);
         let mut tree = KdTree::new(AXES);
@@ -59,7 +59,7 @@ impl KdIndex {
         Self { tree, embedding, metric, poses }
     }
 
-    /// The nearest images of so many candidates with their distances in pixels, nearest first.
+    /// Returns the nearest images among this many candidates with their distances in pixels, nearest first.
     pub fn nearest(&self, pose: CameraPose, count: usize, candidates: usize) -> Vec<(u32, f64)> {
         let point = self.embedding.point(pose);
         let found = self.tree.nearest(&point, candidates, &squared_euclidean).expect("finite numbers");

@@ -1,4 +1,4 @@
-//! Benchmarks, one file a stage. `README.md` says how to read them.
+//! Benchmarks, one file per stage. `README.md` explains how to read them.
 
 mod blur;
 mod border;

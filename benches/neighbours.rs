@@ -1,4 +1,4 @@
-//! Images found by pose: our index, which is exact, and beside it a kd-tree, which proposes candidates.
+//! Search of images by pose: our index, which is exact, compared with a kd-tree that proposes candidates.
 
 use std::{cell::LazyCell, hint::black_box, time::Duration};
 
@@ -12,12 +12,12 @@ use crate::{
 };
 
 const IMAGES: [usize; 3] = [300, 10_000, 1_000_000];
-/// Asked for in turns.
+/// Number of poses that are queried in turn.
 const QUERIES: usize = 1000;
-/// Of the kd-tree.
+/// Numbers of candidates from the kd-tree.
 const CANDIDATES: [usize; 2] = [16, 64];
 
-/// Building, and one query.
+/// Measures building the index, and one query.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let metric = metric(&scene.walk);
     let queries = random_poses(QUERIES, 1);
@@ -31,7 +31,7 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
         group.bench_function("build/kd_tree", |bencher| {
             bencher.iter(|| KdIndex::new(metric.clone(), poses.clone()));
         });
-        // Made when a benchmark that was asked for needs them: a million take seconds.
+        // Made only when a requested benchmark needs it: a million poses take seconds.
         let index = LazyCell::new(|| PoseIndex::new(metric.clone(), poses.clone()));
         let mut turn = queries.iter().cycle().copied();
         let mut next = || turn.next().unwrap_or_default();

@@ -8,14 +8,14 @@ use reality_sim::{
     filter::{Purpose, Stream},
 };
 
-/// Half of the carpet on which they lie, metres.
+/// Half the extent of the carpet on which the poses lie, metres.
 const HALF_CARPET_M: [f64; 2] = [3.7, 2.7];
-/// Of the camera on a robot that walks: height (metres), pitch and roll (radians).
+/// Usual height (metres), pitch and roll (radians) of the camera on a walking robot.
 const USUAL: [f64; 3] = [0.52, 0.42, 0.0];
-/// How far they are from that at most.
+/// Largest deviations from these, metres and radians.
 const SPREAD: [f64; 3] = [0.02, 0.04, 0.03];
 
-/// So many poses anywhere on the carpet with any heading. Other seeds give other ones.
+/// Returns random poses anywhere on the carpet with any heading.
 pub fn random_poses(count: usize, seed: u64) -> Vec<CameraPose> {
     let streams: [Stream; 6] =
         std::array::from_fn(|axis| Stream::new(seed, Purpose::Initialise, axis as u32, 0));
@@ -29,7 +29,7 @@ pub fn random_poses(count: usize, seed: u64) -> Vec<CameraPose> {
     (0..count as u32).map(pose).collect()
 }
 
-/// How far such poses are apart for a recording's camera.
+/// Returns the metric of such poses for a recording's camera.
 pub fn metric(walk: &Sequence) -> PixelMetric {
     let [height_m, pitch_rad, roll_rad] = USUAL;
     let usual = CameraPose::new(Pose2::default(), height_m, pitch_rad, roll_rad);

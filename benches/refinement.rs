@@ -1,4 +1,4 @@
-//! One picture's pose fitted to a fraction of a pixel.
+//! Fit of one picture's pose to a fraction of a pixel.
 
 use criterion::Criterion;
 use reality_sim::{
@@ -8,7 +8,7 @@ use reality_sim::{
 
 use crate::scene::Scene;
 
-/// From 3 cm beside the true place.
+/// Measures the fit from a start 3 cm away from the true place.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let refiner = Refiner::new(&scene.walk.setup.camera, &scene.walk.field, RefineConfig::default());
     let texture = Texture::pack(&scene.prepared().whiteness);

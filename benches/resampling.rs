@@ -1,4 +1,4 @@
-//! Choosing which of 800 particles survive.
+//! Resampling of 800 particles.
 
 use criterion::{Criterion, Throughput};
 use reality_sim::{
@@ -11,7 +11,7 @@ use crate::scene::Scene;
 
 const PARTICLES: usize = 800;
 
-/// Elements are particles; their weights are those of a picture.
+/// Measures every scheme; elements are particles, weighted by a picture.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let config = ObservationConfig::new(ObservationKind::Gauss);
     let mut scorer = CpuScorer::new(&scene.walk.setup.camera, &scene.walk.field, config);

@@ -13,7 +13,7 @@ use crate::scene::Scene;
 const PARTICLES: [usize; 4] = [100, 1_000, 10_000, 100_000];
 const THREADS: [usize; 2] = [1, 2];
 
-/// Elements are particles: diffused, weighed by `gauss`, resampled.
+/// Measures diffusion, weighting by `gauss` and resampling; elements are particles.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let config = ObservationConfig::new(ObservationKind::Gauss);
     let mut scorer = CpuScorer::new(&scene.walk.setup.camera, &scene.walk.field, config);

@@ -1,4 +1,4 @@
-//! What all benchmarks read: the first pictures of the demonstration walk, and particles around its true poses.
+//! Input of all benchmarks: the first pictures of the demonstration walk, and particles around its true poses.
 
 use std::{path::Path, sync::Arc};
 
@@ -11,16 +11,16 @@ use reality_sim::{
     preprocess::{Prepared, Preprocessor},
 };
 
-/// Pictures taken.
+/// Number of pictures used.
 const PICTURES: usize = 12;
-/// The picture that single stages are measured on: field border, goal and robots in view.
+/// Picture on which single stages are measured: field border, goal and robots are in view.
 const MIDDLE: usize = 6;
 /// Standard deviations of the particles around the true pose: place (metres) and heading (radians).
 const SPREAD: [f64; 2] = [0.03, 0.03];
 
-/// Decoded pictures with what is known of them.
+/// Decoded pictures with their poses.
 pub struct Scene {
-    /// The walk; its first frames only.
+    /// First frames of the walk.
     pub walk: Sequence,
     pictures: Vec<Arc<RgbImage>>,
     prepared: Prepared,
@@ -40,45 +40,45 @@ impl Scene {
         Self { walk, pictures, prepared }
     }
 
-    /// All pictures, as the localizer takes them.
+    /// Returns all pictures as the localizer takes them.
     pub fn observations(&self) -> impl Iterator<Item = Observation> {
         let pictures = self.pictures.iter().enumerate();
         pictures.map(|(index, picture)| Observation::of_frame(&self.walk, index, picture))
     }
 
-    /// The pictures around that one, from so many frames on, and where they were taken.
+    /// Returns this many pictures around the middle one, which is left out, with their poses.
     pub fn views(&self, count: usize) -> impl Iterator<Item = (CameraPose, &RgbImage)> {
         let first = MIDDLE - count / 2;
         let frames = (first..).filter(|&frame| frame != MIDDLE).take(count);
         frames.map(|frame| (self.true_pose(frame), &*self.pictures[frame]))
     }
 
-    /// Where a picture was taken.
+    /// Returns the pose at which a picture was taken.
     fn true_pose(&self, frame: usize) -> CameraPose {
         self.walk.frames[frame].reference_pose.expect("the demonstration walk has ground truth")
     }
 
-    /// The picture that single stages are measured on.
+    /// Returns the picture on which single stages are measured.
     pub fn picture(&self) -> &Arc<RgbImage> {
         &self.pictures[MIDDLE]
     }
 
-    /// The same, preprocessed.
+    /// Returns this picture, preprocessed.
     pub fn prepared(&self) -> &Prepared {
         &self.prepared
     }
 
-    /// What joints and IMU say of it.
+    /// Returns its mount pose from joints and IMU.
     pub fn mount(&self) -> MountPose {
         mount_of_frame(&self.walk, MIDDLE)
     }
 
-    /// Where it was taken.
+    /// Returns the pose at which it was taken.
     pub fn pose(&self) -> Pose2 {
         self.true_pose(MIDDLE).planar()
     }
 
-    /// Particles around that place.
+    /// Returns particles around that pose.
     pub fn particles(&self, count: usize) -> Vec<CameraPose> {
         let stream = Stream::new(0, Purpose::Initialise, 0, 0);
         let pose = self.pose();

@@ -1,4 +1,4 @@
-//! Projecting and weighing 800 particles: the time that a particle filter is made of.
+//! Projecting and weighting 800 particles, which takes most of a particle filter's time.
 
 use criterion::{Criterion, Throughput};
 use reality_sim::{
@@ -11,14 +11,15 @@ use crate::scene::Scene;
 /// The paper's number of particles.
 const PARTICLES: usize = 800;
 
-/// Every model by the name that the command line knows it by.
+/// Every model with its name on the command line.
 pub const MODELS: [(&str, ObservationKind); 3] = [
     ("gauss", ObservationKind::Gauss),
     ("distance", ObservationKind::Distance),
     ("contrast", ObservationKind::Contrast),
 ];
 
-/// Elements are samples, those out of view included. Each sample of `contrast` is projected and looked up three times.
+/// Measures every model; elements are samples, those out of view included. Each sample of `contrast` is projected and
+/// looked up three times.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let particles = scene.particles(PARTICLES);
     let mut group = criterion.benchmark_group("scoring");

@@ -1,11 +1,11 @@
-//! The whole field searched for where a picture was taken.
+//! Search of the whole field for the pose of a picture.
 
 use criterion::{Criterion, SamplingMode};
 use reality_sim::{mount::MountPoseSigma, search::GlobalSearch};
 
 use crate::scene::Scene;
 
-/// Nothing is known but what joints and IMU say.
+/// Measures the search; only the mount pose from joints and IMU is known.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let mount_sigma = MountPoseSigma::default();
     let mut search = GlobalSearch::new(&scene.walk.setup.camera, &scene.walk.field, mount_sigma);

@@ -1,4 +1,4 @@
-//! A whole recording's poses at once.
+//! Smoothing of a whole recording's poses.
 
 use criterion::{Criterion, Throughput};
 use reality_sim::{
@@ -8,10 +8,10 @@ use reality_sim::{
 
 use crate::scene::Scene;
 
-/// Frames of the recording: the pictures tagged, over and over.
+/// Number of frames of the recording, which repeats the localized pictures.
 const FRAMES: usize = 300;
 
-/// Elements are frames.
+/// Measures smoothing; elements are frames.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let walk = &scene.walk;
     let builder = Localizer::builder(&walk.setup.camera, &walk.field).start(walk.start);

@@ -1,4 +1,4 @@
-//! A picture drawn from others beside the way of a walk: from one and from four of them. Elements are pixels.
+//! A picture beside a walk's path, drawn from one and from four of the walk's pictures. Elements are pixels.
 
 use std::sync::Arc;
 
@@ -12,10 +12,10 @@ use reality_sim::{
 
 use crate::scene::Scene;
 
-/// Names, and the number of pictures drawn from.
+/// Names, and the numbers of pictures drawn from.
 const METHODS: [(&str, usize); 2] = [("plane", 1), ("blend4", 4)];
 
-/// On every backend in turn. The pictures drawn from stay the same, as they do while a viewer moves about.
+/// Measures every backend in turn. The source pictures stay the same, as they do while a viewer moves about.
 pub fn bench(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dyn Backend)]) {
     let walk = &scene.walk;
     let camera = KernelCamera::new(&walk.setup.camera);

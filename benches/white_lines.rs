@@ -5,7 +5,7 @@ use reality_sim::preprocess::distance_field;
 
 use crate::scene::Scene;
 
-/// Elements are pixels.
+/// Measures both; elements are pixels.
 pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let picture = scene.prepared();
     let evidence = picture.evidence();

@@ -1,9 +1,9 @@
-//! How much memory images take in the index of poses and in the kd-tree that the benchmarks compare it with, and how often
-//! the kd-tree finds what the index finds, the truly nearest image:
+//! Memory per image in the index of poses and in the kd-tree that the benchmarks compare it with, and how often the
+//! kd-tree finds the truly nearest image, which the index always finds:
 //!
 //! `cargo run --release --example neighbours`
 //!
-//! Memory is what an allocator that counts has handed out: when an index is built, and at most until then.
+//! A counting allocator measures the memory: what is allocated once an index is built, and the peak until then.
 
 #[path = "../benches/kd_tree.rs"]
 mod kd_tree;
@@ -30,24 +30,24 @@ const IMAGES: [usize; 3] = [300, 10_000, 1_000_000];
 const QUERIES: usize = 1000;
 const CANDIDATES: [usize; 3] = [1, 16, 64];
 
-/// The system's allocator, counting.
+/// System allocator that counts.
 struct Counting;
 
 static HELD_BYTES: AtomicUsize = AtomicUsize::new(0);
 static MOST_BYTES: AtomicUsize = AtomicUsize::new(0);
 
-// SAFETY: all is left to the system's allocator; what is counted decides nothing.
+// SAFETY: every call is passed on to the system allocator; the counters decide nothing.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let held = HELD_BYTES.fetch_add(layout.size(), Relaxed) + layout.size();
         MOST_BYTES.fetch_max(held, Relaxed);
-        // SAFETY: the caller keeps the promises that the system's allocator asks for.
+        // SAFETY: the caller keeps the promises that the system allocator requires.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
         HELD_BYTES.fetch_sub(layout.size(), Relaxed);
-        // SAFETY: it was handed out by the system's allocator, with this layout.
+        // SAFETY: the system allocator returned this pointer for this layout.
         unsafe { System.dealloc(place, layout) }
     }
 }
@@ -55,7 +55,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// What `make` returns, the bytes that it holds, and the most that were held while it was made.
+/// Returns the result of `make`, the bytes that it holds, and the peak while it was made.
 fn measured<T>(make: impl FnOnce() -> T) -> (T, usize, usize) {
     let before = HELD_BYTES.load(Relaxed);
     MOST_BYTES.store(before, Relaxed);

@@ -1,6 +1,6 @@
-//! A small closed loop: a robot follows a line of the field by what its camera shows, and what its camera shows is made
-//! from recorded pictures. `cargo run --release --example simulator`, or with a database, a start pose and a folder for
-//! the pictures: `… --example simulator -- walk.db -2.25,-0.45,1.45 pictures`.
+//! A small closed loop: a robot follows a line of the field by its camera, whose pictures are made from recorded ones.
+//! `cargo run --release --example simulator`, or with a database, a start pose and a folder for the pictures: `… --example
+//! simulator -- walk.db -2.25,-0.45,1.45 pictures`.
 
 #![expect(clippy::print_stdout, reason = "an example shows what it does")]
 
@@ -19,7 +19,7 @@ use reality_sim::{
 
 const STEPS: usize = 24;
 const STEP_M: f64 = 0.05;
-/// Where the robot looks for the line: so far ahead, and so far to both sides.
+/// Place where the robot searches for the line: distance ahead, and to both sides.
 const AHEAD_M: f64 = 0.7;
 const ASIDE_M: f64 = 0.4;
 
@@ -59,7 +59,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The middle of what is white on the ground ahead, metres to the left.
+/// Returns the centre of the white pixels on the ground ahead, metres to the left.
 fn line_to_the_left(picture: &RgbImage, camera: &Camera, usual: CameraPose) -> Option<f64> {
     let eye = usual.with_planar(Pose2::default());
     let (mut sum, mut total) = (0.0, 0.0);
@@ -76,7 +76,7 @@ fn line_to_the_left(picture: &RgbImage, camera: &Camera, usual: CameraPose) -> O
     (total > 0.0).then(|| sum / total)
 }
 
-/// A database of the walk that ships with the project.
+/// Builds a database of the walk that comes with the project.
 fn demonstration(path: &Path) -> Result<&Path, Box<dyn Error>> {
     let walk = Sequence::open(Path::new("assets/walk"))?;
     let poses: Vec<_> = walk.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();

@@ -18,8 +18,8 @@ const MODELS: [(ObservationKind, &str); 3] = [
     (ObservationKind::Contrast, "contrast"),
 ];
 
-/// The curves of Fig. 9: a model, a name. The last has the particles do all the work: one iteration leaves them where
-/// prediction put them, without odometry that is far apart, and nobody looks for a lost pose.
+/// Curves of Fig. 9: model and name. In the last one the particles do all the work: without odometry, a single iteration
+/// leaves them far apart, and there is no search for a lost pose.
 const CURVES: [(ObservationKind, &str); 4] = [
     (ObservationKind::Gauss, "gauss"),
     (ObservationKind::Distance, "distance"),
@@ -28,7 +28,7 @@ const CURVES: [(ObservationKind, &str); 4] = [
 ];
 const PARTICLES_ALONE: &str = "gauss, particles alone";
 
-/// A model as in the paper: neither search nor refinement.
+/// Returns the settings of a model as in the paper: neither search nor refinement.
 fn as_in_the_paper(kind: ObservationKind) -> LocalizerConfig {
     LocalizerConfig::new(kind).with_relocalization(false).with_refinement(false)
 }
@@ -127,7 +127,7 @@ fn figure_9(recording: &Recording, seeds: u64, text: &mut String) -> anyhow::Res
     )
 }
 
-/// A curve for each model over the number of particles, both axes logarithmic; beside them the paper's values for its
+/// Plots a curve for each model over the number of particles, both axes logarithmic, with the paper's values for its
 /// Gauss-based and its distance-based model with 800 particles.
 fn plot(
     file: &str,
@@ -175,7 +175,7 @@ fn plot(
     root.present().with_context(|| format!("{path}: cannot be written"))
 }
 
-/// Ticks of a logarithmic axis: 1, 2 and 5 in every decade, so that none covers another.
+/// Formats ticks of a logarithmic axis: 1, 2 and 5 in every decade, so that none covers another.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "the form that the plotting library calls")]
 fn tick(value: &f64) -> String {
     let decade = 10_f64.powf(value.log10().floor());

@@ -1,10 +1,10 @@
-//! The paper's Table 2 and Fig. 9, and the sweep the defaults come from, on sequences with ground truth:
+//! The paper's Table 2 and Fig. 9, and the sweep from which the defaults come, on sequences with ground truth:
 //!
 //! `cargo run --release --example paper_figures -- figures FRAMES SEEDS SEQUENCE` writes `tables.md`, `error.svg` and
 //! `time.svg` into `docs/figures`;
 //! `cargo run --release --example paper_figures -- sweep FRAMES SEEDS SEQUENCE...` writes `sweep.md`.
 //!
-//! FRAMES is the largest number of pictures taken of each sequence.
+//! FRAMES is the largest number of pictures used of each sequence.
 
 mod figures;
 mod recording;
@@ -45,7 +45,7 @@ fn main() -> anyhow::Result<()> {
     fs::write(&file, text).with_context(|| format!("{file}: cannot be written"))
 }
 
-/// Says how the file was made.
+/// Describes how the file was made.
 fn header(what: &str, frames: u32, seeds: u32, recordings: &[Recording]) -> anyhow::Result<String> {
     let mut text = format!(
         "Made by `cargo run --release --example paper_figures -- {what} {frames} {seeds} SEQUENCE...`, {seeds} seeds, on"

@@ -1,4 +1,4 @@
-//! A recording tagged with some settings and compared with its ground truth.
+//! Recording that is localized with given settings and compared with its ground truth.
 
 use std::{path::Path, sync::Arc};
 
@@ -18,16 +18,16 @@ pub struct Recording {
     pub pictures: Vec<Arc<RgbImage>>,
 }
 
-/// What weighs the particles.
+/// Model that weights the particles.
 #[derive(Clone, Copy)]
 pub enum Model {
-    /// The model that the settings name.
+    /// Model of the settings.
     Configured,
-    /// Eq. 1 to the letter.
+    /// Eq. 1 exactly as in the paper.
     NormalSearch,
 }
 
-/// Weighs particles by Eq. 1 to the letter.
+/// Backend that weights particles by Eq. 1 exactly as in the paper.
 struct NormalSearchBackend;
 
 impl Backend for NormalSearchBackend {
@@ -56,16 +56,16 @@ impl Backend for NormalSearchBackend {
     }
 }
 
-/// What one run over the recording came to.
+/// Result of one run over the recording.
 pub struct Run {
     mean_m: f64,
-    /// Mean error of the pictures that were not lost.
+    /// Mean error of the pictures that were not lost, metres.
     kept_m: f64,
     lost: usize,
     seconds_per_frame: f64,
 }
 
-/// Runs that differ in nothing but the seed.
+/// Runs that differ only in the seed.
 pub struct Runs(Vec<Run>);
 
 impl Recording {
@@ -127,7 +127,7 @@ impl Runs {
         100.0 * self.mean(|run| run.kept_m)
     }
 
-    /// Lost pictures of all seeds.
+    /// Number of lost pictures over all seeds.
     pub fn lost_in_all(&self) -> usize {
         self.0.iter().map(|run| run.lost).sum()
     }

@@ -1,4 +1,4 @@
-//! Where the defaults of the paper's two models come from: blur, α and border mask on several recordings at once.
+//! Sweep from which the defaults of the paper's two models come: blur, α and border mask on several recordings at once.
 
 use std::fmt::Write;
 
@@ -18,7 +18,7 @@ pub fn write(recordings: &[Recording], seeds: u64, text: &mut String) -> anyhow:
     )?;
     heading(recordings, "`gauss`", text)?;
     let gauss = ObservationConfig::new(ObservationKind::Gauss);
-    // Without the mask α matters no more than with it.
+    // Without the mask, α matters no more than with it.
     for (mask_border, alphas) in [(true, &GAUSS_ALPHAS[..]), (false, &GAUSS_ALPHAS[1..2])] {
         for blur_sigma_px in BLURS_PX {
             for &alpha in alphas {

@@ -1,4 +1,4 @@
-//! Parts of a walk that are reconstructed from its other parts: are they smooth, and do they do as input of the filter?
+//! Parts of a walk reconstructed from its other parts: are they smooth, and can the filter use them?
 
 use std::{fmt::Write, path::Path, sync::Arc};
 
@@ -13,25 +13,26 @@ use reality_sim::{
 
 use crate::{IMAGES, synthesizer};
 
-/// Parts, and pictures in each.
+/// Number of parts, and of pictures in each.
 const PARTS: usize = 5;
 const PICTURES: usize = 20;
 /// Side of the squares in which pictures are compared, pixels.
 const SQUARE_PX: u32 = 4;
-/// Pictures of a path in its strip.
+/// Number of pictures of a path in its strip.
 const SHOWN: usize = 8;
 
-/// Pictures of one part by one method, true ones first.
+/// Pictures of one part by one method; the true ones are the first row.
 struct Row {
     name: &'static str,
     pictures: Vec<Arc<RgbImage>>,
 }
 
-/// What is summed up over the parts, for one method.
+/// Sums over the parts for one method.
 #[derive(Default)]
 struct Sums {
     name: &'static str,
-    /// How differently from the true pictures they change from one to the next, grey levels, one a step.
+    /// Difference between the change from one picture to the next and that of the true pictures, grey levels, one value
+    /// per step.
     wrong_change: Vec<f64>,
     gauss: Vec<PoseError>,
     contrast: Vec<PoseError>,
@@ -85,7 +86,7 @@ pub fn write(walk: &Sequence, text: &mut String) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// True pictures and those of every method.
+/// Returns the true pictures and those of every method.
 fn rows(walk: &Sequence, first: usize) -> anyhow::Result<Vec<Row>> {
     let left_out = first..first + PICTURES;
     let mut rest = walk.clone();
@@ -106,7 +107,7 @@ fn rows(walk: &Sequence, first: usize) -> anyhow::Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// How each picture differs from the one before, in squares of pixels.
+/// Returns how each picture differs from the one before, in squares of pixels.
 fn changes(pictures: &[Arc<RgbImage>]) -> Vec<Vec<f64>> {
     let small = |picture: &Arc<RgbImage>| {
         let (width, height) = (picture.width() / SQUARE_PX, picture.height() / SQUARE_PX);
@@ -120,7 +121,7 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum::<f64>() / a.len().max(1) as f64
 }
 
-/// Errors of the filter on pictures that stand for a part of a walk.
+/// Returns the filter's errors when these pictures replace a part of a walk.
 fn tag(walk: &Sequence, first: usize, row: &Row, kind: ObservationKind) -> anyhow::Result<Vec<PoseError>> {
     let start = walk.frames[first].reference_pose.map(reality_sim::CameraPose::planar);
     let builder = Localizer::builder(&walk.setup.camera, &walk.field).start(start);

@@ -1,4 +1,4 @@
-//! How far lines lie from where the true pose puts them.
+//! Distance of lines from where the true pose projects them.
 
 use image::RgbImage;
 use reality_sim::{
@@ -8,24 +8,24 @@ use reality_sim::{
     refine::{MeasureConfig, measure_offsets},
 };
 
-/// Between the samples of the lines, metres.
+/// Distance between samples along the lines, metres.
 const SPACING_M: f64 = 0.02;
-/// Between the samples in the picture, pixels.
+/// Distance between samples in the picture, pixels.
 const SPACING_PX: f64 = 4.0;
-/// Lines are looked for so far from where they should be, pixels; they stand out by so many grey levels.
+/// Search range for lines around their projection, pixels, and their least contrast, grey levels.
 const MEASURE: MeasureConfig = MeasureConfig { search_px: 8.0, min_contrast: 30.0 };
 
-/// Lines of pictures, and those projected.
+/// Measured and projected lines of pictures.
 #[derive(Default)]
 pub struct Lines {
-    /// Distances between the two where both are, pixels.
+    /// Distances between measured and projected lines, where both exist, pixels.
     pub displacements_px: Vec<f64>,
-    /// Places at which a line is projected.
+    /// Number of places at which a line is projected.
     pub projected: usize,
 }
 
 impl Lines {
-    /// Adds those of a picture.
+    /// Adds the lines of a picture.
     pub fn add(&mut self, picture: &RgbImage, camera: &Camera, field: &FieldDimensions, pose: CameraPose) {
         let (found, projected) = displacements_px(picture, camera, field, pose);
         self.displacements_px.extend(found);

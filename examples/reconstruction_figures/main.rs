@@ -1,10 +1,10 @@
-//! What every method makes of poses that were not recorded:
+//! Results of every method at poses that were not recorded:
 //!
 //! `cargo run --release --example reconstruction_figures -- WALK PROBES`
 //!
 //! writes `docs/reconstruction.md` with its pictures in `docs/images`. WALK is a sequence with ground truth, PROBES one
-//! recorded in the same hall. First the walk is the database and the probes are reconstructed; then a part of the walk
-//! after the other is left out, reconstructed from the rest, and tagged in place of the true pictures.
+//! that was recorded in the same hall. First the walk is the database and the probes are reconstructed; then one part of
+//! the walk after the other is left out, reconstructed from the rest, and localized in place of the true pictures.
 
 mod gaps;
 mod lines;
@@ -41,7 +41,7 @@ fn main() -> anyhow::Result<()> {
     fs::write(OUT, text).with_context(|| format!("{OUT}: cannot be written"))
 }
 
-/// A sequence's pictures at their true poses, in a database of its own, and what gives pictures from it.
+/// Stores a sequence's pictures at their true poses in a database, and opens it for pictures.
 fn synthesizer(sequence: &Sequence) -> anyhow::Result<(tempfile::TempDir, Synthesizer)> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("walk.db");

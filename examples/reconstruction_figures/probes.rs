@@ -1,4 +1,4 @@
-//! Single pictures at poses of their own.
+//! Single pictures at the poses of probes.
 
 use std::{collections::BTreeMap, fmt::Write, path::Path};
 
@@ -17,7 +17,7 @@ use reality_sim::{
 
 use crate::{IMAGES, lines::Lines, synthesizer};
 
-/// Probes that are shown: from near to far.
+/// Number of probes that are shown, from near to far.
 const SHOWN: usize = 5;
 /// Width of a picture in the table of pictures, pixels.
 const WIDTH: u32 = 300;
@@ -44,7 +44,7 @@ pub fn write(walk: &Sequence, probes: &Sequence, text: &mut String) -> anyhow::R
     provenance(&synthesizer, probes, &results, text)
 }
 
-/// Where the walk was recorded, and how far the next picture is.
+/// Draws where the walk was recorded, and how far every place is from the nearest picture.
 fn coverage(walk: &Sequence, synthesizer: &Synthesizer) -> anyhow::Result<()> {
     let archive = synthesizer.archive();
     let coverage = Coverage::new(archive.index(), archive.field(), archive.usual_pose(), 0.25);
@@ -88,7 +88,8 @@ fn table(results: &[ProbeResult], mut lines: BTreeMap<&str, Lines>, text: &mut S
     Ok(())
 }
 
-/// True picture and those of all methods, for probes spread evenly from the one with the nearest neighbour on.
+/// Shows the true picture and those of all methods, for probes spread evenly from the nearest to the farthest from a
+/// recorded picture.
 fn pictures(results: &[ProbeResult], text: &mut String) -> anyhow::Result<()> {
     let chosen: Vec<&ProbeResult> =
         (0..SHOWN).map(|i| &results[i * (results.len() - 1) / (SHOWN - 1)]).collect();
@@ -114,7 +115,7 @@ fn pictures(results: &[ProbeResult], text: &mut String) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Where the pixels of one picture came from.
+/// Shows where the pixels of one picture came from.
 fn provenance(
     synthesizer: &Synthesizer,
     probes: &Sequence,

@@ -1,4 +1,4 @@
-//! The coverage of a database as a picture of the field, an SVG.
+//! Coverage of a database, drawn on the field as an SVG file.
 
 use std::{f64::consts::TAU, fmt::Write};
 
@@ -7,15 +7,15 @@ use crate::{
     field::{Curve, FieldDimensions},
 };
 
-/// Pixels for a metre.
+/// Scale, pixels per metre.
 const SCALE: f64 = 80.0;
-/// Around the fields, pixels.
+/// Margin around the fields, pixels.
 const MARGIN: f64 = 28.0;
-/// Above and below each field for words, pixels.
+/// Height of the text above and below each field, pixels.
 const WORDS: f64 = 64.0;
 
-/// Two fields from above, side by side: how many pictures were taken where and in which directions, and how far the next
-/// picture is from every place. The opponent's goal (+x) is on the right.
+/// Draws two fields from above, side by side: how many pictures were taken where and in which directions, and how far
+/// every place is from the nearest picture. The opponent's goal (+x) is on the right.
 pub fn coverage_svg(coverage: &Coverage, field: &FieldDimensions, title: &str) -> String {
     let [columns, rows] = coverage.size.map(|cells| cells as f64 * coverage.cell_m * SCALE);
     let (width, height) = (2.0 * columns + 3.0 * MARGIN, rows + 2.0 * WORDS);
@@ -53,7 +53,7 @@ fn shade(share: f64) -> String {
 struct Panel<'a> {
     left: f64,
     coverage: &'a Coverage,
-    /// Pixels.
+    /// Width and height, pixels.
     size: [f64; 2],
 }
 
@@ -103,7 +103,8 @@ impl Panel<'_> {
         }
     }
 
-    /// A stroke from the middle of a cell into every direction that was looked in, the longer the more pictures.
+    /// Draws a stroke from the centre of a cell into every direction in which pictures were taken, longer for more
+    /// pictures.
     fn headings(&self, svg: &mut String, most: u32) {
         for cell in &self.coverage.cells {
             for (heading, &count) in cell.pictures.iter().enumerate().filter(|(_, count)| **count > 0) {

@@ -1,4 +1,4 @@
-//! Absolute pose error: estimated against true poses, both in the world, without any alignment.
+//! Absolute pose error of estimated against true poses, both in the world frame, without alignment.
 //!
 //! The error of a place is the distance on the ground (x and y), as in the paper; the error of the yaw is the absolute
 //! angle between the two headings. Percentiles are interpolated linearly between the sorted values, as numpy does.
@@ -7,9 +7,9 @@ use serde::Serialize;
 
 use crate::pose::{CameraPose, wrap_angle};
 
-/// A frame whose place is farther off is lost, metres.
+/// Error of the place above which a frame is lost, metres.
 pub const LOST_DISTANCE_M: f64 = 0.5;
-/// A frame whose yaw is farther off is lost, radians.
+/// Error of the yaw above which a frame is lost, radians.
 pub const LOST_ANGLE_RAD: f64 = 0.5;
 
 /// Error of one pose.
@@ -22,7 +22,7 @@ pub struct PoseError {
 }
 
 impl PoseError {
-    /// Error of an estimated pose.
+    /// Computes the error of an estimated pose.
     pub fn new(estimate: CameraPose, truth: CameraPose) -> Self {
         Self {
             distance_m: (estimate.x_m - truth.x_m).hypot(estimate.y_m - truth.y_m),
@@ -39,7 +39,7 @@ impl PoseError {
 /// Errors of many poses.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ErrorStatistics {
-    /// Number of poses with a true pose beside them.
+    /// Number of poses with a true pose to compare with.
     pub frames: usize,
     /// Mean distance, metres.
     pub mean_m: f64,
@@ -53,12 +53,12 @@ pub struct ErrorStatistics {
     pub max_m: f64,
     /// Mean absolute error of the yaw, radians.
     pub mean_yaw_rad: f64,
-    /// Frames that are off by more than [`LOST_DISTANCE_M`] or [`LOST_ANGLE_RAD`].
+    /// Number of frames that are off by more than [`LOST_DISTANCE_M`] or [`LOST_ANGLE_RAD`].
     pub lost_frames: usize,
 }
 
 impl ErrorStatistics {
-    /// Statistics of some errors; `None` where there are none.
+    /// Computes the statistics of some errors; `None` if there are none.
     pub fn new(errors: &[PoseError]) -> Option<Self> {
         let mut distances_m: Vec<f64> = errors.iter().map(|error| error.distance_m).collect();
         distances_m.sort_by(f64::total_cmp);
@@ -77,7 +77,7 @@ impl ErrorStatistics {
     }
 }
 
-/// The value below which a fraction (0–1) of sorted values lies; `None` where there are none.
+/// Returns the value below which a fraction (0–1) of sorted values lies; `None` if there are none.
 pub fn percentile(sorted: &[f64], fraction: f64) -> Option<f64> {
     let last = sorted.len().checked_sub(1)?;
     let place = fraction.clamp(0.0, 1.0) * last as f64;
@@ -119,7 +119,7 @@ mod tests {
         close(statistics.median_m, 0.2);
         // Squares: 0 + 0.01 + 0.04 + 0.09 + 1.96 = 2.10; over 5: 0.42.
         close(statistics.rmse_m, 0.42_f64.sqrt());
-        // Place 0.95 · 4 = 3.8: 0.3 + 0.8 · 1.1.
+        // Fractional index 0.95 · 4 = 3.8: 0.3 + 0.8 · 1.1.
         close(statistics.p95_m, 1.18);
         close(statistics.max_m, 1.4);
         close(statistics.mean_yaw_rad, 0.2);

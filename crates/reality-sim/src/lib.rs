@@ -1,30 +1,32 @@
-//! Reality Sim: what does the camera see at this pose? Pictures that a robot records while it walks over a soccer field
-//! are tagged with the pose of the camera, to about a centimetre, by a particle filter, and stored by pose; where none was
-//! recorded, one is reconstructed from its neighbours.
+//! Reality Sim: what does the camera see at this pose? A robot records pictures while it walks over a soccer field. A
+//! particle filter finds the camera's pose of each picture, to about a centimetre, and the pictures are stored by pose;
+//! where none was recorded, one is reconstructed from its neighbours.
 //!
-//! This is the library's face: the types most used under their own names, the rest in modules.
+//! This crate is the front of the library: it re-exports the most used types under their own names, and everything else in
+//! modules.
 //!
-//! | what | where |
+//! | task | types and modules |
 //! |---|---|
-//! | a recording, its camera, its field | [`Sequence`], [`Camera`], [`FieldDimensions`] |
-//! | where a camera is | [`CameraPose`], [`Pose2`] |
-//! | where a camera was, picture by picture, live or from a recording | [`Localizer`], [`Observation`], [`LocalizedFrame`] |
-//! | pictures by pose, in one file | [`db::Database`] |
-//! | the picture at a pose, from recorded ones | [`Archive`], [`Synthesizer`], [`synthesis`] |
-//! | the picture at a pose, from the field's model | [`sensor::Renderer`] |
-//! | what a model of the camera misses | [`gap`] |
-//! | poses against a ground truth; pictures against true ones | [`evaluation`]; [`probing`] |
-//! | drawings: poses in a picture, pictures side by side, coverage | [`overlay`], [`montage`], [`coverage_chart`] |
-//! | the parts of localization | [`preprocess`], [`observation`], [`filter`], [`search`], [`refine`] |
-//! | other devices | [`backend`]; with the feature `gpu` the module `gpu` |
+//! | read a recording, its camera, its field | [`Sequence`], [`Camera`], [`FieldDimensions`] |
+//! | describe the pose of a camera | [`CameraPose`], [`Pose2`] |
+//! | find the pose of every picture, live or from a recording | [`Localizer`], [`Observation`], [`LocalizedFrame`] |
+//! | store pictures by pose, in one file | [`db::Database`] |
+//! | make the picture at a pose from recorded ones | [`Archive`], [`Synthesizer`], [`synthesis`] |
+//! | make the picture at a pose from the field's model | [`sensor::Renderer`] |
+//! | find what a model of the camera misses | [`gap`] |
+//! | compare poses with ground truth, and pictures with true ones | [`evaluation`], [`probing`] |
+//! | draw poses in a picture, pictures side by side, coverage | [`overlay`], [`montage`], [`coverage_chart`] |
+//! | use the parts of localization | [`preprocess`], [`observation`], [`filter`], [`search`], [`refine`] |
+//! | compute on another device | [`backend`]; with the feature `gpu` the module `gpu` |
 //!
-//! By default neither a window nor a graphics card is pulled in. The crates of public signatures are exported: [`glam`],
-//! [`image`], [`nalgebra`]; poses convert to nalgebra's isometries and back.
+//! By default the library depends on neither a window nor a graphics card. The crates of public signatures are
+//! re-exported: [`glam`], [`image`], [`nalgebra`]; poses convert to nalgebra's isometries and back.
 //!
-//! Metres, radians and seconds everywhere; the unit is part of the name. The frames are those of [`pose`]: the world has its
-//! origin at the field's centre, x towards the opponent's goal and z up; a camera's x points right, y down, z into the scene.
+//! All quantities are in metres, radians and seconds; names carry the unit. The frames are those of [`pose`]: the world
+//! has its origin at the field's centre, x towards the opponent's goal and z up; a camera's x points right, y down, z into
+//! the scene.
 //!
-//! A recording becomes a database, and a simulator asks it for pictures:
+//! A database is built from a recording, and a simulator asks it for pictures:
 //!
 //! ```
 //! use std::{path::Path, sync::Arc};
@@ -51,7 +53,7 @@
 //! # }
 //! ```
 //!
-//! A recording without poses is localized; [`localization`] shows the same for a camera that delivers now:
+//! A recording without poses is localized; [`localization`] shows the same for a live camera:
 //!
 //! ```
 //! use std::path::Path;

@@ -4,18 +4,18 @@ use image::{RgbImage, imageops};
 
 /// Width of one picture in a strip, pixels.
 const STRIP_WIDTH: u32 = 320;
-/// Between pictures, pixels.
+/// Space between pictures, pixels.
 const GAP: u32 = 4;
-/// Behind the pictures.
+/// Colour behind the pictures.
 const PAPER: image::Rgb<u8> = image::Rgb([255; 3]);
 
-/// Pictures from left to right, four in a row, as in the paper's Fig. 12.
+/// Arranges pictures from left to right, four in a row, as in the paper's Fig. 12.
 pub fn strip(pictures: &[RgbImage]) -> RgbImage {
     let rows: Vec<&[RgbImage]> = pictures.chunks(4).collect();
     grid(&rows, STRIP_WIDTH)
 }
 
-/// Pictures in rows, each scaled to this width, pixels.
+/// Arranges pictures in rows, each scaled to this width, pixels.
 pub fn grid(rows: &[&[RgbImage]], width: u32) -> RgbImage {
     let scaled: Vec<Vec<RgbImage>> =
         rows.iter().map(|row| row.iter().map(|picture| scaled(picture, width)).collect()).collect();

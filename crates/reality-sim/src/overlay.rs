@@ -1,7 +1,7 @@
-//! Draws a pose into its picture: the field's lines where the pose puts them, the field's border as it was found, the
-//! particles, and a map of the field from above.
+//! Overlays that draw a pose into its picture: the field's lines where the pose predicts them, the detected border of the
+//! field, the particles, and a map of the field from above.
 //!
-//! Everything on the ground goes through the camera's own lens model, see [`crate::field::project_lines`].
+//! Everything on the ground is projected by the camera's own lens model, see [`crate::field::project_lines`].
 
 use glam::{DVec2, Vec2};
 use image::RgbImage;
@@ -12,62 +12,63 @@ use crate::{
     pose::CameraPose,
 };
 
-/// Both edges of the lines at the pose to be shown, and the pose on the map.
+/// Colour of both edges of the lines at the pose to be shown, and of the pose on the map.
 pub const POSE_SRGB: [u8; 3] = [255, 45, 160];
-/// The lines' centres at the true pose, and the true pose on the map.
+/// Colour of the lines' centres at the true pose, and of the true pose on the map.
 pub const TRUTH_SRGB: [u8; 3] = [20, 110, 255];
-/// The field's border as it was found in the picture.
+/// Colour of the detected border of the field.
 pub const BORDER_SRGB: [u8; 3] = [255, 205, 0];
-/// The particles.
+/// Colour of the particles.
 pub const PARTICLE_SRGB: [u8; 3] = [255, 150, 30];
 
 const MAP_GROUND_SRGB: [u8; 3] = [14, 44, 28];
 const MAP_LINE_SRGB: [u8; 3] = [225, 235, 228];
 const PATH_SRGB: [u8; 3] = [250, 190, 225];
 
-/// Poses farther apart than this are not joined on the map, metres: the robot was carried, or the filter jumped.
+/// Largest distance between poses that are joined on the map, metres: beyond it the robot was carried, or the filter
+/// jumped.
 const MAX_PATH_STEP_M: f64 = 0.5;
-/// Width of the map over that of the picture.
+/// Ratio of the map's width to the picture's.
 const MAP_FRACTION: f64 = 0.34;
-/// A map smaller than this, pixels, shows nothing and is left out.
+/// Smallest size of a map, pixels: a smaller one would be illegible and is left out.
 const MIN_MAP_PX: u32 = 48;
 
-/// The field's border in a picture, and how the camera stood when it was found.
+/// Border of the field in a picture, and the camera's pose when it was detected.
 #[derive(Debug, Clone, Copy)]
 pub struct BorderOutline<'a> {
     /// Corners, metres, x along the camera's heading and y to its left: see
     /// [`crate::preprocess::FieldBorder::outline_in_heading`].
     pub corners_in_heading: &'a [Vec2],
-    /// The camera above the origin of these axes.
+    /// Pose of the camera above the origin of these axes.
     pub camera_in_heading: CameraPose,
 }
 
-/// What is drawn into a picture.
+/// Contents to be drawn into a picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Overlay<'a> {
-    /// The camera that took the picture.
+    /// Camera that took the picture.
     pub camera: &'a Camera,
-    /// The field in view.
+    /// Field in view.
     pub field: &'a FieldDimensions,
-    /// The pose to be shown.
+    /// Pose to be shown.
     pub pose: CameraPose,
-    /// The true pose, where it is known.
+    /// True pose, if it is known.
     pub truth: Option<CameraPose>,
-    /// The field's border, where it was looked for.
+    /// Border of the field, if it was searched for.
     pub border: Option<BorderOutline<'a>>,
     /// The particles.
     pub particles: &'a [CameraPose],
-    /// Poses so far, for the map.
+    /// Poses so far, drawn on the map.
     pub path: &'a [CameraPose],
 }
 
 impl Overlay<'_> {
-    /// The picture with everything drawn into it.
+    /// Draws everything into the picture.
     pub fn draw(&self, picture: RgbImage) -> RgbImage {
         self.draw_map(self.draw_scene(picture))
     }
 
-    /// The picture with what lies on the ground: lines, border, particles.
+    /// Draws everything that lies on the ground into the picture: lines, border, particles.
     pub fn draw_scene(&self, mut picture: RgbImage) -> RgbImage {
         let scale = f64::from(picture.width().max(picture.height())) / 640.0;
         let pen = Pen { width_px: 1.3 * scale.clamp(1.0, 4.0), halo: 0.35 };
@@ -94,7 +95,7 @@ impl Overlay<'_> {
         picture
     }
 
-    /// The picture with a map of the field in its upper right corner, the opponent's goal (+x) on the right.
+    /// Draws a map of the field into the upper right corner of the picture, with the opponent's goal (+x) on the right.
     pub fn draw_map(&self, mut picture: RgbImage) -> RgbImage {
         let Some(map) = Map::new(self.field, picture.dimensions()) else { return picture };
         let mut inset =
@@ -122,15 +123,15 @@ impl Overlay<'_> {
     }
 }
 
-/// A straight piece in the picture, pixels.
+/// Straight segment in the picture, pixels.
 type Segment = (DVec2, DVec2);
 
-/// The straight pieces of polylines.
+/// Returns the segments of polylines.
 fn segments(polylines: &[Vec<DVec2>]) -> Vec<Segment> {
     polylines.iter().flat_map(|polyline| polyline.windows(2).map(|pair| (pair[0], pair[1]))).collect()
 }
 
-/// The field from above: where it lies in the picture, and its scale.
+/// Map of the field from above: its position in the picture, and its scale.
 struct Map {
     left: u32,
     top: u32,
@@ -140,7 +141,7 @@ struct Map {
 }
 
 impl Map {
-    /// `None` where the picture is too small for one.
+    /// Places the map; `None` if the picture is too small for one.
     fn new(field: &FieldDimensions, (picture_width, picture_height): (u32, u32)) -> Option<Self> {
         let extent_m = 2.0 * field.carpet_half_extent_m();
         let scale = |pixels: u32, metres: f64| MAP_FRACTION * f64::from(pixels) / metres;
@@ -190,16 +191,16 @@ impl Map {
     }
 }
 
-/// How strokes look.
+/// Appearance of strokes.
 #[derive(Clone, Copy)]
 struct Pen {
     width_px: f64,
-    /// Opacity of the dark rim that sets a stroke off from what is behind it.
+    /// Opacity of the dark rim that separates a stroke from its background.
     halo: f64,
 }
 
 impl Pen {
-    /// Draws all segments at once: where they overlap, they cover no more than one does.
+    /// Draws all segments at once: where they overlap, they cover no more than a single one does.
     fn stroke(self, picture: &mut RgbImage, segments: &[Segment], color: [u8; 3]) {
         if self.halo > 0.0 {
             Coverage::of(picture, segments, self.width_px + 1.6).paint(picture, [0, 0, 0], self.halo);
@@ -208,7 +209,7 @@ impl Pen {
     }
 }
 
-/// How much of each pixel strokes cover, 0 to 1.
+/// Fraction of each pixel that strokes cover, 0 to 1.
 struct Coverage {
     width: usize,
     values: Vec<f32>,

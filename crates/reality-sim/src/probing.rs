@@ -1,4 +1,4 @@
-//! Pictures at poses where the true picture is known, by every method, and how near each comes to the truth.
+//! Comparison of methods at poses whose true picture is known.
 
 use std::{collections::BTreeMap, time::Instant};
 
@@ -16,58 +16,58 @@ use crate::{
     },
 };
 
-/// Drawn from the model, beside the methods that use recorded pictures.
+/// Name of pictures drawn from the field's model, which are compared with the methods that use recorded pictures.
 pub const SIMULATED: &str = "simulated";
 
-/// What one method made of one probe.
+/// Result of one method for one probe.
 #[derive(Debug, Clone)]
 pub struct Outcome {
     /// Peak signal-to-noise ratio against the true picture, dB.
     pub psnr_db: f64,
-    /// The same over the field's carpet; `None` where the probe shows no carpet.
+    /// PSNR over the field's carpet, dB; `None` if the probe shows no carpet.
     pub psnr_field_db: Option<f64>,
     /// Structural similarity of the grey values; `None` in pictures smaller than its window.
     pub ssim: Option<f64>,
-    /// With the neighbours' pictures decoded.
+    /// Time with the neighbours' pictures already decoded.
     pub milliseconds: f64,
-    /// Share of the pixels that some recorded picture shows; `None` for a drawn one.
+    /// Share of the pixels that some recorded picture shows; `None` for a picture drawn from the model.
     pub covered: Option<f64>,
-    /// What it made.
+    /// Picture that the method made.
     pub picture: RgbImage,
 }
 
-/// A probe, and the outcome of each method that answered.
+/// Probe with the outcome of each method that gave a picture.
 #[derive(Debug, Clone)]
 pub struct ProbeResult {
     /// Number of the probe.
     pub frame: usize,
-    /// From the nearest recorded picture, root mean square pixels.
+    /// Distance from the nearest recorded picture, root mean square pixels.
     pub distance_px: Option<f64>,
     /// The true picture.
     pub truth: RgbImage,
-    /// By the methods' names.
+    /// Outcomes by the names of the methods.
     pub outcomes: BTreeMap<&'static str, Outcome>,
 }
 
-/// Means over the probes answered; the time is the median.
+/// Means over the probes that got a picture; the time is the median.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MethodReport {
-    /// Over whole pictures, dB.
+    /// PSNR over whole pictures, dB.
     pub psnr_db: Option<f64>,
-    /// Over the field's carpet, dB.
+    /// PSNR over the field's carpet, dB.
     pub psnr_field_db: Option<f64>,
-    /// Of the grey values.
+    /// Structural similarity of the grey values.
     pub ssim: Option<f64>,
-    /// With the neighbours' pictures decoded.
+    /// Time with the neighbours' pictures already decoded.
     pub milliseconds: Option<f64>,
     /// Share of the pixels that some recorded picture shows.
     pub covered: Option<f64>,
-    /// Share of the probes that were given a picture.
+    /// Share of the probes that got a picture.
     pub answered: f64,
 }
 
-/// Makes the picture at a pose by every method and compares it with the one really taken there, which is in the size of the
-/// synthesizer's camera. Methods that refuse have no outcome.
+/// Makes the picture at a pose by every method and compares it with the true one, which has the size of the synthesizer's
+/// camera. Methods that refuse have no outcome.
 pub fn compare_methods(
     synthesizer: &Synthesizer,
     renderer: &Renderer,
@@ -84,7 +84,7 @@ pub fn compare_methods(
     };
     let mut outcomes = BTreeMap::new();
     for method in METHODS {
-        // The first call decodes the neighbours, the second is timed.
+        // The first call decodes the neighbours, the second one is timed.
         let answer =
             synthesizer.image_at(pose, method).and_then(|_| timed(|| synthesizer.image_at(pose, method)));
         match answer {
@@ -103,14 +103,14 @@ pub fn compare_methods(
     Ok(ProbeResult { frame, distance_px, truth, outcomes })
 }
 
-/// Why a probe has no result.
+/// Reason why a probe has no result.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProbingError {
     /// A method failed.
     #[error(transparent)]
     Synthesis(#[from] SynthesisError),
-    /// The pose cannot be drawn.
+    /// The field's model cannot be drawn from the pose.
     #[error(transparent)]
     Pose(#[from] RenderError),
 }
@@ -121,13 +121,13 @@ fn timed<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, f64), E> {
     Ok((result, 1e3 * start.elapsed().as_secs_f64()))
 }
 
-/// The names of the methods, in the order in which they are shown.
+/// Returns the names of the methods, in the order in which they are shown.
 pub fn names() -> impl Iterator<Item = &'static str> {
     METHODS.into_iter().map(Method::name).chain([SIMULATED])
 }
 
 impl MethodReport {
-    /// For the method of this name.
+    /// Summarises the results of the method with this name.
     pub fn new(name: &str, results: &[ProbeResult]) -> Self {
         let outcomes: Vec<&Outcome> = results.iter().filter_map(|probe| probe.outcomes.get(name)).collect();
         let values =

@@ -1,4 +1,4 @@
-//! What may go from thread to thread, and what threads share, checked when this is compiled.
+//! Compile-time check of which types can be sent to threads and shared among them.
 
 use reality_sim::{
     Archive, Camera, CameraPose, FieldDimensions, LocalizationError, LocalizedFrame, Localizer,
