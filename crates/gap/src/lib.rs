@@ -8,13 +8,13 @@
 //!
 //! | | |
 //! |---|---|
-//! | [`Recording`] | the frames of a sequence that are compared, with their reference poses |
-//! | [`Options`] | the seed that holds out frames, and effects that are left out of the library |
-//! | [`analyse`] | the whole workflow: an [`Analysis`] with the report and the extended model |
-//! | [`report::Report`] | all that was found: effects with sizes, what stays unknown, detection limits, the gap |
-//! | [`ChannelGap`] | the residuals of one [`Channel`] before and after, beside the noise floor |
-//! | [`gap_of`] | the gap of a model as it is |
-//! | [`html`], [`Pictures`] | the report as a page |
+//! | [`Recording`] | frames of a sequence that are compared, with their reference poses |
+//! | [`Options`] | seed that chooses the held-out frames, and effects that are left out of the library |
+//! | [`analyse`] | runs the whole workflow; returns an [`Analysis`] with the report and the extended model |
+//! | [`report::Report`] | everything that was found: effects with sizes, unexplained findings, detection limits, the gap |
+//! | [`ChannelGap`] | size of one [`Channel`]'s residuals before and after, beside the noise floor |
+//! | [`gap_of`] | returns the gap of a model as it is |
+//! | [`html`], [`Pictures`] | report as a page, and the pictures in it |
 //!
 //! ```
 //! use reality_sim_core::sequence::Sequence;

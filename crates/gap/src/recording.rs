@@ -153,8 +153,8 @@ impl<'a> Recording<'a> {
         Ok(Self { sequence, trajectory, frames, source, scene: scene(sequence), left_out })
     }
 
-    /// Returns each frame's view number. Successive frames belong to one view while their poses differ by so little that
-    /// they may show the same pose errors.
+    /// Returns each frame's view number. Successive frames belong to one view while their poses differ so little that they
+    /// may share one pose error.
     pub(crate) fn views(&self) -> Vec<usize> {
         let mut first: Option<CameraPose> = None;
         let mut number = 0;
@@ -239,7 +239,8 @@ fn scene(sequence: &Sequence) -> Option<NominalReflectance> {
     })
 }
 
-/// Returns the odometry between a frame and the next one. None without odometry, or if the next frame is too late.
+/// Returns the odometry between a frame and the next one. None for the last frame, without odometry, or if the next frame
+/// comes too late.
 fn step(sequence: &Sequence, index: usize) -> Option<OdometryStep> {
     let (from, to) = (&sequence.frames[index], sequence.frames.get(index + 1)?);
     let (before, after): (Pose2, Pose2) = (from.odometry?, to.odometry?);

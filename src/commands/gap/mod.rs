@@ -1,4 +1,4 @@
-//! `reality-sim gap`: which effect a model of the camera misses, and what adding it brings.
+//! `reality-sim gap`: finds the effect that a model of the camera lacks, and measures what adding it brings.
 
 mod options;
 mod poses;

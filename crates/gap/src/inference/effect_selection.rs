@@ -12,9 +12,9 @@ use crate::{
 const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
 
 impl EffectTests<'_> {
-    /// Returns the sets of effects to try adding. The first is the supported effect with the largest gain; behind it follow
-    /// its alternatives, because a linearised model cannot tell reliably which of several large effects fits best. If no
-    /// effect is supported alone, returns a pair that is, if any.
+    /// Returns the sets of effects to try adding. The first is the supported effect with the largest gain. Its alternatives
+    /// follow, because a linearised model cannot tell reliably which of several large effects fits best. If no effect is
+    /// supported alone, returns a pair that is supported, if there is one.
     pub(crate) fn next_additions(&self, named: &[EffectIndex]) -> Vec<Vec<EffectIndex>> {
         if self.evidence.views() < LEAST_VIEWS {
             return Vec::new();

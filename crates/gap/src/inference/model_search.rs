@@ -95,7 +95,7 @@ impl ModelSearch<'_> {
         tests.next_additions(&all).iter().map(|added| with(added)).filter(|set| is_new(set)).collect()
     }
 
-    /// Settles each of several sets and returns the one to take, followed by those that fit as well. Among the sets whose
+    /// Settles each of several sets and returns the one to take, followed by those that fit equally well. Among sets whose
     /// fits are indistinguishable, the one to take has the fewest sizes and then the best fit.
     pub(crate) fn closest(
         &self,
@@ -121,9 +121,9 @@ impl ModelSearch<'_> {
         Ok(settled.into_iter().map(|(_, set, measured)| (set, measured)).collect())
     }
 
-    /// Returns pairs of a named effect and an effect that it is confusable with. The second one tied with it when it was
-    /// taken, or the linearised model cannot distinguish the two, and it fits as well in the first one's place once it has
-    /// settled.
+    /// Returns pairs of a named effect and an effect that it is confusable with. Candidates are effects that tied with the
+    /// named one when it was taken, and those that the linearised model cannot distinguish from it. A candidate counts if it
+    /// fits as well in the named effect's place once it has settled.
     pub(crate) fn confusable(
         &self,
         measured: &LinearizedRecording,

@@ -149,7 +149,7 @@ pub struct Maps {
     pub time: Course,
 }
 
-/// The reference poses.
+/// Source and scatter of the reference poses.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct PosesReport {
     /// Source of the poses.
@@ -188,7 +188,7 @@ pub struct Report {
     pub not_found: Vec<NotFoundReport>,
     /// Effects that cannot be seen.
     pub unobservable: Vec<Unobservable>,
-    /// The reference poses.
+    /// Source and scatter of the reference poses.
     pub poses: PosesReport,
     /// Distribution of the residuals, by channel.
     pub maps: BTreeMap<Channel, Maps>,

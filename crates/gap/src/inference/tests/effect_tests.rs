@@ -86,8 +86,8 @@ fn an_effect_that_leaves_the_best_one_nothing_to_add_is_an_alternative() {
     assert_eq!(additions(&world, &[]), [[effect("mount_pitch")]]);
 }
 
-/// Signature that agrees with [`HIDES`] in one stretch of the recording and opposes it in the next. What one stretch shows
-/// of an effect, the next contradicts while the other effect is missing from the model.
+/// Signature that agrees with [`HIDES`] in one stretch of the recording and opposes it in the next. While either effect is
+/// missing from the model, the next stretch contradicts what one stretch shows of the other.
 const TURNS: Signature = |_, numbers| numbers[0];
 const HIDES: Signature = |frame, numbers| {
     let sign = if frame / 10 % 2 == 0 { 1.0 } else { -1.0 };

@@ -25,7 +25,7 @@ pub fn effect_size(report: &EffectReport) -> String {
     effect(&report.id).map_or_else(|| estimates.listed(), |known| known.size_in_words(&estimates))
 }
 
-/// Returns what to record to tell this effect from each one that it is confusable with.
+/// Returns, for each effect that this one is confusable with, what to record to tell them apart.
 pub fn deciding_recordings(report: &EffectReport) -> Vec<&'static str> {
     let recording = |id: &String| Some(effect(id)?.recording_that_would_decide());
     report.confusable_with.iter().filter_map(recording).collect()
