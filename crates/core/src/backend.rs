@@ -1,5 +1,6 @@
-//! Where poses are scored, particles live and pictures are drawn: this processor, or a device of another package. Chosen
-//! once and handed down; nothing in this package knows which it is. A device that fails is an error of the call that failed.
+//! Backend: where poses are scored, particles live and pictures are warped, on the CPU or a device of another package.
+//! It is chosen once and passed down; nothing else in this package depends on the choice. If a device fails, the call
+//! returns an error.
 
 use std::sync::Arc;
 
@@ -12,9 +13,9 @@ use crate::{
     warp::{CpuWarper, Warper},
 };
 
-/// Makes what runs on one device.
+/// Makes scorers, filters and warpers that run on one device.
 pub trait Backend: Send + Sync {
-    /// An observation model that scores poses one call at a time.
+    /// Makes an observation model that scores poses. Fails if the device cannot provide it.
     fn scorer(
         &self,
         camera: &Camera,
@@ -22,7 +23,8 @@ pub trait Backend: Send + Sync {
         config: ObservationConfig,
     ) -> Result<Box<dyn Scorer>, BackendError>;
 
-    /// A particle filter with its observation model. It has no particles before its first [`Filter::initialize`].
+    /// Makes a particle filter with its observation model. It has no particles before its first [`Filter::initialize`].
+    /// Fails if the device cannot provide it.
     fn filter(
         &self,
         camera: &Camera,
@@ -31,11 +33,11 @@ pub trait Backend: Send + Sync {
         config: FilterConfig,
     ) -> Result<Box<dyn Filter>, BackendError>;
 
-    /// What draws pictures from others; threads share it.
+    /// Returns a warper, which threads may share. Fails if the device cannot provide it.
     fn warper(&self) -> Result<Arc<dyn Warper>, BackendError>;
 }
 
-/// This processor. It never fails.
+/// Backend on the CPU. It never fails.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct CpuBackend;
 

@@ -1,10 +1,10 @@
-//! The error of a device, whichever device it is.
+//! Error of a device, whichever device it is.
 
 use std::{error::Error, fmt, sync::Arc};
 
-/// A device that cannot do what was asked for, or no longer works.
+/// Error of a device that cannot do what was asked of it, or no longer works.
 ///
-/// It reads as the device's own error, of which it hands out the sources; [`BackendError::get_ref`] gives that error.
+/// Message and sources are those of the device's own error; [`BackendError::get_ref`] returns that error.
 #[derive(Debug, Clone)]
 pub struct BackendError(Arc<dyn Error + Send + Sync>);
 
@@ -14,7 +14,7 @@ impl BackendError {
         Self(Arc::from(error.into()))
     }
 
-    /// The device's own error.
+    /// Returns the device's own error.
     pub fn get_ref(&self) -> &(dyn Error + Send + Sync + 'static) {
         &*self.0
     }

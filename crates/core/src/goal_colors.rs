@@ -1,24 +1,24 @@
-//! Which half of the field: goals of different colours tell a pose from its mirror image.
+//! Resolution of the field's symmetry: goals of different colours tell a pose from its mirror pose.
 
 use glam::DVec3;
 use image::RgbImage;
 
 use crate::{camera::Camera, field::FieldDimensions, pose::CameraPose};
 
-/// What the colours of goals are worth.
+/// Evidence that the colours of goals give.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct GoalColorConfig {
-    /// Samples along each post and crossbar, 24.
+    /// Number of samples along each post and crossbar, 24.
     pub samples: u32,
     /// Log-odds of one sample whose colour is clearly that of one goal, 0.1: neighbouring samples are not independent.
     pub sample_log_odds: f64,
-    /// Log-odds of one picture are cut here, 2: pictures of the same wall are not independent.
+    /// Maximum log-odds of one picture, 2: pictures of the same wall are not independent.
     pub max_log_odds: f64,
-    /// Goals whose chromaticities lie nearer than this are of one colour, 0.05.
+    /// Minimum distance between the goals' chromaticities, 0.05: nearer ones count as one colour.
     pub min_color_distance: f64,
-    /// A colour is a goal's within this fraction of the distance between both goals' colours, 0.35: below one half no
-    /// colour is both.
+    /// Maximum distance of a sample's colour from a goal's, as a fraction of the distance between both goals' colours,
+    /// 0.35: below one half no sample matches both.
     pub color_reach: f64,
 }
 
@@ -34,19 +34,19 @@ impl Default for GoalColorConfig {
     }
 }
 
-/// Compares the colours of goals in pictures with those the field says.
+/// Compares the colours of goals in pictures with those that the field specifies.
 #[derive(Debug, Clone)]
 pub struct GoalColors {
     config: GoalColorConfig,
     camera: Camera,
-    /// Points on the goals, world axes, and whether the goal is the one at +x.
+    /// Points on the goals, world axes, metres, and whether the goal is the one at +x.
     points: Vec<(DVec3, bool)>,
     positive: [f64; 2],
     negative: [f64; 2],
 }
 
 impl GoalColors {
-    /// `None` where the field gives no colours, or the same for both goals.
+    /// Prepares the comparison. Returns `None` if the field gives no colours, or the same for both goals.
     pub fn new(camera: &Camera, field: &FieldDimensions, config: GoalColorConfig) -> Option<Self> {
         let (positive, negative) = field.goal_srgb_positive_x.zip(field.goal_srgb_negative_x)?;
         let (positive, negative) = (chromaticity(positive)?, chromaticity(negative)?);
@@ -59,7 +59,7 @@ impl GoalColors {
         })
     }
 
-    /// Log-odds, from one picture, of the pose turned by 180° against the pose itself.
+    /// Returns the log-odds, from one picture, of the mirror pose against the pose itself.
     pub fn mirrored_log_odds(&self, picture: &RgbImage, pose: CameraPose) -> f64 {
         let sum: f64 = self
             .points
@@ -100,7 +100,7 @@ fn goal_points(field: &FieldDimensions, samples: u32) -> Vec<(DVec3, bool)> {
     points
 }
 
-/// Red and green as fractions of the sum; `None` for what is too dark to have a colour.
+/// Returns red and green as fractions of the sum; `None` for a pixel that is too dark to have a colour.
 fn chromaticity(rgb: [u8; 3]) -> Option<[f64; 2]> {
     let sum: f64 = rgb.iter().map(|&channel| f64::from(channel)).sum();
     (sum > 60.0).then(|| [f64::from(rgb[0]) / sum, f64::from(rgb[1]) / sum])

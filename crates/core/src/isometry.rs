@@ -1,4 +1,4 @@
-//! Poses as the rigid transforms of nalgebra, and back.
+//! Conversion of poses to the rigid transforms of nalgebra and back.
 //!
 //! A pose is the transform that takes coordinates of its own frame to the world: `world_from_camera` for a
 //! [`CameraPose`], whose axes are right, down and forward; for a [`Pose2`] the x axis points along the heading.
@@ -8,7 +8,7 @@ use nalgebra::{Isometry2, Isometry3, Quaternion, Translation3, UnitQuaternion, V
 
 use crate::pose::{CameraPose, Pose2};
 
-/// The transform `world_from_camera`, metres.
+/// Returns the transform `world_from_camera`, metres.
 impl From<CameraPose> for Isometry3<f64> {
     fn from(pose: CameraPose) -> Self {
         let DQuat { x, y, z, w } = pose.quaternion_world_from_camera();
@@ -17,8 +17,8 @@ impl From<CameraPose> for Isometry3<f64> {
     }
 }
 
-/// The pose whose transform `world_from_camera` this is, metres; see [`CameraPose::from_world_from_camera`] for a camera
-/// that looks straight up or down.
+/// Returns the pose with this transform `world_from_camera`, metres; see [`CameraPose::from_world_from_camera`] for a
+/// camera that looks straight up or down.
 impl From<Isometry3<f64>> for CameraPose {
     fn from(world_from_camera: Isometry3<f64>) -> Self {
         let position = world_from_camera.translation;
@@ -30,14 +30,14 @@ impl From<Isometry3<f64>> for CameraPose {
     }
 }
 
-/// The transform from the pose's own frame, x along the heading and y to the left, to the world, metres.
+/// Returns the transform from the pose's own frame, x along the heading and y to the left, to the world, metres.
 impl From<Pose2> for Isometry2<f64> {
     fn from(pose: Pose2) -> Self {
         Self::new(Vector2::new(pose.x_m, pose.y_m), pose.yaw_rad)
     }
 }
 
-/// The pose from whose own frame this transform leads to the world, metres; its heading lies in (−π, π].
+/// Returns the pose from whose own frame this transform leads to the world, metres; its heading lies in (−π, π].
 impl From<Isometry2<f64>> for Pose2 {
     fn from(world_from_pose: Isometry2<f64>) -> Self {
         let position = world_from_pose.translation;

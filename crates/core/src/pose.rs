@@ -1,4 +1,4 @@
-//! Poses on the field and the one rotation convention everything else is built on.
+//! Poses on the field, and the rotation convention on which everything else is built.
 //!
 //! | frame | origin | axes |
 //! |---|---|---|
@@ -11,46 +11,46 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
-/// No camera is farther from the centre of the field that it looks at, metres: the largest field is 200 m long.
+/// Maximum distance of a camera from the field's centre, metres: the largest field is 200 m long.
 pub const FARTHEST_M: f64 = 200.0;
 
-/// An angle in radians, wrapped to (−π, π].
+/// Wraps an angle in radians to (−π, π].
 pub fn wrap_angle(angle_rad: f64) -> f64 {
     let wrapped = (angle_rad + PI).rem_euclid(TAU) - PI;
     if wrapped <= -PI { wrapped + TAU } else { wrapped }
 }
 
-/// A planar pose: a position above the field and the heading of the optical axis.
+/// Planar pose: a position above the field and the heading of the optical axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pose2 {
-    /// Towards the opponent's goal, metres from the field's centre.
+    /// Position towards the opponent's goal, metres from the field's centre.
     pub x_m: f64,
-    /// To the left, metres from the field's centre.
+    /// Position to the left, metres from the field's centre.
     pub y_m: f64,
     /// Heading, counter-clockwise from +x, radians.
     pub yaw_rad: f64,
 }
 
 impl Pose2 {
-    /// The pose with these coordinates.
+    /// Makes a pose from its coordinates.
     pub fn new(x_m: f64, y_m: f64, yaw_rad: f64) -> Self {
         Self { x_m, y_m, yaw_rad }
     }
 
-    /// Position in the world, metres.
+    /// Returns the position in the world, metres.
     pub fn position_in_world(self) -> DVec2 {
         DVec2::new(self.x_m, self.y_m)
     }
 
-    /// The motion, in this pose's own frame, that leads from this pose to `next`.
+    /// Returns the motion, in this pose's own frame, that leads from this pose to `next`.
     pub fn motion_to(self, next: Self) -> Motion2 {
         let delta =
             DVec2::from_angle(-self.yaw_rad).rotate(next.position_in_world() - self.position_in_world());
         Motion2 { forward_m: delta.x, left_m: delta.y, turn_rad: wrap_angle(next.yaw_rad - self.yaw_rad) }
     }
 
-    /// The pose reached by a motion given in this pose's own frame.
+    /// Returns the pose reached by a motion given in this pose's own frame.
     pub fn moved(self, motion: Motion2) -> Self {
         let delta = DVec2::from_angle(self.yaw_rad).rotate(DVec2::new(motion.forward_m, motion.left_m));
         Self {
@@ -60,79 +60,80 @@ impl Pose2 {
         }
     }
 
-    /// The pose turned by 180° about the field's centre. A field with equal halves looks the same from both.
+    /// Returns the mirror pose, turned by 180° about the field's centre. A field with equal halves looks the same from
+    /// both.
     pub fn mirrored(self) -> Self {
         Self { x_m: -self.x_m, y_m: -self.y_m, yaw_rad: wrap_angle(self.yaw_rad + PI) }
     }
 }
 
-/// A planar motion between two poses, in the frame of the first.
+/// Planar motion between two poses, in the frame of the first.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Motion2 {
-    /// Along the heading, metres.
+    /// Distance along the heading, metres.
     pub forward_m: f64,
-    /// To the left of the heading, metres.
+    /// Distance to the left of the heading, metres.
     pub left_m: f64,
     /// Change of heading, counter-clockwise, radians.
     pub turn_rad: f64,
 }
 
 impl Motion2 {
-    /// Length of the path in a straight line, metres.
+    /// Returns the straight-line distance, metres.
     pub fn distance_m(self) -> f64 {
         self.forward_m.hypot(self.left_m)
     }
 }
 
-/// Where a camera is and where it looks.
+/// Pose of a camera in the world.
 ///
 /// With yaw ψ, pitch θ (depression of the optical axis, down is positive) and roll φ (clockwise seen from behind):
-/// `forward = (cos ψ cos θ, sin ψ cos θ, −sin θ)`, `right₀ = (sin ψ, −cos ψ, 0)`, `down₀ = forward × right₀`,
-/// `right = cos φ right₀ + sin φ down₀`, `down = −sin φ right₀ + cos φ down₀`.
+/// `forward = (cos ψ cos θ, sin ψ cos θ, −sin θ)`, `right₀ = (sin ψ, −cos ψ, 0)`, `down₀ = forward × right₀`, `right =
+/// cos φ right₀ + sin φ down₀`, `down = −sin φ right₀ + cos φ down₀`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CameraPose {
-    /// Towards the opponent's goal, metres from the field's centre.
+    /// Position towards the opponent's goal, metres from the field's centre.
     pub x_m: f64,
-    /// To the left, metres from the field's centre.
+    /// Position to the left, metres from the field's centre.
     pub y_m: f64,
     /// Heading of the optical axis, counter-clockwise from +x, radians.
     pub yaw_rad: f64,
-    /// Above the carpet, metres.
+    /// Height above the carpet, metres.
     pub height_m: f64,
     /// Depression of the optical axis below the horizon, radians.
     pub pitch_rad: f64,
-    /// About the optical axis, clockwise seen from behind the camera, radians.
+    /// Roll about the optical axis, clockwise seen from behind the camera, radians.
     pub roll_rad: f64,
 }
 
 impl CameraPose {
-    /// The planar pose lifted to a height, with the camera's pitch and roll.
+    /// Lifts a planar pose to a height, with the camera's pitch and roll.
     pub fn new(planar: Pose2, height_m: f64, pitch_rad: f64, roll_rad: f64) -> Self {
         Self { x_m: planar.x_m, y_m: planar.y_m, yaw_rad: planar.yaw_rad, height_m, pitch_rad, roll_rad }
     }
 
-    /// The part of the pose that lies in the plane of the field.
+    /// Returns the planar part of the pose.
     pub fn planar(self) -> Pose2 {
         Pose2 { x_m: self.x_m, y_m: self.y_m, yaw_rad: self.yaw_rad }
     }
 
-    /// The same camera at another place and heading.
+    /// Returns the same camera at another place and heading.
     pub fn with_planar(self, planar: Pose2) -> Self {
         Self::new(planar, self.height_m, self.pitch_rad, self.roll_rad)
     }
 
-    /// The pose turned by 180° about the field's centre.
+    /// Returns the mirror pose, turned by 180° about the field's centre.
     pub fn mirrored(self) -> Self {
         self.with_planar(self.planar().mirrored())
     }
 
-    /// The projection centre in the world, metres.
+    /// Returns the projection centre in the world, metres.
     pub fn position_in_world(self) -> DVec3 {
         DVec3::new(self.x_m, self.y_m, self.height_m)
     }
 
-    /// Rotation whose columns are the camera's right, down and forward in the world.
+    /// Returns the rotation whose columns are the camera's right, down and forward in the world.
     pub fn rotation_world_from_camera(self) -> DMat3 {
         let (sin_yaw, cos_yaw) = self.yaw_rad.sin_cos();
         let (sin_pitch, cos_pitch) = self.pitch_rad.sin_cos();
@@ -145,13 +146,13 @@ impl CameraPose {
         DMat3::from_cols(right, down, forward)
     }
 
-    /// A world point in the camera's axes, metres.
+    /// Transforms a point from the world to the camera's axes, metres.
     pub fn camera_from_world(self, point_in_world: DVec3) -> DVec3 {
         self.rotation_world_from_camera().transpose() * (point_in_world - self.position_in_world())
     }
 
-    /// The pose of a camera at `position_in_world` with this rotation. Looking straight up or down, where yaw and
-    /// roll turn about one axis, the roll is taken as zero.
+    /// Returns the pose of a camera at `position_in_world` with this rotation. If it looks straight up or down, so that
+    /// yaw and roll turn about the same axis, the roll is taken as zero.
     pub fn from_world_from_camera(position_in_world: DVec3, rotation_world_from_camera: DQuat) -> Self {
         let rotation = DMat3::from_quat(rotation_world_from_camera);
         let (right, forward) = (rotation.x_axis, rotation.z_axis);
@@ -174,18 +175,18 @@ impl CameraPose {
         }
     }
 
-    /// The rotation as a unit quaternion, world from camera, as TUM files store it.
+    /// Returns the rotation as a unit quaternion, world from camera, as TUM files store it.
     pub fn quaternion_world_from_camera(self) -> DQuat {
         DQuat::from_mat3(&self.rotation_world_from_camera())
     }
 
-    /// Whether a camera above a field can be there: finite, above the ground, and no farther than [`FARTHEST_M`] from
-    /// the field's centre.
+    /// Returns whether a camera above a field can have this pose: finite, above the ground, and no farther than
+    /// [`FARTHEST_M`] from the field's centre.
     pub fn is_possible(self) -> bool {
         self.is_finite() && self.height_m > 0.0 && self.position_in_world().length() <= FARTHEST_M
     }
 
-    /// True where every coordinate is a finite number.
+    /// Returns whether every coordinate is a finite number.
     pub fn is_finite(self) -> bool {
         [self.x_m, self.y_m, self.yaw_rad, self.height_m, self.pitch_rad, self.roll_rad]
             .iter()

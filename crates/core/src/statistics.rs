@@ -3,7 +3,7 @@
 /// Ratio of a normal distribution's standard deviation to its median absolute deviation.
 const SIGMA_PER_ABSOLUTE_MEDIAN: f64 = 1.4826;
 
-/// Returns the median: of an even number of values the upper one of the two in the middle, of no values 0.
+/// Returns the median. Of an even number of values it is the upper of the two in the middle, of no values 0.
 pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.into_iter().collect();
     if values.is_empty() {
@@ -13,7 +13,7 @@ pub fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// Returns the standard deviation about zero, by the median of the absolute values.
+/// Returns the standard deviation about zero, from the median of the absolute values.
 pub fn robust_sigma(values: impl IntoIterator<Item = f64>) -> f64 {
     SIGMA_PER_ABSOLUTE_MEDIAN * median(values.into_iter().map(f64::abs))
 }

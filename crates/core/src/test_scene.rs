@@ -1,4 +1,4 @@
-//! Pictures for tests, made by other code than what is tested: every pixel's rays are followed to the ground and
+//! Pictures for tests, rendered independently of the code under test: every pixel's rays are followed to the ground and
 //! coloured by plain geometry.
 
 use glam::DVec2;
@@ -10,20 +10,20 @@ use crate::{
     pose::CameraPose,
 };
 
-/// Rays along each side of a pixel.
+/// Number of rays along each side of a pixel.
 const SUPERSAMPLING: u32 = 3;
 
 pub(crate) fn field() -> FieldDimensions {
     FieldDimensions::preset("humanoid-kidsize-2010").unwrap()
 }
 
-/// A fisheye of 320 × 240 pixels that sees about 150° across.
+/// Returns a fisheye of 320 × 240 pixels that sees about 150° across.
 pub(crate) fn fisheye() -> Camera {
     let lens = OpencvFisheye { k: [-0.058, 0.0082, -0.0009, 0.00005] };
     Camera::new([320, 240], [120.0, 121.0, 159.0, 120.5], Distortion::OpencvFisheye(lens)).unwrap()
 }
 
-/// Poses spread over the field, looking a little down.
+/// Returns poses spread over the field, looking a little down.
 pub(crate) fn poses() -> Vec<CameraPose> {
     let pose = |x_m, y_m, yaw_rad, pitch_rad, roll_rad| CameraPose {
         x_m,

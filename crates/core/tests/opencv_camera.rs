@@ -1,9 +1,9 @@
-//! The camera models agree with OpenCV's own projections.
+//! Compares the camera models with OpenCV's own projections.
 
 use glam::{DVec2, DVec3};
 use reality_sim_core::camera::{Camera, Distortion, Opencv, OpencvFisheye};
 
-/// Both sides compute in double precision; pixels are a few hundred: what is left is rounding.
+/// Both sides compute in double precision with pixels of a few hundred: only rounding errors remain.
 const TOLERANCE_PX: f64 = 1e-9;
 
 struct Row {

@@ -1,21 +1,21 @@
-//! The lens in the form that loops over many points use: single precision, sixteen points at a time, no branches, no
+//! Lens in the form that loops over many points use: single precision, sixteen points at a time, no branches, no
 //! transcendental functions.
 
 #![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
 
 use super::{Camera, Distortion};
 
-/// Points handled together.
+/// Number of points handled together.
 pub const LANES: usize = 16;
 
 /// One value for each of sixteen points.
 pub type Lanes = [f32; LANES];
 
-/// Coefficients of the radial polynomial: enough for 0.01 px in a picture that sees up to 90° from the optical axis; a test
-/// holds it to that.
+/// Number of coefficients of the radial polynomial: enough for 0.01 px in a picture that sees up to 90° from the
+/// optical axis, which a test checks.
 pub const RADIAL_TERMS: usize = 11;
 
-/// How a direction becomes a place in the plane of unit focal length.
+/// Map from a direction to a point in the plane of unit focal length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Lens {
     /// `place = (x, y)/|p| · Σ cᵢ tⁱ`, t = z/|p| mapped to [−1, 1]. For Kannala–Brandt θ_d/sin θ is an even function of
@@ -25,7 +25,7 @@ pub enum Lens {
         coefficients: [f32; RADIAL_TERMS],
         /// t = scale · z/|p| + offset.
         scale: f32,
-        /// See `scale`.
+        /// Offset of t, see `scale`.
         offset: f32,
     },
     /// `place = (x, y)/z` with Brown–Conrady distortion k1, k2, p1, p2, k3.
@@ -35,18 +35,18 @@ pub enum Lens {
     },
 }
 
-/// A camera for loops over many points.
+/// Camera for loops over many points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KernelCamera {
-    /// Direction to place in the plane of unit focal length.
+    /// Map from a direction to a point in the plane of unit focal length.
     pub lens: Lens,
-    /// Focal lengths, pixels.
+    /// Focal length along the rows, pixels.
     pub fx: f32,
-    /// See `fx`.
+    /// Focal length along the columns, pixels.
     pub fy: f32,
-    /// Principal point, pixels.
+    /// Column of the principal point, pixels.
     pub cx: f32,
-    /// See `cx`.
+    /// Row of the principal point, pixels.
     pub cy: f32,
     /// Largest valid column.
     pub max_u: f32,
@@ -54,12 +54,12 @@ pub struct KernelCamera {
     pub max_v: f32,
     /// Cosine of the largest valid angle.
     pub min_cos: f32,
-    /// Centre and squared radius of the image circle, where the lens does not fill the picture.
+    /// Centre and squared radius of the image circle, pixels, if the lens does not fill the picture.
     pub circle: Option<[f32; 3]>,
 }
 
 impl KernelCamera {
-    /// The same camera in single precision.
+    /// Converts a camera to single precision.
     pub fn new(camera: &Camera) -> Self {
         let min_cos = camera.max_angle_rad().min(max_seen_angle_rad(camera)).cos();
         let lens = match camera.distortion {
@@ -86,7 +86,7 @@ impl KernelCamera {
     }
 }
 
-/// Pixels of sixteen points; `seen` is 1 where the point has a pixel, else 0.
+/// Pixels of sixteen points.
 #[derive(Debug, Clone, Copy)]
 pub struct Pixels {
     /// Pixels from the left.
@@ -99,8 +99,8 @@ pub struct Pixels {
     pub nearness: Lanes,
 }
 
-/// Projects sixteen points, x, y and z in the camera's axes, metres; `None` where the camera sees none of them. A point that
-/// is NaN is not seen.
+/// Projects sixteen points, given by x, y and z in the camera's axes, metres; `None` if the camera sees none of them. A
+/// point that is NaN is not seen.
 #[inline(always)]
 pub fn project_lanes(camera: &KernelCamera, points_in_camera: &[Lanes; 3]) -> Option<Pixels> {
     let [x, y, z] = points_in_camera;
@@ -146,7 +146,7 @@ pub fn project_lanes(camera: &KernelCamera, points_in_camera: &[Lanes; 3]) -> Op
     see_inside(camera, &cos, &mut pixels).then_some(pixels)
 }
 
-/// Marks the points that have a pixel of the camera; false where none has.
+/// Marks the points that have a pixel in the camera; returns false if none has.
 #[inline(always)]
 fn see_inside(camera: &KernelCamera, cos: &Lanes, pixels: &mut Pixels) -> bool {
     let mut any = 0u32;
@@ -170,7 +170,7 @@ fn see_inside(camera: &KernelCamera, cos: &Lanes, pixels: &mut Pixels) -> bool {
     true
 }
 
-/// The largest angle seen in the picture's corners: the polynomial need not hold beyond it.
+/// Returns the largest angle seen in the picture's corners: the polynomial need not hold beyond it.
 fn max_seen_angle_rad(camera: &Camera) -> f64 {
     let (right, bottom) = (f64::from(camera.width - 1), f64::from(camera.height - 1));
     let corners = [(0.0, 0.0), (right, 0.0), (0.0, bottom), (right, bottom)];
@@ -184,7 +184,7 @@ fn max_seen_angle_rad(camera: &Camera) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Chebyshev interpolation of θ_d/sin θ over cos θ in [min_cos, 1], as a power series.
+/// Interpolates θ_d/sin θ over cos θ in [min_cos, 1] at Chebyshev nodes; returns a power series.
 fn radial(min_cos: f64, radius: impl Fn(f64) -> f64) -> Lens {
     use std::f64::consts::PI;
     let count = RADIAL_TERMS;

@@ -1,7 +1,7 @@
-//! Camera models by COLMAP's names: from a point in the camera's axes to a pixel and back.
+//! Camera models by COLMAP's names, which map points in the camera's axes to pixels and back.
 //!
 //! A pixel's centre has integer coordinates; the first pixel's centre is (0, 0). Every model first distorts the
-//! direction into the plane of unit focal length (one file a model), then scales: `u = fx a + cx`, `v = fy b + cy`.
+//! direction into the plane of unit focal length (one file per model), then scales: `u = fx a + cx`, `v = fy b + cy`.
 
 mod kernel;
 mod opencv;
@@ -18,25 +18,26 @@ pub use self::{
 };
 use crate::pose::CameraPose;
 
-/// A camera valid over less than this, radians, sees no more than a pixel.
+/// Minimum of the largest valid angle, radians: a camera with less would see no more than a pixel.
 const SMALLEST_MAX_ANGLE_RAD: f64 = 1e-3;
 
-/// How far rounding may carry a ray of the rim beyond it, radians. A ray that a pixel has is one that can be projected.
+/// Maximum angle by which rounding may carry a ray of the rim beyond it, radians: every ray of a pixel can be
+/// projected.
 const RIM_ROUNDING_RAD: f64 = 1e-9;
 
-/// How a direction becomes a place in the plane of unit focal length.
+/// Map from a direction to a point in the plane of unit focal length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Distortion {
-    /// COLMAP `PINHOLE`: none.
+    /// No distortion: COLMAP's `PINHOLE`.
     Pinhole,
-    /// COLMAP `OPENCV`: Brown–Conrady.
+    /// Brown–Conrady: COLMAP's `OPENCV`.
     Opencv(Opencv),
-    /// COLMAP `OPENCV_FISHEYE`: Kannala–Brandt.
+    /// Kannala–Brandt: COLMAP's `OPENCV_FISHEYE`.
     OpencvFisheye(OpencvFisheye),
 }
 
 impl Distortion {
-    /// The model's name in COLMAP and nerfstudio.
+    /// Returns the model's name in COLMAP and nerfstudio.
     pub fn colmap_name(&self) -> &'static str {
         match self {
             Self::Pinhole => "PINHOLE",
@@ -45,7 +46,7 @@ impl Distortion {
         }
     }
 
-    /// The distortion's parameters, in the order of the model's file format.
+    /// Returns the distortion's parameters, in the order of the model's file format.
     pub fn parameters(&self) -> Vec<f64> {
         match self {
             Self::Pinhole => Vec::new(),
@@ -54,7 +55,7 @@ impl Distortion {
         }
     }
 
-    /// The angle from the optical axis at which the distortion stops growing, radians.
+    /// Returns the angle from the optical axis at which the distortion stops growing, radians.
     fn natural_max_angle_rad(&self) -> f64 {
         match self {
             Self::Pinhole => PINHOLE_MAX_ANGLE_RAD,
@@ -63,7 +64,7 @@ impl Distortion {
         }
     }
 
-    /// Place in the plane of unit focal length.
+    /// Projects a direction to a point in the plane of unit focal length.
     fn distort(&self, point_in_camera: DVec3) -> DVec2 {
         match self {
             Self::Pinhole => point_in_camera.truncate() / point_in_camera.z,
@@ -72,7 +73,7 @@ impl Distortion {
         }
     }
 
-    /// Rows: gradients of the two plane coordinates with respect to the point in the camera's axes.
+    /// Returns the gradients of the two plane coordinates with respect to the point in the camera's axes, one per row.
     fn distort_gradients(&self, point_in_camera: DVec3) -> [DVec3; 2] {
         let perspective = || {
             let (x, y, z) = point_in_camera.into();
@@ -90,7 +91,7 @@ impl Distortion {
         }
     }
 
-    /// Change of the plane coordinates with each parameter, in the order of [`Distortion::parameters`].
+    /// Returns the derivatives of the plane coordinates by each parameter, in the order of [`Distortion::parameters`].
     fn parameter_gradients(&self, point_in_camera: DVec3) -> Vec<DVec2> {
         match self {
             Self::Pinhole => Vec::new(),
@@ -101,7 +102,7 @@ impl Distortion {
         }
     }
 
-    /// The direction (not normalised) seen at a place in the plane of unit focal length, up to the angle given.
+    /// Returns the direction (not normalised) seen at a point in the plane of unit focal length, up to the given angle.
     fn undistort(&self, place: DVec2, max_angle_rad: f64) -> Option<DVec3> {
         match self {
             Self::Pinhole => Some(place.extend(1.0)),
@@ -113,26 +114,26 @@ impl Distortion {
     }
 }
 
-/// The circle outside which the picture of a fisheye is black.
+/// Circle outside which the picture of a fisheye is black.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ImageCircle {
-    /// Centre, pixels from the left.
+    /// Column of the centre, pixels from the first pixel's centre.
     pub cx: f64,
-    /// Centre, pixels from the top.
+    /// Row of the centre, pixels from the first pixel's centre.
     pub cy: f64,
     /// Radius, pixels.
     pub radius: f64,
 }
 
 impl ImageCircle {
-    /// Whether a pixel lies inside.
+    /// Returns whether a pixel lies inside.
     pub fn contains(&self, pixel: DVec2) -> bool {
         pixel.distance_squared(DVec2::new(self.cx, self.cy)) <= self.radius * self.radius
     }
 }
 
-/// Why a point in space has no pixel.
+/// Reason why a point in space has no pixel.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum NoPixel {
     /// The point is not a finite triple of numbers, or lies in the projection centre.
@@ -143,24 +144,24 @@ pub enum NoPixel {
     BeyondMaxAngle {
         /// Angle between the direction and the optical axis.
         angle_rad: f64,
-        /// The camera's largest valid angle.
+        /// Largest valid angle of the camera.
         max_angle_rad: f64,
     },
     /// The pixel would lie outside the picture.
     #[error("pixel ({:.1}, {:.1}) is outside the picture", .pixel.x, .pixel.y)]
     OutsideImage {
-        /// Where it would be.
+        /// Position that it would have.
         pixel: DVec2,
     },
     /// The pixel lies in the black outside the lens's image circle.
     #[error("pixel ({:.1}, {:.1}) is outside the lens's image circle", .pixel.x, .pixel.y)]
     OutsideImageCircle {
-        /// Where it would be.
+        /// Position that it would have.
         pixel: DVec2,
     },
 }
 
-/// Why a pixel has no ray, or no point on the ground.
+/// Reason why a pixel has no ray, or no point on the ground.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum NoRay {
     /// No direction within the camera's largest valid angle is seen at the pixel.
@@ -174,39 +175,39 @@ pub enum NoRay {
     NotAboveGround,
 }
 
-/// A camera whose parameters cannot be used.
+/// Reason why a camera's parameters cannot be used.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum InvalidCamera {
     /// Width or height is zero or too large to hold in memory.
     #[error("width and height must be between 1 and 32768 pixels, not {width} x {height}")]
     Size {
-        /// Pixels.
+        /// Width, pixels.
         width: u32,
-        /// Pixels.
+        /// Height, pixels.
         height: u32,
     },
     /// A focal length is not a positive number.
     #[error("fx and fy must be positive numbers of pixels, not {fx} and {fy}")]
     FocalLength {
-        /// Pixels.
+        /// Focal length along the rows, pixels.
         fx: f64,
-        /// Pixels.
+        /// Focal length along the columns, pixels.
         fy: f64,
     },
     /// A parameter is NaN or infinite.
     #[error("{name} is not a finite number")]
     NotFinite {
-        /// The parameter.
+        /// Name of the parameter.
         name: &'static str,
     },
-    /// The distortion falls right beside the optical axis, or the angle given is not one that the lens can take.
+    /// The distortion stops growing right beside the optical axis, or the given angle is out of the lens's range.
     #[error(
         "max_angle_rad is {max_angle_rad}: it must be above 0 and at most where the distortion polynomial stops growing ({natural_rad:.4})"
     )]
     MaxAngle {
-        /// As given.
+        /// Given angle, radians.
         max_angle_rad: f64,
-        /// Where the polynomial stops growing.
+        /// Angle at which the polynomial stops growing, radians.
         natural_rad: f64,
     },
 }
@@ -218,24 +219,25 @@ pub struct Camera {
     pub fx: f64,
     /// Focal length along the columns, pixels.
     pub fy: f64,
-    /// Principal point, pixels from the first pixel's centre.
+    /// Column of the principal point, pixels from the first pixel's centre.
     pub cx: f64,
-    /// Principal point, pixels from the first pixel's centre.
+    /// Row of the principal point, pixels from the first pixel's centre.
     pub cy: f64,
-    /// The lens.
+    /// Distortion of the lens.
     pub distortion: Distortion,
     /// Width of the picture, pixels.
     pub width: u32,
     /// Height of the picture, pixels.
     pub height: u32,
-    /// Directions farther from the optical axis have no pixel, radians.
+    /// Angle from the optical axis beyond which directions have no pixel, radians.
     max_angle_rad: f64,
-    /// Outside it the picture is black.
+    /// Circle outside which the picture is black.
     pub image_circle: Option<ImageCircle>,
 }
 
 impl Camera {
-    /// A camera of this size, `[fx, fy, cx, cy]` in pixels and lens, valid up to where its polynomial stops growing.
+    /// Makes a camera from its size, `[fx, fy, cx, cy]` in pixels and its distortion. It is valid up to the angle at
+    /// which the polynomial stops growing. Fails if a parameter cannot be used.
     pub fn new(
         [width, height]: [u32; 2],
         [fx, fy, cx, cy]: [f64; 4],
@@ -262,7 +264,8 @@ impl Camera {
         Ok(Self { fx, fy, cx, cy, distortion, width, height, max_angle_rad, image_circle: None })
     }
 
-    /// The same camera, valid only up to this angle from the optical axis, radians.
+    /// Limits the camera to directions up to this angle from the optical axis, radians. Fails if the angle is not above
+    /// 0 or is larger than the angle at which the polynomial stops growing.
     pub fn with_max_angle_rad(self, max_angle_rad: f64) -> Result<Self, InvalidCamera> {
         let natural_rad = self.distortion.natural_max_angle_rad();
         if !(max_angle_rad > 0.0 && max_angle_rad <= natural_rad) {
@@ -271,30 +274,32 @@ impl Camera {
         Ok(Self { max_angle_rad, ..self })
     }
 
-    /// The same camera with a picture that is black outside this circle.
+    /// Sets the circle outside which the picture is black.
     pub fn with_image_circle(self, image_circle: Option<ImageCircle>) -> Self {
         Self { image_circle, ..self }
     }
 
-    /// Directions farther from the optical axis than this have no pixel, radians.
+    /// Returns the angle from the optical axis beyond which directions have no pixel, radians.
     pub fn max_angle_rad(&self) -> f64 {
         self.max_angle_rad
     }
 
-    /// The pixel at which a point in the camera's axes is seen.
+    /// Projects a point in the camera's axes to its pixel. Fails if the camera does not see the point.
     pub fn project(&self, point_in_camera: DVec3) -> Result<DVec2, NoPixel> {
         let pixel = self.project_unbounded(point_in_camera)?;
         self.check_inside(pixel)?;
         Ok(pixel)
     }
 
-    /// As [`Camera::project`], but the pixel may lie outside the picture.
+    /// Works as [`Camera::project`], but the pixel may lie outside the picture. Fails if the point has no direction or
+    /// lies beyond the largest valid angle.
     pub fn project_unbounded(&self, point_in_camera: DVec3) -> Result<DVec2, NoPixel> {
         let (scaled, _) = self.scaled_point(point_in_camera)?;
         self.pixel_from_plane(self.distortion.distort(scaled))
     }
 
-    /// As [`Camera::project`], with the gradients of u and v with respect to the point (pixels per metre).
+    /// Works as [`Camera::project`], and returns also the gradients of u and v with respect to the point (pixels per
+    /// metre).
     pub fn project_with_gradients(&self, point_in_camera: DVec3) -> Result<(DVec2, [DVec3; 2]), NoPixel> {
         let (scaled, scale_m) = self.scaled_point(point_in_camera)?;
         let pixel = self.pixel_from_plane(self.distortion.distort(scaled))?;
@@ -303,7 +308,8 @@ impl Camera {
         Ok((pixel, [self.fx * da / scale_m, self.fy * db / scale_m]))
     }
 
-    /// Change of the pixel with each intrinsic parameter: fx, fy, cx, cy, then those of the distortion.
+    /// Returns the derivatives of the pixel by each intrinsic parameter: fx, fy, cx, cy, then those of the distortion.
+    /// Fails if the point has no direction or lies beyond the largest valid angle.
     pub fn intrinsic_gradients(&self, point_in_camera: DVec3) -> Result<Vec<DVec2>, NoPixel> {
         let (scaled, _) = self.scaled_point(point_in_camera)?;
         let plane = self.distortion.distort(scaled);
@@ -314,7 +320,8 @@ impl Camera {
         Ok(gradients)
     }
 
-    /// A point on the same ray with coordinates of at most 1, which no square can carry out of range, and the factor.
+    /// Returns a point on the same ray with coordinates of at most 1, whose squares cannot overflow, and the scale
+    /// factor.
     fn scaled_point(&self, point_in_camera: DVec3) -> Result<(DVec3, f64), NoPixel> {
         if !point_in_camera.is_finite() || point_in_camera == DVec3::ZERO {
             return Err(NoPixel::NoDirection);
@@ -328,7 +335,8 @@ impl Camera {
         Ok((scaled, scale_m))
     }
 
-    /// The unit direction, in the camera's axes, that is seen at a pixel.
+    /// Returns the unit direction, in the camera's axes, that is seen at a pixel. Fails if it is beyond the largest
+    /// valid angle.
     pub fn unproject(&self, pixel: DVec2) -> Result<DVec3, NoRay> {
         let place = DVec2::new((pixel.x - self.cx) / self.fx, (pixel.y - self.cy) / self.fy);
         let direction = self.distortion.undistort(place, self.max_angle_rad).ok_or(NoRay::BeyondMaxAngle)?;
@@ -339,7 +347,8 @@ impl Camera {
         Ok(direction)
     }
 
-    /// The point of the ground plane (z = 0, world axes, metres) that is seen at a pixel.
+    /// Returns the point of the ground plane (z = 0, world axes, metres) that is seen at a pixel. Fails if the pixel
+    /// has no valid ray, the ray does not meet the ground, or the camera is not above it.
     pub fn unproject_to_ground(&self, pose: CameraPose, pixel: DVec2) -> Result<DVec2, NoRay> {
         let ray_in_world = pose.rotation_world_from_camera() * self.unproject(pixel)?;
         if !pose.is_finite() || pose.height_m <= 0.0 {
@@ -347,7 +356,7 @@ impl Camera {
         }
         let distance_m = -pose.height_m / ray_in_world.z;
         let point_in_world = pose.planar().position_in_world() + distance_m * ray_in_world.truncate();
-        // A ray within rounding of the horizon meets the ground beyond all numbers.
+        // A ray almost parallel to the ground may meet it too far away for a finite number.
         if ray_in_world.z < 0.0 && point_in_world.is_finite() {
             Ok(point_in_world)
         } else {
@@ -355,7 +364,7 @@ impl Camera {
         }
     }
 
-    /// Whether a pixel lies in the picture and in the lens's image circle.
+    /// Checks that a pixel lies in the picture and in the lens's image circle. Fails with the reason if it does not.
     pub fn check_inside(&self, pixel: DVec2) -> Result<(), NoPixel> {
         let inside = (0.0..=f64::from(self.width) - 1.0).contains(&pixel.x)
             && (0.0..=f64::from(self.height) - 1.0).contains(&pixel.y);
@@ -374,7 +383,7 @@ impl Camera {
     }
 }
 
-/// Angle between a direction and the optical axis, 0 to π, radians.
+/// Returns the angle between a direction and the optical axis, 0 to π, radians.
 fn angle_from_axis_rad(direction: DVec3) -> f64 {
     direction.truncate().length().atan2(direction.z)
 }

@@ -4,27 +4,28 @@ use glam::DVec2;
 
 use super::rim::{PINHOLE_MAX_ANGLE_RAD, last_growing_angle_rad};
 
-/// Newton steps in [`Opencv::undistort`]; a few are enough except beside the rim.
+/// Maximum number of Newton steps in [`Opencv::undistort`]; a few are enough except beside the rim.
 const MAX_STEPS: usize = 100;
 
-/// How near the distorted place must come, in focal lengths: a hundred-millionth of a pixel.
+/// Maximum error of the distorted point, in focal lengths: a hundred-millionth of a pixel.
 const PLACE_TOLERANCE: f64 = 1e-11;
 
-/// Nearer than this, in focal lengths, no step is taken: it would be rounding.
+/// Error below which no step is taken, in focal lengths: it would be rounding.
 const PLACE_ROUNDING: f64 = 1e-15;
 
-/// `x_d = x (1 + k₁r² + k₂r⁴ + k₃r⁶) + 2 p₁ x y + p₂ (r² + 2x²)`, and y alike, for x = X/Z, y = Y/Z.
+/// Brown–Conrady distortion: `x_d = x (1 + k₁r² + k₂r⁴ + k₃r⁶) + 2 p₁ x y + p₂ (r² + 2x²)`, and y likewise, for x =
+/// X/Z, y = Y/Z.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Opencv {
-    /// Radial, r².
+    /// Radial coefficient of r².
     pub k1: f64,
-    /// Radial, r⁴.
+    /// Radial coefficient of r⁴.
     pub k2: f64,
-    /// Tangential.
+    /// First tangential coefficient.
     pub p1: f64,
-    /// Tangential.
+    /// Second tangential coefficient.
     pub p2: f64,
-    /// Radial, r⁶.
+    /// Radial coefficient of r⁶.
     pub k3: f64,
 }
 
@@ -38,17 +39,17 @@ impl Opencv {
         self.k1 + r2 * (2.0 * self.k2 + r2 * 3.0 * self.k3)
     }
 
-    /// The first angle at which the distortion stops growing in some direction, below that of a pinhole.
+    /// Returns the first angle at which the distortion stops growing in some direction, below the pinhole's limit.
     pub(super) fn max_angle_rad(&self) -> f64 {
         last_growing_angle_rad(PINHOLE_MAX_ANGLE_RAD, |angle_rad| self.least_determinant(angle_rad.tan()))
     }
 
-    /// The least determinant of the distortion's Jacobian on a circle.
+    /// Returns the smallest determinant of the distortion's Jacobian on a circle.
     ///
-    /// The Jacobian is symmetric and starts as the identity: while the determinant is positive all over a disc, it is
-    /// positive definite there and no two places of the disc are mapped to one. With c the cosine between the place
-    /// and (p₂, p₁), and τ = r |(p₂, p₁)|, it reads, along and across the radius,
-    /// `[[slope + 6τc, −2τs], [−2τs, radial + 2τc]]`: a determinant quadratic in c.
+    /// The Jacobian is symmetric and starts as the identity: if the determinant is positive all over a disc, the
+    /// Jacobian is positive definite there, and no two points of the disc are mapped to one. With c the cosine between
+    /// the point and (p₂, p₁), and τ = r |(p₂, p₁)|, the Jacobian is, along and across the radius, `[[slope + 6τc,
+    /// −2τs], [−2τs, radial + 2τc]]`: its determinant is quadratic in c.
     fn least_determinant(&self, radius: f64) -> f64 {
         let r2 = radius * radius;
         let across = self.radial(r2);
@@ -73,7 +74,7 @@ impl Opencv {
         p * self.radial(r2) + tangential
     }
 
-    /// Rows: gradients of x_d and y_d with respect to (x, y).
+    /// Returns the gradients of x_d and y_d with respect to (x, y), one per row.
     pub(super) fn distort_gradients(&self, p: DVec2) -> [DVec2; 2] {
         let r2 = p.length_squared();
         let (radial, slope) = (self.radial(r2), self.radial_slope(r2));
@@ -96,8 +97,8 @@ impl Opencv {
         ]
     }
 
-    /// Newton's method inside the valid disc. Each step is shortened until the error falls: the Jacobian is positive
-    /// definite there, so that some step always does.
+    /// Inverts the distortion by Newton's method inside the valid disc. Each step is shortened until the error falls:
+    /// the Jacobian is positive definite there, so some step length always reduces it.
     pub(super) fn undistort(&self, place: DVec2, max_angle_rad: f64) -> Option<DVec2> {
         if !place.length().is_finite() {
             return None;
@@ -120,12 +121,12 @@ impl Opencv {
         (error.length() <= PLACE_TOLERANCE * (1.0 + place.length())).then_some(p)
     }
 
-    /// Inverse Jacobian times error.
+    /// Returns the inverse Jacobian times the error.
     fn newton_step(&self, p: DVec2, error: DVec2) -> Option<DVec2> {
         let [dx, dy] = self.distort_gradients(p);
         let determinant = dx.x * dy.y - dx.y * dy.x;
         let step = DVec2::new(error.x * dy.y - error.y * dx.y, error.y * dx.x - error.x * dy.x) / determinant;
-        // Beside the rim the determinant vanishes: a step longer than the disc is as good as one across it.
+        // Beside the rim the determinant vanishes: a step longer than the disc is no better than one across it.
         step.is_finite().then(|| step.clamp_length_max(1.0 + 2.0 * p.length()))
     }
 }

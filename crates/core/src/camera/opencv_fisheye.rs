@@ -5,35 +5,36 @@ use glam::{DVec2, DVec3};
 
 use super::rim::last_growing_angle_rad;
 
-/// Newton steps in [`OpencvFisheye::undistort`]; bisection takes over where a step leaves the bracket.
+/// Maximum number of Newton steps in [`OpencvFisheye::undistort`]; bisection takes over if a step leaves the bracket.
 const MAX_STEPS: usize = 100;
 
-/// The largest angle a fisheye can take, radians: the direction straight back would be seen all around the rim.
+/// Largest angle that a fisheye can take, radians: the direction straight back would be seen all around the rim.
 const FISHEYE_MAX_ANGLE_RAD: f64 = 179.9 * std::f64::consts::PI / 180.0;
 
-/// `θ_d = θ (1 + k₁θ² + k₂θ⁴ + k₃θ⁶ + k₄θ⁸)` with θ the angle from the optical axis; the picture's radius is θ_d.
+/// Kannala–Brandt distortion: `θ_d = θ (1 + k₁θ² + k₂θ⁴ + k₃θ⁶ + k₄θ⁸)` with θ the angle from the optical axis; θ_d is
+/// the radius in the plane of unit focal length.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct OpencvFisheye {
-    /// k₁ … k₄.
+    /// Coefficients k₁ … k₄.
     pub k: [f64; 4],
 }
 
 impl OpencvFisheye {
-    /// θ_d, the radius in the plane of unit focal length.
+    /// Returns θ_d, the radius in the plane of unit focal length.
     pub fn radius(&self, theta_rad: f64) -> f64 {
         let t2 = theta_rad * theta_rad;
         let [k1, k2, k3, k4] = self.k;
         theta_rad * (1.0 + t2 * (k1 + t2 * (k2 + t2 * (k3 + t2 * k4))))
     }
 
-    /// dθ_d/dθ.
+    /// Returns dθ_d/dθ.
     fn slope(&self, theta_rad: f64) -> f64 {
         let t2 = theta_rad * theta_rad;
         let [k1, k2, k3, k4] = self.k;
         1.0 + t2 * (3.0 * k1 + t2 * (5.0 * k2 + t2 * (7.0 * k3 + t2 * 9.0 * k4)))
     }
 
-    /// The first angle at which θ_d stops growing, at most 179.9°.
+    /// Returns the first angle at which θ_d stops growing, at most 179.9°.
     pub(super) fn max_angle_rad(&self) -> f64 {
         last_growing_angle_rad(FISHEYE_MAX_ANGLE_RAD, |angle_rad| self.slope(angle_rad))
     }
@@ -85,7 +86,7 @@ impl OpencvFisheye {
         Some((place.normalize_or_zero() * sin).extend(cos))
     }
 
-    /// The angle whose θ_d is `radius`: Newton's method inside a shrinking bracket.
+    /// Returns the angle whose θ_d is `radius`, by Newton's method inside a shrinking bracket.
     fn angle_at(&self, radius: f64, max_angle_rad: f64) -> f64 {
         let (mut low, mut high) = (0.0, max_angle_rad);
         let mut theta = radius.min(max_angle_rad);

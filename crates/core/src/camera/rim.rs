@@ -1,12 +1,13 @@
-//! The angle up to which a distortion maps every direction to a place of its own.
+//! Angle up to which a distortion maps different directions to different points.
 
-/// A dip of `growth` below zero that is narrower than one step folds the picture by less than a millionth of a pixel.
+/// Number of steps of the search. If `growth` dips below zero for less than one step, the picture folds by less than a
+/// millionth of a pixel.
 const STEPS: u32 = 4096;
 
-/// The largest angle from the optical axis that a pinhole can take, radians: tan 89° is 57 focal lengths.
+/// Largest angle from the optical axis that a pinhole can take, radians: tan 89° is 57 focal lengths.
 pub(super) const PINHOLE_MAX_ANGLE_RAD: f64 = 89.0 * std::f64::consts::PI / 180.0;
 
-/// The first angle, at most `limit_rad`, at which `growth` is no longer a positive finite number.
+/// Returns the first angle, at most `limit_rad`, at which `growth` is no longer a positive finite number.
 pub(super) fn last_growing_angle_rad(limit_rad: f64, growth: impl Fn(f64) -> f64) -> f64 {
     let grows = |angle_rad: f64| {
         let growth = growth(angle_rad);

@@ -17,18 +17,18 @@ fn opencv(intrinsics: [f64; 4], [k1, k2, p1, p2, k3]: [f64; 5]) -> Camera {
     Camera::new([640, 480], intrinsics, Distortion::Opencv(Opencv { k1, k2, p1, p2, k3 })).unwrap()
 }
 
-/// The paper's walk: nearly 180° across the picture.
+/// Returns the camera of the paper's walk: nearly 180° across the picture.
 fn walk() -> Camera {
     let k = [-0.058061286, 0.008174184, -0.000916262, 0.000047755];
     fisheye([640, 480], [214.906223, 214.906223, 319.5, 239.5], k)
 }
 
-/// Sees behind itself: its polynomial grows all the way round.
+/// Returns a camera that sees behind itself: its polynomial grows all the way round.
 fn all_round() -> Camera {
     fisheye([960, 960], [150.0, 151.0, 480.2, 479.1], [0.02, -0.003, 0.0, 0.0])
 }
 
-/// Brown–Conrady whose polynomial turns at 42°, inside the picture.
+/// Returns a Brown–Conrady camera whose polynomial stops growing at 42°, inside the picture.
 fn turning_barrel() -> Camera {
     opencv([420.0, 420.0, 319.5, 239.5], [-0.4, 0.0, 0.0, 0.0, 0.0])
 }

@@ -1,4 +1,4 @@
-//! The field's white lines as curves on the ground (line centres), its marks and its goals.
+//! White lines of the field as curves on the ground (line centres), its marks and its goals.
 
 use std::f64::consts::TAU;
 
@@ -6,19 +6,19 @@ use glam::DVec2;
 
 use super::FieldDimensions;
 
-/// The centre of a white line on the ground, world axes, metres.
+/// Centre line of a white line on the ground, world axes, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Curve {
     /// A straight line.
     Segment {
-        /// One end.
+        /// First end.
         from: DVec2,
-        /// The other end.
+        /// Second end.
         to: DVec2,
     },
     /// A full circle.
     Circle {
-        /// Its centre.
+        /// Centre.
         center: DVec2,
         /// Radius of the line's centre.
         radius_m: f64,
@@ -26,7 +26,7 @@ pub enum Curve {
 }
 
 impl Curve {
-    /// Length along the curve, metres.
+    /// Returns the length along the curve, metres.
     pub fn length_m(&self) -> f64 {
         match self {
             Self::Segment { from, to } => from.distance(*to),
@@ -34,7 +34,7 @@ impl Curve {
         }
     }
 
-    /// Point and unit tangent at a fraction (0–1) of the length.
+    /// Returns point and unit tangent at a fraction (0–1) of the length.
     pub fn at(&self, fraction: f64) -> (DVec2, DVec2) {
         match self {
             Self::Segment { from, to } => {
@@ -47,7 +47,7 @@ impl Curve {
         }
     }
 
-    /// Distance of a point from the curve, metres.
+    /// Returns the distance of a point from the curve, metres.
     pub fn distance_m(&self, point: DVec2) -> f64 {
         match self {
             Self::Segment { from, to } => {
@@ -61,18 +61,18 @@ impl Curve {
     }
 }
 
-/// An upright cylinder on the carpet.
+/// Upright cylinder on the carpet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GoalPost {
-    /// Its axis on the ground, world axes, metres.
+    /// Axis of the cylinder on the ground, world axes, metres.
     pub center: DVec2,
-    /// Metres.
+    /// Radius, metres.
     pub radius_m: f64,
-    /// Above the carpet, metres.
+    /// Height above the carpet, metres.
     pub height_m: f64,
 }
 
-/// A goal: two posts joined by a crossbar.
+/// Goal: two posts joined by a crossbar.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
     /// Left and right post as seen from the field's centre.
@@ -80,7 +80,7 @@ pub struct Goal {
 }
 
 impl FieldDimensions {
-    /// Centres of all white lines.
+    /// Returns the centre lines of all white lines.
     pub fn curves(&self) -> Vec<Curve> {
         let (half_length, half_width) = (self.length_m / 2.0, self.width_m / 2.0);
         let segment = |x0, y0, x1, y1| Curve::Segment { from: DVec2::new(x0, y0), to: DVec2::new(x1, y1) };
@@ -110,13 +110,13 @@ impl FieldDimensions {
         curves
     }
 
-    /// Centres of the penalty marks and of the centre mark.
+    /// Returns the centres of the penalty marks and of the centre mark.
     pub fn marks(&self) -> [DVec2; 3] {
         let x = self.length_m / 2.0 - self.penalty_mark_distance_m;
         [DVec2::new(-x, 0.0), DVec2::ZERO, DVec2::new(x, 0.0)]
     }
 
-    /// The goals at −x and at +x.
+    /// Returns the goals at −x and at +x.
     pub fn goals(&self) -> [Goal; 2] {
         [-1.0, 1.0].map(|side| {
             let radius_m = self.goal_post_diameter_m / 2.0;

@@ -1,66 +1,67 @@
-//! The numbers that describe a field, as `field.toml` holds them.
+//! Dimensions of a field, as `field.toml` holds them.
 
 use serde::{Deserialize, Serialize};
 
-/// Field sizes outside this range are a mistake in the file: the largest league field is 22 m long.
+/// Plausible sizes of a field; others are a mistake in the file: the largest league field is 22 m long.
 const PLAUSIBLE_LENGTH_M: std::ops::RangeInclusive<f64> = 0.5..=200.0;
 
 /// Dimensions of a field, metres. Lengths between lines are measured between the lines' centres.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FieldDimensions {
-    /// What the field is called.
+    /// Name of the field.
     #[serde(default)]
     pub name: String,
-    /// From goal line to goal line, along x.
+    /// Distance from goal line to goal line, along x.
     pub length_m: f64,
-    /// From touch line to touch line, along y.
+    /// Distance from touch line to touch line, along y.
     pub width_m: f64,
     /// Width of the white lines.
     pub line_width_m: f64,
-    /// Carpet outside the outermost lines.
+    /// Width of the carpet outside the outermost lines.
     pub border_strip_m: f64,
     /// Depth of the goal area, along x.
     pub goal_area_length_m: f64,
     /// Width of the goal area, along y.
     pub goal_area_width_m: f64,
-    /// From the goal line to the penalty mark.
+    /// Distance from the goal line to the penalty mark.
     pub penalty_mark_distance_m: f64,
     /// Diameter of the centre circle.
     pub center_circle_diameter_m: f64,
-    /// Between the inner sides of the posts.
+    /// Distance between the inner sides of the posts.
     pub goal_width_m: f64,
-    /// From the carpet to the lower side of the crossbar.
+    /// Height from the carpet to the lower side of the crossbar.
     pub goal_height_m: f64,
     /// Diameter of posts and crossbar.
     pub goal_post_diameter_m: f64,
-    /// Depth of the penalty area, along x, where the field has one.
+    /// Depth of the penalty area, along x, if the field has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub penalty_area_length_m: Option<f64>,
-    /// Width of the penalty area, along y, where the field has one.
+    /// Width of the penalty area, along y, if the field has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub penalty_area_width_m: Option<f64>,
-    /// sRGB colour (0–255) of the goal at +x, where the two goals differ in colour.
+    /// Colour of the goal at +x in sRGB (0–255), if the two goals differ in colour.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub goal_srgb_positive_x: Option<[u8; 3]>,
-    /// sRGB colour (0–255) of the goal at −x, where the two goals differ in colour.
+    /// Colour of the goal at −x in sRGB (0–255), if the two goals differ in colour.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub goal_srgb_negative_x: Option<[u8; 3]>,
 }
 
-/// A field whose dimensions contradict each other.
+/// Dimension that contradicts the others or is impossible.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{name} is {value}: {rule}")]
 pub struct InvalidField {
-    /// The key in `field.toml`.
+    /// Key in `field.toml`.
     pub name: &'static str,
-    /// As given.
+    /// Given value.
     pub value: f64,
-    /// What it has to be.
+    /// Rule that the value has to fulfil.
     pub rule: &'static str,
 }
 
 impl FieldDimensions {
-    /// Checks that the dimensions describe a field on which lines can be drawn.
+    /// Checks that the dimensions describe a field on which lines can be drawn. Fails with the first dimension that
+    /// breaks a rule.
     pub fn validate(&self) -> Result<(), InvalidField> {
         self.check_outline()?;
         let Self { goal_area_length_m, goal_area_width_m, penalty_mark_distance_m, .. } = *self;
@@ -79,7 +80,7 @@ impl FieldDimensions {
         self.check_penalty_area()
     }
 
-    /// Length, width, and what lies along the whole outline.
+    /// Checks length, width, and what lies along the whole outline.
     fn check_outline(&self) -> Result<(), InvalidField> {
         for (name, value) in [("length_m", self.length_m), ("width_m", self.width_m)] {
             check(name, value, PLAUSIBLE_LENGTH_M.contains(&value), "must be between 0.5 and 200 metres")?;
@@ -107,19 +108,19 @@ impl FieldDimensions {
         }
     }
 
-    /// A length that is measured from a goal line into the field.
+    /// Checks a length that is measured from a goal line into the field.
     fn check_along(&self, name: &'static str, value: f64) -> Result<(), InvalidField> {
         let is_valid = value >= 0.0 && value < self.length_m / 2.0;
         check(name, value, is_valid, "must be 0 or more and below half the field's length")
     }
 
-    /// A length along a goal line.
+    /// Checks a length along a goal line.
     fn check_across(&self, name: &'static str, value: f64) -> Result<(), InvalidField> {
         let is_valid = value >= 0.0 && value <= self.width_m;
         check(name, value, is_valid, "must be 0 or more and at most the field's width")
     }
 
-    /// Half the carpet's extent along x and y, lines and border strip included, metres.
+    /// Returns half the carpet's extent along x and y, including lines and border strip, metres.
     pub fn carpet_half_extent_m(&self) -> glam::DVec2 {
         glam::DVec2::new(self.length_m, self.width_m) / 2.0 + self.border_strip_m + self.line_width_m / 2.0
     }

@@ -1,4 +1,4 @@
-//! The soccer field: its dimensions, its lines as curves on the ground, and samples along them.
+//! Soccer field: its dimensions, its lines as curves on the ground, and samples along them.
 
 mod curves;
 mod dimensions;

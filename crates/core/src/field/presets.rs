@@ -1,4 +1,4 @@
-//! Fields of the leagues, ready to use. Each file names the rule book that its numbers come from.
+//! Preset fields of the leagues. Each file names the rule book that its numbers come from.
 
 use super::FieldDimensions;
 
@@ -11,18 +11,18 @@ const PRESETS: [(&str, &str); 5] = [
     ("msl", include_str!("presets/msl.toml")),
 ];
 
-/// Names that [`FieldDimensions::preset`] knows.
+/// Returns the names that [`FieldDimensions::preset`] knows.
 pub fn preset_names() -> impl Iterator<Item = &'static str> {
     PRESETS.iter().map(|(name, _)| *name)
 }
 
 impl FieldDimensions {
-    /// A league's field by its name: one of [`preset_names`].
+    /// Returns a league's field by its name: one of [`preset_names`].
     pub fn preset(name: &str) -> Option<Self> {
         toml::from_str(Self::preset_toml(name)?).ok()
     }
 
-    /// The text of a preset's `field.toml`, with its sources: a start for a file of one's own.
+    /// Returns the text of a preset's `field.toml` with its sources, as a template for a new field.
     pub fn preset_toml(name: &str) -> Option<&'static str> {
         PRESETS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
     }

@@ -1,20 +1,20 @@
-//! Curves on the ground as a camera sees them, point by point through its lens: straight lines in the world are never
-//! straight chords in the picture.
+//! Projection of curves on the ground into a picture, point by point through the lens: with distortion, straight lines
+//! in the world do not stay straight in the picture.
 
 use glam::DVec2;
 
 use super::FieldDimensions;
 use crate::{camera::Camera, pose::CameraPose};
 
-/// Points next to each other on a curve are about this far apart in the picture where the curve is nearest, pixels.
+/// Distance in the picture between neighbouring points where the curve is nearest to the camera, pixels, approximately.
 const SPACING_PX: f64 = 6.0;
-/// Largest distance between such points on the ground, metres.
+/// Maximum distance between neighbouring points on the ground, metres.
 const MAX_SPACING_M: f64 = 0.02;
-/// Points farther apart in the picture than this are not joined, pixels: the curve leaves the view between them.
+/// Maximum distance in the picture at which points are joined, pixels: beyond it the curve leaves the view in between.
 const MAX_STEP_PX: f64 = 20.0;
 
-/// The field's lines seen from a pose: polylines, pixels. `sideways_m` is 0 for the lines' centres, half their width to
-/// either side for their edges.
+/// Returns the field's lines seen from a pose as polylines, pixels. `sideways_m` is 0 for the lines' centres, and plus
+/// or minus half their width for their edges.
 pub fn project_lines(
     camera: &Camera,
     field: &FieldDimensions,
@@ -32,7 +32,8 @@ pub fn project_lines(
     field.curves().into_iter().flat_map(curve_seen).collect()
 }
 
-/// A closed polygon on the ground seen from a pose: polylines, pixels. Corners are in the same axes as the pose, metres.
+/// Returns a closed polygon on the ground seen from a pose as polylines, pixels. Corners are in the same axes as the
+/// pose, metres.
 pub fn project_polygon(camera: &Camera, corners: &[DVec2], pose: CameraPose) -> Vec<Vec<DVec2>> {
     let view = View { camera, pose };
     let side = |(from, to): (&DVec2, &DVec2)| {
@@ -48,7 +49,7 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    /// Steps in which a length on the ground is drawn.
+    /// Returns the number of steps in which a length on the ground is drawn.
     fn steps(&self, length_m: f64) -> usize {
         let spacing_m = SPACING_PX * self.pose.height_m / self.camera.fx.max(self.camera.fy);
         (length_m / spacing_m.clamp(1e-3, MAX_SPACING_M)).ceil().max(1.0) as usize

@@ -1,37 +1,37 @@
-//! Samples along the field's lines: evenly on the ground for scoring, evenly in the picture for measuring.
+//! Samples along the field's lines: evenly spaced on the ground for scoring, evenly in the picture for measuring.
 
 use glam::{DMat3, DVec2};
 
 use super::{Curve, FieldDimensions, GoalPost};
 use crate::{camera::Camera, pose::CameraPose};
 
-/// A smaller spacing is taken as this one, so that no field has more samples than memory holds.
+/// Minimum spacing, metres: it keeps the number of samples of any field within memory.
 const LEAST_SPACING_M: f64 = 1e-3;
 
-/// A point on the centre of a white line.
+/// Point on the centre of a white line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineSample {
-    /// On the ground, world axes, metres.
+    /// Point on the ground, world axes, metres.
     pub point_in_world: DVec2,
     /// Unit vector along the line.
     pub tangent_in_world: DVec2,
     /// Length of line that the sample stands for, metres.
     pub length_m: f64,
-    /// Distance to the nearest other line, metres: small beside corners and crossings.
+    /// Distance to the nearest other line, metres: small near corners and crossings.
     pub clearance_m: f64,
     /// Index into [`FieldDimensions::curves`].
     pub curve: usize,
 }
 
 impl LineSample {
-    /// Unit vector across the line, 90° counter-clockwise from the tangent.
+    /// Returns the unit vector across the line, 90° counter-clockwise from the tangent.
     pub fn normal_in_world(&self) -> DVec2 {
         self.tangent_in_world.perp()
     }
 }
 
-/// Samples all lines so that neighbours are at most `spacing_m` (1 mm at least) apart; none lies on an end of a line,
-/// where two lines would be counted at once.
+/// Samples all lines so that neighbours are at most `spacing_m` (1 mm at least) apart. No sample lies on an end of a
+/// line, where two lines would be counted at once.
 pub fn sample_lines(field: &FieldDimensions, spacing_m: f64) -> Vec<LineSample> {
     let curves = field.curves();
     let mut samples = Vec::new();
@@ -56,12 +56,12 @@ fn line_sample(curves: &[Curve], index: usize, fraction: f64, length_m: f64) -> 
     LineSample { point_in_world, tangent_in_world, length_m, clearance_m, curve: index }
 }
 
-/// A sample together with where it is seen.
+/// Sample together with its position in the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VisibleSample {
-    /// The place on the line.
+    /// Sample on the line.
     pub sample: LineSample,
-    /// Where it is seen.
+    /// Position in the picture, pixels.
     pub pixel: DVec2,
     /// Unit vector across the line in the picture, towards [`LineSample::normal_in_world`].
     pub normal_in_image: DVec2,
@@ -69,9 +69,9 @@ pub struct VisibleSample {
     pub half_width_px: f64,
 }
 
-/// Samples seen by a camera, at most about one every `spacing_px` along the line in the picture. Dropped are those
-/// out of view, behind a goal post, or so near the rim or the horizon that the line's sides have no pixel or its width
-/// is none.
+/// Returns the samples seen by a camera, at most about one every `spacing_px` along the line in the picture. Samples
+/// are dropped if they are out of view, behind a goal post, or so near the rim or the horizon that the sides of the
+/// line have no pixel or its width is zero.
 pub fn visible_samples(
     field: &FieldDimensions,
     samples: &[LineSample],
@@ -94,7 +94,7 @@ pub fn visible_samples(
     kept
 }
 
-/// A camera at its pose.
+/// Camera at its pose.
 struct View<'a> {
     camera: &'a Camera,
     pose: CameraPose,
@@ -102,7 +102,7 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    /// Where a sample of a line this wide is seen, unless it is out of view.
+    /// Projects a sample of a line of this width; `None` if it is out of view.
     fn see(&self, sample: LineSample, line_width_m: f64) -> Option<VisibleSample> {
         let in_camera =
             |point: DVec2| self.camera_from_world * (point.extend(0.0) - self.pose.position_in_world());
@@ -119,7 +119,7 @@ impl View<'_> {
     }
 }
 
-/// Whether an upright post stands between the camera and a point on the ground, or on that point.
+/// Returns whether an upright post stands between the camera and a point on the ground, or on that point.
 fn hides(post: &GoalPost, pose: CameraPose, point_in_world: DVec2) -> bool {
     let camera = pose.position_in_world();
     let flat = point_in_world - camera.truncate();
@@ -128,9 +128,9 @@ fn hides(post: &GoalPost, pose: CameraPose, point_in_world: DVec2) -> bool {
     let to_post = post.center - camera.truncate();
     let along_m = to_post.dot(direction);
     let half_chord_m = (post.radius_m * post.radius_m - to_post.perp_dot(direction).powi(2)).sqrt();
-    // Not a number where the line of sight passes beside the post: then no comparison holds.
+    // NaN if the line of sight passes beside the post: then every comparison is false.
     let (entry_m, exit_m) = (along_m - half_chord_m, along_m + half_chord_m);
-    // The line of sight falls all the way: it is lowest where it leaves the post.
+    // The line of sight descends all the way: it is lowest where it leaves the post.
     let lowest_m = camera.z * (1.0 - (exit_m / length_m).min(1.0));
     half_chord_m > 0.0 && entry_m < length_m && exit_m > 0.0 && lowest_m < post.height_m
 }

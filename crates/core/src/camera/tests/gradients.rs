@@ -1,6 +1,6 @@
 use super::*;
 
-/// Intrinsic parameters in the order of [`Camera::intrinsic_gradients`].
+/// Returns the intrinsic parameters in the order of [`Camera::intrinsic_gradients`].
 fn parameters(camera: &Camera) -> Vec<f64> {
     let mut parameters = vec![camera.fx, camera.fy, camera.cx, camera.cy];
     parameters.extend(camera.distortion.parameters());
@@ -20,7 +20,7 @@ fn with_parameters(camera: &Camera, p: &[f64]) -> Camera {
     Camera::new([camera.width, camera.height], [p[0], p[1], p[2], p[3]], distortion).unwrap()
 }
 
-/// A point that is seen in the picture, away from the rim, where a difference would step over it.
+/// Returns a point seen in the picture, away from the rim, which a finite difference would step over.
 fn seen_point(camera: &Camera, u: f64, v: f64, distance_m: f64) -> Option<DVec3> {
     let pixel = DVec2::new(u * f64::from(camera.width - 1), v * f64::from(camera.height - 1));
     let ray = camera.unproject(pixel).ok()?;

@@ -2,7 +2,7 @@ use std::f64::consts::TAU;
 
 use super::*;
 
-/// Least determinant of the Jacobian all around a circle, from the gradients themselves.
+/// Returns the smallest determinant of the Jacobian all around a circle, from the gradients themselves.
 fn least_determinant(model: Opencv, angle_rad: f64) -> f64 {
     (0..3600)
         .map(|i| {

@@ -4,7 +4,8 @@ use super::*;
 
 const TOLERANCE_PX: f64 = 1e-6;
 
-/// Where a polynomial grows without end, its rim lies millions of pixels outside the picture: rounding grows with it.
+/// Returns the tolerance. If a polynomial grows without end, its rim lies millions of pixels outside the picture, and
+/// rounding errors grow with the distance.
 fn tolerance_px(pixel: DVec2) -> f64 {
     TOLERANCE_PX.max(1e-12 * pixel.length())
 }

@@ -2,7 +2,7 @@ use glam::DVec2;
 
 use super::*;
 
-/// A field whose goal area reaches right across, so that lines lie on one another, with and without a circle.
+/// Returns a field whose goal area reaches right across, so that lines lie on one another, with or without a circle.
 fn crowded(center_circle_diameter_m: f64) -> FieldDimensions {
     let field = FieldDimensions::preset("spl").unwrap();
     FieldDimensions { goal_area_width_m: field.width_m, center_circle_diameter_m, ..field }

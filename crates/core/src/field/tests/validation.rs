@@ -1,6 +1,6 @@
 use super::*;
 
-/// Numbers, as a careless or hostile file holds them.
+/// Generates numbers such as a careless or hostile file may contain.
 fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![
         4 => 0.0..20.0_f64,

@@ -26,12 +26,12 @@ fn any_pose() -> impl Strategy<Value = CameraPose> {
     )
 }
 
-/// Seen from `camera` at `pose`, wherever it is on the ground.
+/// Projects a point on the ground, wherever it is, into `camera` at `pose`.
 fn pixel_of(camera: &Camera, pose: CameraPose, ground: DVec2) -> DVec2 {
     camera.project(pose.camera_from_world(ground.extend(0.0))).unwrap()
 }
 
-/// Whether a place on the ground is among the samples seen on the paper's field.
+/// Returns whether a point on the ground is among the samples seen on the paper's field.
 fn is_seen(pose: CameraPose, ground: DVec2) -> bool {
     let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
     let sample = LineSample {
@@ -81,7 +81,7 @@ proptest! {
 
     #[test]
     fn what_is_dropped_is_out_of_view_or_behind_a_post(camera in any_camera(), pose in any_pose()) {
-        // Without posts and without thinning, only the view decides.
+        // Without posts and without thinning, visibility depends on the view alone.
         let field = FieldDimensions { goal_post_diameter_m: 0.0, ..FieldDimensions::preset("spl").unwrap() };
         let samples = sample_lines(&field, 0.1);
         let expected = samples.iter().filter(|sample| {
