@@ -18,10 +18,6 @@ use self::module_tree::Sources;
 /// What may be longer than the rest, each with its reason.
 const LONG_FOR_A_REASON: [(&str, &str); 0] = [];
 
-/// Starts of paths that the rules do not hold for yet, each with its reason.
-const NOT_YET: [(&str, &str); 2] =
-    [("crates/gap/", "to go: being rewritten"), ("crates/viewer/tests/gap.rs", "to go: being split")];
-
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -50,10 +46,6 @@ fn sources(folder: &Path) -> Sources {
     sources
 }
 
-fn is_not_yet(place: &str) -> bool {
-    NOT_YET.iter().any(|(start, _)| place.starts_with(start))
-}
-
 /// Circles between the files of every crate, and between the modules that its root declares; described.
 fn all_circles() -> Vec<String> {
     let mut found = Vec::new();
@@ -66,7 +58,6 @@ fn all_circles() -> Vec<String> {
             let modules = circles::between_top_modules(&files, root);
             for uses in [&files, &modules] {
                 let circles = circles::circles(uses).into_iter();
-                let circles = circles.filter(|circle| !circle.iter().all(|place| is_not_yet(place)));
                 found.extend(circles.map(|circle| circles::describe(&circle, uses)));
             }
         }
@@ -100,8 +91,7 @@ fn no_file_and_no_function_is_too_long_to_be_read_at_once() {
     let sources = folders.flat_map(|folder| sources(&folder));
     let found: Vec<(String, usize)> =
         sources.flat_map(|(file, text)| sizes::too_long(&file, &text)).collect();
-    let is_excused =
-        |place: &str| LONG_FOR_A_REASON.iter().any(|(excused, _)| place == *excused) || is_not_yet(place);
+    let is_excused = |place: &str| LONG_FOR_A_REASON.iter().any(|(excused, _)| place == *excused);
     let places: Vec<String> = found
         .iter()
         .filter(|(place, _)| !is_excused(place))

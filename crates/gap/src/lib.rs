@@ -45,6 +45,7 @@ mod diagnostics;
 mod inference;
 mod linear_model;
 mod measurement;
+mod progress;
 mod recording;
 pub mod report;
 #[cfg(test)]
@@ -56,11 +57,11 @@ pub use self::{
     inference::held_out::ChannelGap,
     linear_model::linearization::MeasureError,
     measurement::quantity::Channel,
+    progress::Progress,
     recording::{LEAST_FRAMES, Recording, RecordingError, ReferenceSource},
-    report::{Pictures, PicturesError, ReportError, ReportFault, html},
+    report::{Analysis, Pictures, PicturesError, ReportError, ReportFault, html},
     workflow::{
-        analysis::{Analysis, analyse, gap_of},
-        progress::Progress,
+        analysis::{analyse, gap_of},
         selection::Options,
     },
 };

@@ -6,12 +6,12 @@ use nalgebra::{DVector, Vector6};
 use reality_sim_sensor::Model;
 
 use crate::{
+    inference::selected_model::SelectedModel,
     linear_model::linearization::{MeasureError, linearise},
     linear_model::system::{FittedResiduals, LinearizedFrame, weigh},
     measurement::quantity::{Channel, Quantity},
     recording::Recording,
     thresholds::Thresholds,
-    workflow::selection::SelectedModel,
 };
 
 /// Residuals of all frames under a model.

@@ -20,6 +20,7 @@ pub(crate) mod linearized_recording;
 pub(crate) mod model_comparison;
 pub(crate) mod model_error;
 pub(crate) mod model_search;
+pub(crate) mod selected_model;
 pub(crate) mod split;
 #[cfg(test)]
 mod tests;

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::{
     inference::held_out::HeldOutResiduals,
+    inference::selected_model::SelectedModel,
     measurement::quantity::{Channel, Quantity},
     thresholds::Thresholds,
-    workflow::selection::SelectedModel,
 };
 
 /// Root mean square of the change from the given model to the extended one, by quantity.

@@ -15,8 +15,8 @@ use crate::{
     linear_model::parameters::FittedParameter,
     linear_model::reduced_equations::Fit,
     linear_model::system::LinearSystem,
+    progress::Progress,
     thresholds::{InferenceThresholds, Thresholds},
-    workflow::progress::Progress,
 };
 
 const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;

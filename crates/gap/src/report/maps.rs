@@ -8,11 +8,11 @@ use reality_sim_core::statistics::median;
 
 use crate::{
     inference::held_out::HeldOutResiduals,
+    inference::selected_model::SelectedModel,
     measurement::quantity::Channel,
     measurement::scalar::Measurement,
     recording::Recording,
     report::data::{Course, Map, Maps},
-    workflow::selection::SelectedModel,
 };
 
 /// Number of cells of the picture's map along x and y.

@@ -1,5 +1,6 @@
 //! Report of an analysis: numbers first ([`Report`]), then the text and the page made from them.
 
+pub(crate) mod analysis;
 pub(crate) mod data;
 mod file;
 pub mod html;
@@ -9,6 +10,7 @@ pub(crate) mod pictures;
 pub mod text;
 
 pub use self::{
+    analysis::Analysis,
     data::*,
     file::{Contradiction, ReportError, ReportFault},
     pictures::{Pictures, PicturesError},

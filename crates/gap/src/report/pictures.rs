@@ -7,7 +7,7 @@ use reality_sim_sensor::{Chain, Model, ModelError, RenderError, Renderer, SceneC
 
 use crate::{
     measurement::camera::FrameCamera, measurement::visibility::Surroundings, recording::Recording,
-    workflow::analysis::Analysis,
+    report::analysis::Analysis,
 };
 
 /// Frame in three versions, with a mask of the field.

@@ -14,26 +14,19 @@ use crate::{
     inference::gain::Gain,
     inference::held_out::{ChannelGap, HeldOutResiduals, gaps},
     inference::model_error::ModelError,
+    inference::selected_model::SelectedModel,
     linear_model::column::ColumnIndex,
     linear_model::linearization::MeasureError,
     linear_model::system::FittedResiduals,
     measurement::quantity::Channel,
+    progress::Progress,
     recording::{LEAST_VIEWS, Recording},
+    report::analysis::Analysis,
     report::data::{EffectReport, Estimate, Gap, Limit, NotFoundReport, PosesReport, Report, Unobservable},
     report::maps::maps,
-    workflow::progress::Progress,
-    workflow::selection::{Options, SelectedModel, as_given, find},
+    workflow::selection::{Options, as_given, find},
     workflow::verdict::verdict,
 };
-
-/// Result of the workflow for a recording.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Analysis {
-    /// Report of everything that was found.
-    pub report: Report,
-    /// Extended model.
-    pub model: Model,
-}
 
 /// Runs the whole workflow: finds the effects that a model lacks, adds them, and evaluates the result on held-out frames.
 /// `progress` is called at every stage.

@@ -2,6 +2,5 @@
 
 pub(crate) mod analysis;
 pub(crate) mod coarse_alignment;
-pub(crate) mod progress;
 pub(crate) mod selection;
 pub(crate) mod verdict;

@@ -5,16 +5,16 @@ use std::collections::BTreeMap;
 use reality_sim_sensor::{EffectIndex, Model};
 
 use crate::{
-    inference::effect_test::{EffectTest, EffectTests},
     inference::linearized_recording::{FittedRecording, LinearizedRecording},
     inference::model_search::ModelSearch,
+    inference::selected_model::SelectedModel,
     inference::split::HeldOutSplit,
     linear_model::linearization::{MeasureError, check},
-    linear_model::parameters::{FittedParameter, columns},
+    linear_model::parameters::columns,
+    progress::Progress,
     recording::Recording,
     thresholds::Thresholds,
     workflow::coarse_alignment::placing,
-    workflow::progress::Progress,
 };
 
 const SEARCH_FIRST: f64 = Thresholds::DEFAULT.inference.search_first;
@@ -27,44 +27,6 @@ pub struct Options {
     pub seed: u64,
     /// Ids of effects that are left out of the library.
     pub without: Vec<String>,
-}
-
-/// Outcome of the selection: a model with the effects that are supported.
-pub(crate) struct SelectedModel {
-    pub(crate) columns: Vec<FittedParameter>,
-    pub(crate) split: HeldOutSplit,
-    /// Recording measured and linearised at the final model.
-    pub(crate) measured: LinearizedRecording,
-    /// Effects that the model had from the start.
-    pub(crate) given: Vec<EffectIndex>,
-    /// Effects that were added, in the order in which they were added.
-    pub(crate) named: Vec<EffectIndex>,
-    /// P-values of named effects before they were added to the model.
-    p_values: BTreeMap<EffectIndex, f64>,
-    /// Pairs of a named effect and another one that fits as well in its place.
-    confusable: Vec<(EffectIndex, EffectIndex)>,
-}
-
-impl SelectedModel {
-    /// Returns all effects of the extended model.
-    pub(crate) fn all(&self) -> Vec<EffectIndex> {
-        self.given.iter().chain(&self.named).copied().collect()
-    }
-
-    /// Returns the effect tests at the final model.
-    pub(crate) fn effect_tests(&self) -> EffectTests<'_> {
-        self.measured.effect_tests(&self.columns)
-    }
-
-    /// P-value of a named effect: the smaller one of those before and after it was added.
-    pub(crate) fn p_value(&self, test: &EffectTest) -> f64 {
-        self.p_values.get(&test.effect).copied().unwrap_or(1.0).min(test.p_value)
-    }
-
-    /// Returns the effects outside the model that a named one is confusable with.
-    pub(crate) fn confusable_with(&self, effect: EffectIndex) -> Vec<EffectIndex> {
-        self.confusable.iter().filter(|(of, _)| *of == effect).map(|(_, other)| *other).collect()
-    }
 }
 
 /// Selects the effects that a recording supports in addition to those of a model. `progress` is called at every stage.

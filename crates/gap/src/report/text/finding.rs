@@ -132,13 +132,16 @@ mod tests {
         Finding::Pattern { channel: Channel::Sharpness, strongest, size: 0.131, p_value: 1e-6 }
     }
 
+    fn assert_said(cases: &[(Finding, &str, &str)]) {
+        for (finding, place, size) in cases {
+            assert_eq!((finding_place(finding).as_str(), finding_size(finding).as_str()), (*place, *size));
+        }
+    }
+
     #[test]
-    fn every_kind_of_finding_is_said_with_its_place_and_size() {
-        let line = FieldLine::Segment { from_m: [-4.5, 3.0], to_m: [4.5, 3.0] };
-        let nominal = |value, off_by| Finding::NominalValue { value, off_by, p_value: 1e-3 };
-        let odometry = |component| Finding::Odometry { component, follows: Movement::Turn, size: 0.0123 };
+    fn a_pattern_is_said_with_its_place_and_size() {
         let picture = PatternCell::Picture { column: 2, row: 4, grid: [8, 6] };
-        let cases = [
+        assert_said(&[
             (
                 pattern_in(picture),
                 "in the picture, strongest left of the middle, in the lower part",
@@ -159,6 +162,15 @@ mod tests {
                 "as the picture moves, strongest where it moves by 0.25 widths a second",
                 "0.13 px²",
             ),
+        ]);
+    }
+
+    #[test]
+    fn every_other_finding_is_said_with_its_place_and_size() {
+        let line = FieldLine::Segment { from_m: [-4.5, 3.0], to_m: [4.5, 3.0] };
+        let nominal = |value, off_by| Finding::NominalValue { value, off_by, p_value: 1e-3 };
+        let odometry = |component| Finding::Odometry { component, follows: Movement::Turn, size: 0.0123 };
+        assert_said(&[
             (
                 Finding::Flicker { size: 0.074, p_value: 1e-4 },
                 "bands along the rows that differ from picture to picture, as of lamps that flicker",
@@ -206,9 +218,6 @@ mod tests {
                 "in each picture in its own way: by more than noise and the poses' errors make",
                 "1.4 px",
             ),
-        ];
-        for (finding, place, size) in cases {
-            assert_eq!((finding_place(&finding).as_str(), finding_size(&finding).as_str()), (place, size));
-        }
+        ]);
     }
 }
