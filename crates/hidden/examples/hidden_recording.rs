@@ -11,7 +11,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let (seed, width): (u64, u32) = (seed.parse()?, width.parse()?);
     let mut recipe = Recipe { frames: frames.parse()?, size: [width, width * 3 / 4], ..Recipe::new(seed) };
-    // As the study draws them.
+    // The effects are drawn as in the study.
     let mut random = Random::new(seed.wrapping_mul(77));
     for pair in effects.chunks_exact(2) {
         recipe.effects.push(Hidden::of(&pair[0], pair[1].parse()?, &mut random)?);

@@ -1,17 +1,17 @@
-//! From rays to pixels: a disc for defocus, then the lens's Gaussian and the pixel's own aperture.
+//! Blur, from rays to pixels: a disc for defocus, then the lens's Gaussian and the pixel's own aperture.
 
 use crate::rays::{Frame, PER_PIXEL};
 
-/// Where the Gaussian is cut, standard deviations.
+/// Radius at which the Gaussian is cut, standard deviations.
 const CUT: f64 = 4.0;
 
-/// Pixels beyond the picture from which light comes into it.
+/// Returns the width of the margin around the picture from which light reaches it, pixels.
 pub fn margin_px(psf_sigma_px: f64, defocus_px: f64) -> usize {
-    // A pixel's half and a ray's.
+    // The 1 covers half a pixel and a ray.
     (1.0 + CUT * psf_sigma_px + 2.0 * defocus_px).ceil() as usize
 }
 
-/// Light of one colour, a value a ray, becomes a value a pixel.
+/// Reduces light of one colour from a value per ray to a value per pixel.
 pub fn reduce(light: &[f32], frame: Frame, psf_sigma_px: f64) -> Vec<f32> {
     let kernel = pixel_kernel(psf_sigma_px);
     let width = frame.rays_per_row();
@@ -41,8 +41,8 @@ pub fn reduce(light: &[f32], frame: Frame, psf_sigma_px: f64) -> Vec<f32> {
     pixels
 }
 
-/// Weights of the rays around a pixel's centre: a Gaussian seen through an aperture of one pixel. A ray stands for a
-/// square cell, whose variance is taken off.
+/// Returns the weights of the rays around a pixel's centre: a Gaussian convolved with an aperture of one pixel. Each ray
+/// stands for a square cell, whose variance is subtracted.
 fn pixel_kernel(psf_sigma_px: f64) -> Vec<f32> {
     const APERTURE_STEPS: i32 = 60;
     let cell = 1.0 / (12.0 * (PER_PIXEL * PER_PIXEL) as f64);
@@ -63,7 +63,7 @@ fn pixel_kernel(psf_sigma_px: f64) -> Vec<f32> {
     weights.iter().map(|weight| (weight / sum) as f32).collect()
 }
 
-/// Light of one colour, a value a ray, behind a lens that makes a disc of this standard deviation of every point.
+/// Blurs light of one colour, a value per ray, by a disc of this standard deviation.
 pub fn defocus(light: &[f32], frame: Frame, sigma_px: f64) -> Vec<f32> {
     let disc = disc_weights(sigma_px * PER_PIXEL as f64);
     let reach = disc.len() / 2;
@@ -71,7 +71,7 @@ pub fn defocus(light: &[f32], frame: Frame, sigma_px: f64) -> Vec<f32> {
     let rows: Vec<&[f32]> = light.chunks(width).collect();
     let mut blurred = vec![0.0; light.len()];
     for (row, target) in blurred.chunks_mut(width).enumerate() {
-        // What lies beyond the margin does not come into the picture.
+        // Light from beyond the margin does not reach the picture.
         for (weights, source) in disc
             .iter()
             .zip(row..)
@@ -85,15 +85,15 @@ pub fn defocus(light: &[f32], frame: Frame, sigma_px: f64) -> Vec<f32> {
     blurred
 }
 
-/// Adds to each ray's light a part of that of the ray `shift` places on.
+/// Adds to each ray's light a fraction of the light of the ray `shift` places further on.
 fn add_shifted(target: &mut [f32], source: &[f32], shift: i32, weight: f32) {
     let (to, from) = ((-shift).max(0) as usize, shift.max(0) as usize);
     let pairs = target.iter_mut().skip(to).zip(&source[from..]);
     pairs.for_each(|(target, source)| *target += weight * source);
 }
 
-/// How much of each cell, a square of one ray, a disc about the middle one covers, in rows; the sum is 1. Cells widen
-/// the disc by their own variance, which is taken off.
+/// Returns the fraction of each square cell of one ray that a disc about the middle cell covers, in rows, normalised to a
+/// sum of 1. The cells widen the disc by their own variance, which is subtracted.
 fn disc_weights(sigma: f64) -> Vec<Vec<f32>> {
     const SLICES: i32 = 16;
     let radius = 2.0 * (sigma * sigma - 1.0 / 12.0).max(0.01).sqrt();
@@ -117,7 +117,7 @@ fn disc_weights(sigma: f64) -> Vec<Vec<f32>> {
 mod tests {
     use super::*;
 
-    /// Sum, and variance along x and y in square pixels, of what becomes of the lit rays of one pixel in the middle.
+    /// Returns the sum, and the variances along x and y in square pixels, of the image of one lit pixel in the middle.
     fn moments(psf_sigma_px: f64, defocus_px: f64) -> [f64; 3] {
         let frame = Frame { size: [21, 21], margin: margin_px(psf_sigma_px, defocus_px) };
         let mut light = vec![0.0; frame.rays_per_row() * frame.rows() * PER_PIXEL];
@@ -141,7 +141,7 @@ mod tests {
     #[test]
     fn a_point_becomes_the_gaussian_and_the_aperture() {
         let [sum, x, y] = moments(0.5, 0.0);
-        // The Gaussian, the aperture, and the lit pixel, whose rays stand for cells.
+        // The variances of the Gaussian, the aperture, and the lit pixel, whose rays stand for cells.
         let expected = 0.25 + 1.0 / 12.0 + 1.0 / 12.0 - 2.0 / 108.0;
         assert!((sum - 1.0).abs() < 0.01, "{sum}");
         assert!((x - expected).abs() < 0.005 && (y - expected).abs() < 0.005, "{x} {y}");

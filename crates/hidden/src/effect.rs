@@ -1,4 +1,4 @@
-//! What can be hidden in a recording, by physical size.
+//! Effects that can be hidden in a recording, by physical size.
 
 use std::f64::consts::TAU;
 
@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use crate::{error::Error, random::Random};
 
-/// Ids of the effects that a library of effects is expected to name.
+/// Ids of the effects that a library of effects should contain.
 pub const LIBRARY: [&str; 22] = [
     "radial_distortion",
     "principal_point",
@@ -32,7 +32,7 @@ pub const LIBRARY: [&str; 22] = [
     "odometry_lateral_slip",
 ];
 
-/// Ids of the effects that no library has: they must be seen and not be given another's name.
+/// Ids of the effects that no library contains: they must be noticed and not be given another effect's name.
 pub const FOREIGN: [&str; 8] = [
     "lens_dirt",
     "flicker_bands",
@@ -44,223 +44,223 @@ pub const FOREIGN: [&str; 8] = [
     "lens_dent",
 ];
 
-/// How light falls off towards the corners.
+/// Falloff of the light towards the corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Falloff {
-    /// With the square of the distance from the principal point.
+    /// Proportional to the square of the distance from the principal point.
     Quadratic,
     /// As cos⁴ of the angle in a camera whose corners are at 45°, scaled to the same loss in the corners.
     Cos4,
 }
 
-/// How exposure goes over time.
+/// Exposure over time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Course {
-    /// From minus to plus the amplitude, from the first picture to the last.
+    /// Linear from minus to plus the amplitude, from the first picture to the last.
     Linear,
-    /// A sine of this period and this phase at time 0.
+    /// Sine with this period and this phase at time 0.
     Sine {
-        /// Seconds.
+        /// Period, seconds.
         period_s: f64,
-        /// Radians.
+        /// Phase, radians.
         phase_rad: f64,
     },
 }
 
-/// How the field is lit; the mean over the field is 1.
+/// Illumination of the field; its mean over the field is 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
-    /// Rising in a direction of the world, by the strength every half length of the field.
+    /// Linear in a direction of the world, rising by the strength every half length of the field.
     Gradient {
-        /// Counter-clockwise from +x, radians.
+        /// Direction, counter-clockwise from +x, radians.
         direction_rad: f64,
     },
-    /// A bright Gaussian spot, its peak higher than its surroundings by the strength.
+    /// Bright Gaussian spot whose peak is higher than its surroundings by the strength.
     Spot {
-        /// In the world, metres.
+        /// Centre in the world, metres.
         center_m: DVec2,
         /// Standard deviation, metres.
         sigma_m: f64,
     },
 }
 
-/// An effect of which the files beside the pictures know nothing.
+/// Effect that the files beside the pictures do not mention.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Hidden {
-    /// The true lens has the nominal coefficients plus these.
+    /// The true lens has the nominal coefficients plus `k`.
     RadialDistortion {
-        /// Added to k₁ … k₄.
+        /// Changes of k₁ … k₄.
         k: [f64; 4],
     },
-    /// The true principal point is off by this.
+    /// The true principal point is offset from the nominal one.
     PrincipalPoint {
-        /// To the right, pixels.
+        /// Offset to the right, pixels.
         dx_px: f64,
-        /// Down, pixels.
+        /// Offset down, pixels.
         dy_px: f64,
     },
     /// The true focal length is the nominal one times 1 + `scale`.
     FocalLength {
-        /// Fraction.
+        /// Change as a fraction.
         scale: f64,
     },
-    /// The true optical axis is turned down in the camera's own frame.
+    /// The true optical axis is turned down in the camera frame.
     MountPitch {
-        /// Radians.
+        /// Angle, radians.
         angle_rad: f64,
     },
-    /// The true camera is turned about its optical axis, its x axis towards its y axis, after any pitch.
+    /// The true camera is turned about its optical axis, with its x axis towards its y axis, after any pitch.
     MountRoll {
-        /// Radians.
+        /// Angle, radians.
         angle_rad: f64,
     },
     /// The true camera is higher.
     CameraHeight {
-        /// Metres.
+        /// Additional height, metres.
         height_m: f64,
     },
     /// Row v is exposed at t + readout · (v / (rows − 1) − 0.5).
     RollingShutter {
-        /// Seconds from the first row to the last.
+        /// Time from the first row to the last, seconds.
         readout_s: f64,
     },
-    /// The robot's pictures, odometry, IMU and joints are those of t + offset; reference poses are those of t.
+    /// The robot's pictures, odometry, IMU and joints are taken at t + offset; the reference poses at t.
     TimeOffset {
-        /// Seconds.
+        /// Offset, seconds.
         offset_s: f64,
     },
-    /// Light is collected while the camera moves, centred at the picture's time.
+    /// Light is collected while the camera moves, in an interval centred at the picture's time.
     MotionBlur {
-        /// Seconds.
+        /// Exposure time, seconds.
         exposure_s: f64,
     },
-    /// A point becomes an evenly lit disc besides the nominal blur.
+    /// Each point becomes an evenly lit disc in addition to the nominal blur.
     Defocus {
         /// Standard deviation per axis, half the disc's radius, pixels.
         sigma_px: f64,
     },
     /// Red and blue are magnified about the principal point by 1 + scale.
     ChromaticAberration {
-        /// Of red against green.
+        /// Scale of red relative to green.
         red_scale: f64,
-        /// Of blue against green.
+        /// Scale of blue relative to green.
         blue_scale: f64,
     },
     /// Light is lost towards the corners.
     Vignetting {
         /// Fraction lost at a distance from the principal point of half the picture's diagonal.
         strength: f64,
-        /// Its shape.
+        /// Shape of the falloff.
         falloff: Falloff,
     },
     /// Pixel values are encoded with another gamma.
     ToneCurve {
-        /// Added to the nominal gamma.
+        /// Change of the nominal gamma.
         gamma_change: f64,
     },
     /// A linear value v becomes v (1 − offset) + offset before encoding.
     BlackLevel {
-        /// Fraction of full scale.
+        /// Offset as a fraction of full scale.
         offset: f64,
     },
-    /// Red and blue are amplified by 1 + gain, linear.
+    /// Red and blue are amplified by 1 + gain, in linear light.
     WhiteBalance {
-        /// Of red.
+        /// Gain of red.
         red_gain: f64,
-        /// Of blue.
+        /// Gain of blue.
         blue_gain: f64,
     },
-    /// Exposure changes over time: linear values times 2 to the power of its course.
+    /// Exposure changes over time: linear values are multiplied by 2 to the power of its course.
     ExposureDrift {
-        /// Stops.
+        /// Amplitude, stops.
         amplitude_ev: f64,
-        /// Its shape.
+        /// Course over time.
         course: Course,
     },
-    /// The hall is not evenly lit.
+    /// The hall is unevenly lit.
     UnevenIllumination {
-        /// Fraction.
+        /// Strength as a fraction.
         strength: f64,
-        /// Its shape.
+        /// Shape of the illumination.
         shape: Light,
     },
     /// The standard deviation of the noise is 1 + factor times the nominal one.
     SensorNoise {
-        /// Fraction.
+        /// Factor as a fraction.
         factor: f64,
     },
     /// The true field is larger; goals and goal areas move with the goal lines.
     FieldDimensions {
-        /// Longer by this, metres.
+        /// Additional length, metres.
         length_m: f64,
-        /// Wider by this, metres.
+        /// Additional width, metres.
         width_m: f64,
     },
-    /// Odometry measures distances times 1 + scale.
+    /// The odometry measures distances times 1 + scale.
     OdometryScale {
-        /// Fraction.
+        /// Scale as a fraction.
         scale: f64,
     },
-    /// Odometry's heading drifts.
+    /// The odometry's heading drifts.
     OdometryYawDrift {
-        /// Radians per second.
+        /// Drift rate, radians per second.
         rate_rad_per_s: f64,
     },
-    /// Odometry's step to the left gains this for each metre forward.
+    /// The odometry's step to the left grows by this slip for each metre forward.
     OdometryLateralSlip {
-        /// Metres per metre.
+        /// Slip, metres per metre.
         slip_m_per_m: f64,
     },
-    /// Dirt on the lens: a blurred dark patch that stays in the picture, transmitting 1 − opacity at its centre.
+    /// Dirt on the lens: a blurred dark patch at a fixed place in the picture, transmitting 1 − opacity at its centre.
     LensDirt {
-        /// Fraction.
+        /// Opacity as a fraction.
         opacity: f64,
         /// Centre, as fractions of the picture's width and height.
         center: DVec2,
         /// Standard deviation, as a fraction of the picture's width.
         sigma: f64,
     },
-    /// Brightness bands of lamps on the mains: they roll from picture to picture.
+    /// Brightness bands from mains-powered lamps, which roll from picture to picture.
     FlickerBands {
-        /// Fraction.
+        /// Amplitude as a fraction.
         amplitude: f64,
-        /// Bands over the picture's height.
+        /// Number of bands over the picture's height.
         bands: f64,
-        /// From one picture to the next, in bands.
+        /// Shift from one picture to the next, in bands.
         roll: f64,
     },
     /// One goal area is not painted.
     MissingLine {
-        /// The one at +x, else the one at −x.
+        /// Whether the missing area is the one at +x, else the one at −x.
         positive_x: bool,
     },
-    /// The halfway line is not in the middle.
+    /// The halfway line is off the middle.
     ShiftedLine {
-        /// Towards +x, metres.
+        /// Shift towards +x, metres.
         shift_m: f64,
     },
-    /// Dark upright figures walk over the field.
+    /// Dark upright figures walk across the field.
     MovingPeople {
-        /// How many, at most 8.
+        /// Number of people, at most 8.
         count: u32,
     },
-    /// Light scattered on its way: a grey veil that grows with distance.
+    /// Scattered light: a grey veil that grows with distance.
     Fog {
-        /// Per metre.
+        /// Extinction per metre.
         extinction_per_m: f64,
     },
     /// The ground is not flat.
     WavyGround {
-        /// Of its waves, metres.
+        /// Amplitude of the waves, metres.
         amplitude_m: f64,
-        /// Crest to crest, metres.
+        /// Wavelength, crest to crest, metres.
         wavelength_m: f64,
-        /// Direction of the waves and phase, radians.
+        /// Direction and phase of the waves, radians.
         angles_rad: [f64; 2],
     },
-    /// The lens has a dent: in one part of the picture everything is seen a little aside.
+    /// The lens has a dent: one part of the picture is displaced.
     LensDent {
-        /// At its centre, as fractions of the picture's width.
+        /// Displacement at the centre, as fractions of the picture's width.
         shift: DVec2,
         /// Centre, as fractions of the picture's width and height.
         center: DVec2,
@@ -270,7 +270,7 @@ pub enum Hidden {
 }
 
 impl Hidden {
-    /// The effect's id, one of [`LIBRARY`] or [`FOREIGN`].
+    /// Returns the effect's id, one of [`LIBRARY`] or [`FOREIGN`].
     pub fn id(&self) -> &'static str {
         match self {
             Self::RadialDistortion { .. } => "radial_distortion",
@@ -306,14 +306,14 @@ impl Hidden {
         }
     }
 
-    /// The effect with this id at `multiple` times a small size of its own, with a random sign where both make sense
-    /// and a random shape where it has several. `missing_line` has no size.
+    /// Returns the effect with this id at `multiple` times its unit size, with a random sign where both signs make sense,
+    /// and a random shape where the effect has several. `missing_line` has no size.
     ///
-    /// One size is: k₁ 0.002, principal point 0.5 px, focal length 0.15 %, mount 0.1°, height 4 mm, readout 8 ms,
-    /// offset 4 ms, exposure 12 ms, defocus 0.3 px, red and blue ±0.0008, vignetting 0.03, gamma 0.04, black level
-    /// 0.003, white balance 0.02, exposure 0.04 EV, illumination 0.04, noise 0.12, field 2.5 cm long, odometry 3 %,
-    /// 0.6°/s and 0.04 m/m; dirt 0.1, flicker 0.02, shifted line 1.5 cm, one person, fog 0.01 per metre, waves 3 mm,
-    /// dent 0.1 % of the width.
+    /// The unit sizes are: k₁ 0.002, principal point 0.5 px, focal length 0.15 %, mount 0.1°, height 4 mm, readout 8 ms,
+    /// offset 4 ms, exposure 12 ms, defocus 0.3 px, red and blue ±0.0008, vignetting 0.03, gamma 0.04, black level 0.003,
+    /// white balance 0.02, exposure 0.04 EV, illumination 0.04, noise 0.12, field 2.5 cm long, odometry 3 %, 0.6°/s and 0.04
+    /// m/m; dirt 0.1, flicker 0.02, shifted line 1.5 cm, one person, fog 0.01 per metre, waves 3 mm, dent 0.1 % of the
+    /// width.
     pub fn of(id: &str, multiple: f64, random: &mut Random) -> Result<Self, Error> {
         let unknown = || Error::UnknownEffect { id: id.to_owned() };
         geometric(id, multiple, random)
@@ -324,7 +324,7 @@ impl Hidden {
     }
 }
 
-/// Effects of lens, mount, time and field.
+/// Draws effects of lens, mount, time and field.
 fn geometric(id: &str, multiple: f64, random: &mut Random) -> Option<Hidden> {
     let signed = |size: f64, random: &mut Random| random.sign() * size * multiple;
     Some(match id {
@@ -347,7 +347,7 @@ fn geometric(id: &str, multiple: f64, random: &mut Random) -> Option<Hidden> {
     })
 }
 
-/// Effects of light and sensor.
+/// Draws effects of light and sensor.
 fn photometric(id: &str, multiple: f64, random: &mut Random) -> Option<Hidden> {
     let signed = |size: f64, random: &mut Random| random.sign() * size * multiple;
     Some(match id {
@@ -392,7 +392,7 @@ fn light(random: &mut Random) -> Light {
     Light::Spot { center_m, sigma_m: random.between(1.2, 1.8) }
 }
 
-/// Effects of the odometry.
+/// Draws effects of the odometry.
 fn odometric(id: &str, multiple: f64, random: &mut Random) -> Option<Hidden> {
     let signed = |size: f64, random: &mut Random| random.sign() * size * multiple;
     Some(match id {
@@ -403,9 +403,9 @@ fn odometric(id: &str, multiple: f64, random: &mut Random) -> Option<Hidden> {
     })
 }
 
-/// Effects that no library has.
+/// Draws effects that no library contains.
 fn foreign(id: &str, multiple: f64, random: &mut Random) -> Option<Hidden> {
-    // In the lower half, where the carpet is seen.
+    // The centre lies in the lower half, where the carpet is visible.
     let place = |random: &mut Random| DVec2::new(random.between(0.25, 0.75), random.between(0.55, 0.8));
     Some(match id {
         "lens_dirt" => Hidden::LensDirt {

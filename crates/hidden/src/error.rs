@@ -1,43 +1,43 @@
-//! What can go wrong with a recording.
+//! Errors of making a recording.
 
 use std::{io, path::PathBuf};
 
 use reality_sim_core::sequence::SequenceError;
 
-/// A recording that cannot be made.
+/// Error of making a recording.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// No effect has this id.
     #[error("there is no effect {id:?}: use one of LIBRARY or FOREIGN")]
     UnknownEffect {
-        /// As given.
+        /// Id as given.
         id: String,
     },
-    /// A recipe that cannot be followed.
+    /// A value of the recipe is not allowed.
     #[error("{name} is {value}: it must be {rule}")]
     Recipe {
-        /// The quantity.
+        /// Name of the quantity.
         name: &'static str,
-        /// As given.
+        /// Value as given.
         value: f64,
-        /// What it has to be.
+        /// Rule that it violates.
         rule: &'static str,
     },
     /// A picture's file cannot be written.
     #[error("{}: cannot be written ({source}): check the permissions and the space on the disk", .path.display())]
     Unwritable {
-        /// The file or folder.
+        /// File or folder.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// A picture cannot be encoded.
     #[error("{}: cannot be encoded as JPEG ({source}): use pictures of at most 65535 pixels a side", .path.display())]
     Unencodable {
-        /// The file.
+        /// File of the picture.
         path: PathBuf,
-        /// What the encoder says.
+        /// Error of the encoder.
         source: image::ImageError,
     },
     /// The text files cannot be written.

@@ -1,4 +1,4 @@
-//! A picture's light: every ray followed into the hall, row by row and moment by moment.
+//! Light of a picture: every ray is followed into the hall, row by row and moment by moment.
 
 use glam::{Mat3, Vec3};
 
@@ -12,12 +12,12 @@ use crate::{
     truth::Truth,
 };
 
-/// A moving picture is the mean of moments this far apart or less, seconds, within these numbers.
+/// Time between the moments averaged for a moving picture, seconds; their number stays within the limits below.
 const MOMENT_S: f64 = 0.003;
 const FEWEST_MOMENTS: f64 = 8.0;
 const MOST_MOMENTS: f64 = 24.0;
 
-/// A camera that is ready to take pictures.
+/// Camera that is ready to take pictures.
 pub struct Exposer {
     truth: Truth,
     frame: Frame,
@@ -25,21 +25,21 @@ pub struct Exposer {
     rays: Vec<Rays>,
 }
 
-/// Where the camera is, in the precision of rays.
+/// Camera pose in the precision of the rays.
 struct View {
     origin: Vec3,
     world_from_camera: Mat3,
 }
 
 impl Exposer {
-    /// For pictures of this size, pixels.
+    /// Prepares pictures of this size, pixels.
     pub fn new(truth: &Truth, size: [u32; 2], psf_sigma_px: f64) -> Self {
         let margin = blur::margin_px(psf_sigma_px, truth.defocus_px);
         let frame = Frame { size: size.map(|side| side as usize), margin };
         Self { rays: crate::rays::cast(truth, frame), truth: truth.clone(), frame, psf_sigma_px }
     }
 
-    /// Linear red, green and blue of every pixel, row by row, of a picture taken at a time of the robot's clock,
+    /// Returns linear red, green and blue of every pixel, row by row, of a picture taken at a time of the robot's clock,
     /// seconds.
     pub fn expose(&self, scene: &Scene, trajectory: &Trajectory, time_s: f64) -> [Vec<f32>; 3] {
         let things = scene.things(time_s);
@@ -61,7 +61,7 @@ impl Exposer {
         blur::reduce(light, self.frame, self.psf_sigma_px)
     }
 
-    /// Light of each of the set's channels along each of its rays.
+    /// Returns the light of each of the set's channels along each of its rays.
     fn follow(
         &self,
         rays: &Rays,
@@ -88,7 +88,7 @@ impl Exposer {
         light
     }
 
-    /// Hands the light of every ray of one cone to `put`, with the ray's index.
+    /// Passes the light of every ray of one cone to `put`, with the ray's index.
     fn follow_cone(
         &self,
         rays: &Rays,
@@ -123,7 +123,7 @@ impl Exposer {
         }
     }
 
-    /// The true camera where everyone believes it to be at `believed`.
+    /// Returns the true camera where it is believed to be at `believed`.
     fn view(&self, believed: Station) -> View {
         let pitched = rotation::pitch_in_camera(believed.world_from_camera, self.truth.mount_pitch_rad);
         let turned = rotation::roll_about_axis(pitched, self.truth.mount_roll_rad);
@@ -131,14 +131,14 @@ impl Exposer {
         View { origin: raised.as_vec3(), world_from_camera: turned.as_mat3() }
     }
 
-    /// When a row of pixels, margins counted, is exposed, against the picture's time, seconds.
+    /// Returns when a row of pixels, margins included, is exposed, relative to the picture's time, seconds.
     fn row_delay_s(&self, row: usize) -> f64 {
         let row = row as f64 - self.frame.margin as f64;
         let last = (self.frame.size[1] as f64 - 1.0).max(1.0);
         self.truth.readout_s * (row / last - 0.5)
     }
 
-    /// Times at which light is collected, against a row's time, seconds.
+    /// Returns the times at which light is collected, relative to a row's time, seconds.
     fn moments(&self) -> Vec<f64> {
         let exposure_s = self.truth.exposure_s;
         if exposure_s == 0.0 {
@@ -149,7 +149,7 @@ impl Exposer {
     }
 }
 
-/// From a ray to the one that many places on, or from the one before.
+/// Returns the difference from a ray to the one that many places further on, or from the one before.
 fn step_between(directions: &[Vec3], index: usize, places: usize) -> Vec3 {
     match directions.get(index + places) {
         Some(next) if *next != Vec3::ZERO => *next - directions[index],
@@ -157,7 +157,7 @@ fn step_between(directions: &[Vec3], index: usize, places: usize) -> Vec3 {
     }
 }
 
-/// Whether a thing can be met by a ray of a cone.
+/// Whether a ray of a cone can meet a thing.
 fn is_in_cone(thing: &Thing, origin: Vec3, axis: Vec3, half_angle_rad: f32) -> bool {
     let to_center = thing.center - origin;
     let distance = to_center.length();

@@ -1,4 +1,4 @@
-//! From light to pixel values: losses in the lens, gains, noise, black level, gamma.
+//! Conversion from light to pixel values: losses in the lens, gains, noise, black level, gamma.
 
 use std::f64::consts::TAU;
 
@@ -12,24 +12,24 @@ use crate::{
     truth::Truth,
 };
 
-/// What dirt on the lens scatters into the picture, linear.
+/// Light that dirt on the lens scatters into the picture, linear.
 const DIRT_LIGHT: f64 = 0.02;
 
-/// The sensor and what of the lens only makes darker.
+/// Sensor, and those properties of the lens that change brightness only.
 pub struct Film {
     truth: Truth,
     light: Light,
     size: [u32; 2],
-    /// The recording's first and last time, seconds.
+    /// First and last time of the recording, seconds.
     span_s: [f64; 2],
-    /// What the lens lets through, a number a pixel.
+    /// Transmission of the lens, per pixel.
     transmission: Vec<f32>,
-    /// What the lens adds, a number a pixel.
+    /// Light added by the lens, per pixel.
     haze: Vec<f32>,
 }
 
 impl Film {
-    /// For pictures of this size taken between two times, seconds.
+    /// Prepares pictures of this size taken between two times, seconds.
     pub fn new(truth: &Truth, light: Light, size: [u32; 2], span_s: [f64; 2]) -> Self {
         let pixels = (0..size[1]).flat_map(|v| (0..size[0]).map(move |u| DVec2::new(u.into(), v.into())));
         let dirt = |pixel| truth.dirt.iter().map(|dirt| dirt.at(pixel).x).sum::<f64>().min(1.0);
@@ -42,7 +42,7 @@ impl Film {
         Self { truth: truth.clone(), light, size, span_s, transmission, haze }
     }
 
-    /// The picture of a frame (from 0) from the linear light of its three colours; `random` is the noise.
+    /// Develops the picture of a frame (from 0) from the linear light of its three colours; `random` generates the noise.
     pub fn develop(
         &self,
         planes: &[Vec<f32>; 3],
@@ -76,7 +76,7 @@ impl Film {
         (raised.clamp(0.0, 1.0).powf(1.0 / gamma) * 255.0).round() as u8
     }
 
-    /// Gain of a time, seconds.
+    /// Returns the gain at a time, seconds.
     fn exposure(&self, time_s: f64) -> f64 {
         let [first_s, last_s] = self.span_s;
         let stops = self.truth.drifts.iter().map(|&(amplitude_ev, course)| match course {
@@ -88,7 +88,7 @@ impl Film {
         stops.sum::<f64>().exp2()
     }
 
-    /// Gain of a row of a frame.
+    /// Returns the gain of a row of a frame.
     fn flicker(&self, row: u32, frame: usize) -> f64 {
         let part = f64::from(row) / f64::from(self.size[1]);
         let wave = |&[amplitude, bands, roll]: &[f64; 3]| {
@@ -98,13 +98,13 @@ impl Film {
     }
 }
 
-/// What the lens lets through at a pixel, dirt apart.
+/// Returns the transmission of the lens at a pixel, without dirt.
 fn vignette(truth: &Truth, pixel: DVec2, size: [u32; 2]) -> f64 {
     let corner_px = (DVec2::from(size.map(f64::from)) - 1.0).length() / 2.0;
     let square = pixel.distance_squared(truth.lens.center_px) / (corner_px * corner_px);
     let gain = |&(strength, falloff): &(f64, Falloff)| match falloff {
         Falloff::Quadratic => 1.0 - strength * square,
-        // cos⁴ of the angle whose tangent is the relative distance; in the corner it is a quarter.
+        // This is cos⁴ of the angle whose tangent is the relative distance; in the corner it is a quarter.
         Falloff::Cos4 => 1.0 - strength * (1.0 - (1.0 + square).powi(-2)) / 0.75,
     };
     truth.vignettes.iter().map(gain).product::<f64>().max(0.0)
@@ -120,7 +120,7 @@ mod tests {
         Film::new(&Truth::new(&nominal, effects), nominal.light, nominal.size, [0.2, 4.0])
     }
 
-    /// Mean and standard deviation of the linear values of the green of a flat picture.
+    /// Returns mean and standard deviation of the linear green values of a uniform picture.
     fn flat(film: &Film, light: f32) -> (f64, f64) {
         let planes = [0; 3].map(|_| vec![light; 120 * 90]);
         let picture = film.develop(&planes, 0, 0.2, &mut Random::new(2));

@@ -1,14 +1,14 @@
-//! Pictures as cameras store them: JPEG with a quarter of the colour.
+//! Pictures as cameras store them: JPEG with chroma subsampling.
 //!
-//! The encoder at hand keeps all of the colour (4:4:4). What cameras lose (4:2:0) is lost before: colour differences
-//! are averaged over two by two pixels and spread again as decoders do, between the nearest four means.
+//! The encoder keeps the full chroma (4:4:4). The loss in cameras (4:2:0) is applied before: colour differences are averaged
+//! over two by two pixels and interpolated again as decoders do, between the nearest four means.
 
 use image::{ExtendedColorType, ImageEncoder, ImageError, RgbImage, codecs::jpeg::JpegEncoder};
 
-/// As in the recordings of a robot.
+/// JPEG quality, as in the recordings of a robot.
 const QUALITY: u8 = 85;
 
-/// The bytes of a picture's file.
+/// Returns the bytes of a picture's file.
 pub fn encode(picture: &RgbImage) -> Result<Vec<u8>, ImageError> {
     let halved = halve_color(picture);
     let mut bytes = Vec::new();
@@ -22,7 +22,7 @@ pub fn encode(picture: &RgbImage) -> Result<Vec<u8>, ImageError> {
     Ok(bytes)
 }
 
-/// Full brightness with half of the colour's resolution each way.
+/// Halves the chroma resolution in each direction, at full resolution of the luma.
 fn halve_color(picture: &RgbImage) -> RgbImage {
     let size = [picture.width() as usize, picture.height() as usize];
     let [blue, red] = [2, 0].map(|channel| Means::new(picture, channel));
@@ -36,12 +36,12 @@ fn halve_color(picture: &RgbImage) -> RgbImage {
     halved
 }
 
-/// Y of ITU-R BT.601.
+/// Returns Y of ITU-R BT.601.
 fn brightness([red, green, blue]: [u8; 3]) -> f32 {
     0.299 * f32::from(red) + 0.587 * f32::from(green) + 0.114 * f32::from(blue)
 }
 
-/// A colour difference over two by two pixels.
+/// Colour difference averaged over two by two pixels.
 struct Means {
     width: usize,
     height: usize,
@@ -49,7 +49,7 @@ struct Means {
 }
 
 impl Means {
-    /// Of Cr (channel 0) or Cb (channel 2).
+    /// Averages Cr (channel 0) or Cb (channel 2).
     fn new(picture: &RgbImage, channel: usize) -> Self {
         let scale = if channel == 0 { 1.402 } else { 1.772 };
         let [last_x, last_y] = [picture.width() - 1, picture.height() - 1];
@@ -71,7 +71,7 @@ impl Means {
         }
     }
 
-    /// At a pixel: three parts of the mean it belongs to and one of the next, each way.
+    /// Interpolates at a pixel: three parts of its own mean and one of the next, in each direction.
     fn spread(&self, [x, y]: [usize; 2]) -> f32 {
         let next = |place: usize, count: usize| {
             let half = place / 2;

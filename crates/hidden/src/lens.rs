@@ -1,13 +1,13 @@
 //! The lens: θ_d = θ (1 + k₁θ² + k₂θ⁴ + k₃θ⁶ + k₄θ⁸), pixel = f θ_d (x, y)/r + c, as `OPENCV_FISHEYE` is defined.
 //!
-//! Only the way from a pixel to its ray is needed to cast rays.
+//! Casting rays only needs the direction from a pixel to its ray.
 
 use glam::{DVec2, DVec3};
 
-/// Steps of the search for the angle at which the polynomial stops growing.
+/// Number of steps in the search for the angle at which the polynomial stops growing.
 const SCAN_STEPS: u32 = 2000;
 
-/// A fisheye.
+/// Fisheye lens.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fisheye {
     /// Focal length, pixels.
@@ -19,7 +19,7 @@ pub struct Fisheye {
 }
 
 impl Fisheye {
-    /// θ_d and its derivative at an angle from the optical axis.
+    /// Returns θ_d and its derivative at an angle from the optical axis.
     fn distorted(&self, angle_rad: f64) -> (f64, f64) {
         let square = angle_rad * angle_rad;
         let [k1, k2, k3, k4] = self.k;
@@ -28,14 +28,14 @@ impl Fisheye {
         (value, slope)
     }
 
-    /// The largest angle up to which θ_d grows, at most π, radians.
+    /// Returns the largest angle up to which θ_d grows, at most π, radians.
     pub fn max_angle_rad(&self) -> f64 {
         let angle = |step: u32| std::f64::consts::PI * f64::from(step) / f64::from(SCAN_STEPS);
         let grows = |step: &u32| self.distorted(angle(*step)).1 > 0.0;
         angle((0..=SCAN_STEPS).take_while(grows).last().unwrap_or(0))
     }
 
-    /// The unit direction in the camera's axes that is seen at a pixel; none beyond `max_angle_rad`.
+    /// Returns the unit direction in the camera frame that a pixel sees; `None` beyond `max_angle_rad`.
     pub fn ray(&self, pixel: DVec2, max_angle_rad: f64) -> Option<DVec3> {
         let plane = (pixel - self.center_px) / self.focal_px;
         let radius = plane.length();
@@ -47,7 +47,7 @@ impl Fisheye {
         Some((plane * (sine / radius)).extend(cosine))
     }
 
-    /// The angle whose θ_d is given: Newton's steps, kept between bounds that close in.
+    /// Returns the angle with this θ_d, by Newton's method within shrinking bounds.
     fn angle(&self, radius: f64, max_angle_rad: f64) -> Option<f64> {
         let (mut low, mut high) = (0.0, max_angle_rad);
         if radius > self.distorted(high).0 {

@@ -1,5 +1,5 @@
-//! Recordings in which the camera, the hall or the odometry does something that the files beside the pictures know nothing
-//! of: what a search for missing effects is tested on.
+//! Synthetic recordings with effects of camera, hall or odometry that the files beside the pictures do not mention, for
+//! testing the search for missing effects.
 //!
 //! | type | what |
 //! |---|---|
@@ -9,9 +9,9 @@
 //! | [`Random`] | numbers by seed |
 //! | [`Error`] | what cannot be recorded |
 //!
-//! The pictures are made by casting rays, nine or more a pixel, and share no code with the models that are fitted: lens,
-//! rotations, field pattern, blur and noise are written here once more. Of the core only plain numbers and the writer of
-//! sequence folders are used. Metres, radians, seconds; the frames are those of the core's poses.
+//! The pictures are made by ray casting with nine or more rays per pixel, and share no code with the models that are fitted:
+//! lens, rotations, field pattern, blur and noise are implemented again here. Only plain numbers and the writer of sequence
+//! folders come from the core. Units are metres, radians and seconds; the frames are those of the core's poses.
 //!
 //! ```
 //! use reality_sim_hidden::{Hidden, Random, Recipe};

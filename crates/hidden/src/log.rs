@@ -1,4 +1,4 @@
-//! What the robot and the motion capture wrote down, with their noise.
+//! Measurements that the robot and the motion capture log, with their noise.
 
 use glam::{DQuat, DVec2, DVec3};
 use reality_sim_core::{
@@ -14,25 +14,25 @@ use crate::{
     truth::Truth,
 };
 
-/// Pictures are this far apart, seconds.
+/// Time between pictures, seconds.
 pub const PERIOD_S: f64 = 0.2;
-/// Motion capture, per axis.
+/// Noise of the motion capture, per axis.
 const CAPTURE_M: f64 = 0.003;
 const CAPTURE_RAD: f64 = 0.14_f64.to_radians();
-/// IMU and joints.
+/// Noise of IMU and joints.
 const IMU_RAD: f64 = 0.17_f64.to_radians();
-/// One step of the odometry while walking; standing has a tenth of it.
+/// Noise of one step of the odometry while walking; standing has a tenth of it.
 const ODOMETRY_M: f64 = 0.003;
 const ODOMETRY_RAD: f64 = 0.3_f64.to_radians();
-/// Digits of the files.
+/// Precision of the files: numbers per unit.
 const PER_UNIT: f64 = 1e5;
 
-/// When a frame (from 0) is taken, seconds.
+/// Returns the time of a frame (from 0), seconds.
 pub fn timestamp_s(frame: usize) -> f64 {
     (frame + 1) as f64 / (1.0 / PERIOD_S).round()
 }
 
-/// The lines of `frames.csv`, without reference poses.
+/// Returns the lines of `frames.csv`, without reference poses.
 pub fn frames(
     seed: u64,
     count: usize,
@@ -62,7 +62,7 @@ pub fn frames(
         .collect()
 }
 
-/// Dead reckoning from the first frame.
+/// Dead-reckoned pose since the first frame.
 struct Odometry {
     position: DVec2,
     yaw_rad: f64,
@@ -88,7 +88,7 @@ impl Odometry {
     }
 }
 
-/// What motion capture measured at each frame.
+/// Returns the poses that motion capture measured at each frame.
 pub fn references(seed: u64, count: usize, trajectory: &Trajectory) -> Vec<CameraPose> {
     let random = &mut Random::stream(seed, "capture", 0);
     (0..count).map(|frame| reference(random, trajectory, timestamp_s(frame))).collect()
@@ -103,7 +103,7 @@ fn reference(random: &mut Random, trajectory: &Trajectory, time_s: f64) -> Camer
     CameraPose { x_m: position.x, y_m: position.y, yaw_rad, height_m: position.z, pitch_rad, roll_rad }
 }
 
-/// Where the robot says that it starts.
+/// Returns the start pose that the robot states.
 pub fn start(trajectory: &Trajectory) -> Pose2 {
     let station = trajectory.station(timestamp_s(0));
     let [x, y, yaw] = [station.position.x, station.position.y, trajectory.angles(timestamp_s(0))[0]];

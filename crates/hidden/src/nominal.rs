@@ -1,4 +1,4 @@
-//! What the files beside the pictures say: lens, mount, colours and field before anything is hidden.
+//! Nominal values in the files beside the pictures: lens, mount, colours and field before anything is hidden.
 
 use glam::DVec2;
 use reality_sim_core::{
@@ -9,19 +9,19 @@ use reality_sim_core::{
 
 use crate::{error::Error, lens::Fisheye, random::Random};
 
-/// A lens like those of humanoid robots, at 640 pixels of width.
+/// Focal length in pixels of a lens like those of humanoid robots, at a width of 640 pixels.
 const FOCAL_PX: f64 = 211.8;
 const WIDTH_PX: f64 = 640.0;
 const K: [f64; 4] = [-0.0663, 0.00994, -0.001_103, 0.000_054_6];
 
-/// The camera and the field as everyone believes they are.
+/// Camera and field as they are believed to be.
 #[derive(Debug, Clone)]
 pub struct Nominal {
     /// The lens.
     pub lens: Fisheye,
     /// Width and height of the picture, pixels.
     pub size: [u32; 2],
-    /// Of the projection centre above the carpet, metres.
+    /// Height of the projection centre above the carpet, metres.
     pub height_m: f64,
     /// Colours, gamma, noise, blur.
     pub light: Light,
@@ -29,25 +29,25 @@ pub struct Nominal {
     pub field: FieldDimensions,
 }
 
-/// How light becomes pixel values; linear values have 1 as full scale.
+/// Conversion of light to pixel values; linear values have 1 as full scale.
 #[derive(Debug, Clone, Copy)]
 pub struct Light {
     /// Linear colour of the lines.
     pub line_rgb: [f64; 3],
-    /// Linear colour of the carpet, its mean.
+    /// Mean linear colour of the carpet.
     pub carpet_rgb: [f64; 3],
-    /// A pixel value is full scale times the linear value to the power of 1 / gamma.
+    /// Gamma: a pixel value is full scale times the linear value to the power of 1 / gamma.
     pub gamma: f64,
-    /// Variance of the noise for each unit of the linear value.
+    /// Variance of the noise per unit of the linear value.
     pub noise_shot: f64,
     /// Standard deviation of the noise without light.
     pub noise_read: f64,
-    /// Standard deviation of the Gaussian blur beside the pixel's own aperture, pixels.
+    /// Standard deviation of the Gaussian blur without the pixel's own aperture, pixels.
     pub psf_sigma_px: f64,
 }
 
 impl Nominal {
-    /// Drawn from the seed around the numbers of one robot.
+    /// Draws nominal values from the seed around those of one robot.
     pub fn new(seed: u64, size: [u32; 2]) -> Self {
         let random = &mut Random::stream(seed, "nominal", 0);
         let [width, height] = size.map(f64::from);
@@ -73,7 +73,7 @@ impl Nominal {
         Self { lens, size, height_m, light, field: kid_size_field() }
     }
 
-    /// The content of `camera.toml`.
+    /// Returns the content of `camera.toml`.
     pub fn setup(&self) -> Result<CameraSetup, Error> {
         let Fisheye { focal_px, center_px, k } = self.lens;
         let intrinsics = [focal_px, focal_px, center_px.x, center_px.y];
@@ -97,12 +97,12 @@ impl Nominal {
     }
 }
 
-/// To a multiple of 1 / `per_unit`: files of calibrations have few digits.
+/// Rounds to a multiple of 1 / `per_unit`: calibration files have few digits.
 pub fn rounded(value: f64, per_unit: f64) -> f64 {
     (value * per_unit).round() / per_unit
 }
 
-/// The field of 6 × 4 m of the Humanoid League of 2010.
+/// Returns the field of 6 × 4 m of the Humanoid League of 2010.
 pub fn kid_size_field() -> FieldDimensions {
     FieldDimensions {
         name: "humanoid-kidsize-2010".to_owned(),

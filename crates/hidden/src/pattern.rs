@@ -1,11 +1,11 @@
-//! Which points of the ground are white.
+//! Pattern of the ground: which points are white.
 
 use reality_sim_core::field::FieldDimensions;
 
 /// Side of the square marks, metres.
 const MARK_M: f32 = 0.1;
 
-/// The painted lines of a field, metres. Lengths between lines are measured between their centres.
+/// Painted lines of a field, metres. Lengths between lines are measured between their centres.
 #[derive(Debug, Clone, Copy)]
 pub struct Pattern {
     half_length: f32,
@@ -15,14 +15,14 @@ pub struct Pattern {
     area_half_width: f32,
     mark_distance: f32,
     circle_radius: f32,
-    /// Halfway line, towards +x.
+    /// Shift of the halfway line towards +x.
     pub halfway_shift_m: f32,
     /// Whether the goal areas at −x and at +x are painted.
     pub goal_areas: [bool; 2],
 }
 
 impl Pattern {
-    /// The lines of a field of these dimensions.
+    /// Makes the lines of a field of these dimensions.
     pub fn new(field: &FieldDimensions) -> Self {
         Self {
             half_length: field.length_m as f32 / 2.0,
@@ -37,14 +37,14 @@ impl Pattern {
         }
     }
 
-    /// Moves the lines to a field of other dimensions; what is not painted stays so.
+    /// Moves the lines to a field of other dimensions; missing lines stay missing.
     pub fn resize(&mut self, field: &FieldDimensions) {
         *self =
             Self { halfway_shift_m: self.halfway_shift_m, goal_areas: self.goal_areas, ..Self::new(field) };
     }
 
-    /// Distance to the nearest white paint, metres; negative inside paint, where it is at most the distance to its
-    /// edge.
+    /// Returns the distance to the nearest white paint, metres; negative inside paint, where its magnitude is at most the
+    /// distance to the edge.
     pub fn distance_m(&self, x: f32, y: f32) -> f32 {
         let (ax, ay) = (x.abs(), y.abs());
         let border = outline(ax, ay, self.half_length, self.half_width, self.half_line);
@@ -62,13 +62,13 @@ impl Pattern {
     }
 }
 
-/// Distance to a rectangle about the origin with these half sides.
+/// Returns the distance to a rectangle about the origin with these half sides.
 fn rectangle(x: f32, y: f32, half_x: f32, half_y: f32) -> f32 {
     let (dx, dy) = (x.abs() - half_x, y.abs() - half_y);
     if dx > 0.0 && dy > 0.0 { (dx * dx + dy * dy).sqrt() } else { dx.max(dy) }
 }
 
-/// Distance to the outline, painted with a line's width, of a rectangle with these half sides.
+/// Returns the distance to the outline, painted with a line's width, of a rectangle with these half sides.
 fn outline(x: f32, y: f32, half_x: f32, half_y: f32, half_line: f32) -> f32 {
     let outer = rectangle(x, y, half_x + half_line, half_y + half_line);
     let inner = rectangle(x, y, half_x - half_line, half_y - half_line);

@@ -2,19 +2,19 @@
 
 use std::f64::consts::TAU;
 
-/// A stream of random numbers that is the same on every machine.
+/// Stream of random numbers that is the same on every machine.
 #[derive(Debug, Clone)]
 pub struct Random {
     state: u64,
 }
 
 impl Random {
-    /// The stream of a seed.
+    /// Starts the stream of a seed.
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
-    /// A stream of its own for each purpose: one more draw for one thing changes no other.
+    /// Starts a separate stream for each purpose: an additional draw for one purpose changes no other.
     pub fn stream(seed: u64, purpose: &str, number: u64) -> Self {
         let mut random = Self::new(seed);
         for value in purpose.bytes().map(u64::from).chain([number]) {
@@ -23,7 +23,7 @@ impl Random {
         random
     }
 
-    /// 64 random bits.
+    /// Draws 64 random bits.
     pub fn next_u64(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut mixed = self.state;
@@ -32,27 +32,27 @@ impl Random {
         mixed ^ (mixed >> 31)
     }
 
-    /// Evenly from 0 to below 1.
+    /// Draws uniformly from 0 to below 1.
     pub fn uniform(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Evenly between two numbers.
+    /// Draws uniformly between two numbers.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
     }
 
-    /// One of 0 … `count` − 1.
+    /// Draws one of 0 … `count` − 1.
     pub fn below(&mut self, count: u64) -> u64 {
         (self.uniform() * count as f64) as u64
     }
 
-    /// −1 or 1.
+    /// Draws −1 or 1.
     pub fn sign(&mut self) -> f64 {
         if self.next_u64() & 1 == 0 { 1.0 } else { -1.0 }
     }
 
-    /// Normally distributed, mean 0 and standard deviation 1 (Box, Muller).
+    /// Draws from the normal distribution with mean 0 and standard deviation 1 (Box and Muller 1958).
     pub fn normal(&mut self) -> f64 {
         let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
         radius * (TAU * self.uniform()).cos()

@@ -1,72 +1,72 @@
-//! The rays of a camera, several a pixel, computed once for a recording.
+//! Rays of a camera, several per pixel, computed once for a recording.
 
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
 use crate::truth::Truth;
 
-/// Rays along each side of a pixel.
+/// Number of rays along each side of a pixel.
 pub const PER_PIXEL: usize = 3;
 
-/// Pixels that share one cone for what they may see.
+/// Side, in pixels, of the squares that share one cone for finding the things they may see.
 pub const CONE_PX: usize = 8;
 
-/// The rays of the colours that the lens treats alike.
+/// Rays of the channels that the lens magnifies alike.
 pub struct Rays {
-    /// Red is 0, green 1, blue 2.
+    /// Channels: red is 0, green 1, blue 2.
     pub channels: Vec<usize>,
-    /// Unit directions in the camera's axes, row by row; zero where the lens sees nothing.
+    /// Unit directions in the camera frame, row by row; zero where the lens sees nothing.
     pub directions: Vec<Vec3>,
-    /// Of each row of pixels, `cones_per_row` of them.
+    /// Cones of each row of pixels, `cones_per_row` of them.
     pub cones: Vec<Cone>,
 }
 
-/// What surrounds the rays of a few neighbouring pixels.
+/// Bounding cone of the rays of a few neighbouring pixels.
 #[derive(Debug, Clone, Copy)]
 pub struct Cone {
-    /// Unit vector in the camera's axes; zero where there is no ray.
+    /// Unit vector in the camera frame; zero where there is no ray.
     pub axis: Vec3,
     /// Largest angle of a ray from the axis, radians.
     pub half_angle_rad: f32,
 }
 
-/// The size of a picture of rays: pixels with a margin that blur takes its light from.
+/// Size of a picture in rays: pixels with a margin from which blur takes light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Frame {
-    /// Of the picture without margin, pixels.
+    /// Size of the picture without margin, pixels.
     pub size: [usize; 2],
-    /// On each side, pixels.
+    /// Margin on each side, pixels.
     pub margin: usize,
 }
 
 impl Frame {
-    /// Pixels in a row, margins included.
+    /// Number of pixels in a row, margins included.
     pub fn columns(&self) -> usize {
         self.size[0] + 2 * self.margin
     }
 
-    /// Rows of pixels, margins included.
+    /// Number of rows of pixels, margins included.
     pub fn rows(&self) -> usize {
         self.size[1] + 2 * self.margin
     }
 
-    /// Rays in a row.
+    /// Number of rays in a row.
     pub fn rays_per_row(&self) -> usize {
         self.columns() * PER_PIXEL
     }
 
-    /// Cones in a row of pixels.
+    /// Number of cones in a row of pixels.
     pub fn cones_per_row(&self) -> usize {
         self.columns().div_ceil(CONE_PX)
     }
 
-    /// The place in the picture of the ray with this index along a side, pixels.
+    /// Returns the position in the picture of the ray with this index along a side, pixels.
     fn place(&self, index: usize) -> f64 {
         (index as f64 + 0.5) / PER_PIXEL as f64 - 0.5 - self.margin as f64
     }
 }
 
-/// The rays of the true lens: one set where all colours take the same way, else one a colour.
+/// Casts the rays of the true lens: one set if all colours have the same magnification, else one per colour.
 pub fn cast(truth: &Truth, frame: Frame) -> Vec<Rays> {
     let alike = truth.magnification == [1.0; 3];
     let sets = if alike { vec![vec![0, 1, 2]] } else { vec![vec![0], vec![1], vec![2]] };
@@ -85,7 +85,7 @@ fn directions(truth: &Truth, frame: Frame, magnification: f64) -> Vec<Vec3> {
     directions.par_chunks_mut(width).enumerate().for_each(|(row, rays)| {
         for (column, ray) in rays.iter_mut().enumerate() {
             let pixel = DVec2::new(frame.place(column), frame.place(row));
-            // Where a lens without dents and with one magnification would see the same.
+            // This is the pixel at which a lens without dents and with one magnification would see the same.
             let undented = pixel + truth.dents.iter().map(|dent| dent.at(pixel)).sum::<DVec2>();
             let center = truth.lens.center_px;
             let place = center + (undented - center) / magnification;

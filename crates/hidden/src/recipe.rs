@@ -1,4 +1,4 @@
-//! A recording from a seed and the effects hidden in it.
+//! Recipe of a recording: a seed, and the effects hidden in the recording.
 
 use std::{fs, path::Path};
 
@@ -19,36 +19,37 @@ use crate::{
     truth::Truth,
 };
 
-/// The camera stays this far inside the lines, metres.
+/// Distance that the camera keeps inside the lines, metres.
 const INSIDE_M: f64 = 0.5;
-/// Longer recordings and larger pictures are a mistake.
+/// Largest number of frames of a recipe.
 const MOST_FRAMES: usize = 100_000;
+/// Largest width and height of a recipe's pictures, pixels.
 const MOST_PIXELS: u32 = 8192;
-/// Effects shift the robot's clock and expose for less, seconds.
+/// Largest exposure time, readout time and clock offset, seconds.
 const LONGEST_S: f64 = 0.5;
 
-/// What is recorded. Whatever is not hidden here is drawn from the seed.
+/// Recipe of a recording. Everything not given here is drawn from the seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recipe {
-    /// Of the hall, the camera, the walk and all noise. The same recipe gives the same bytes.
+    /// Seed of the hall, the camera, the walk and all noise. The same recipe gives the same bytes.
     pub seed: u64,
-    /// Pictures, five a second.
+    /// Number of pictures, five per second.
     pub frames: usize,
     /// Width and height of the pictures, pixels.
     pub size: [u32; 2],
-    /// What the files beside the pictures know nothing of. Effects of one kind add up.
+    /// Effects that the files beside the pictures do not mention. Effects of one kind add up.
     pub effects: Vec<Hidden>,
-    /// What the robot does.
+    /// Motion of the robot.
     pub walk: Walk,
 }
 
 impl Recipe {
-    /// 60 pictures of 640 × 480 pixels on a walk, with nothing hidden.
+    /// Makes a recipe for 60 pictures of 640 × 480 pixels on a walk, with nothing hidden.
     pub fn new(seed: u64) -> Self {
         Self { seed, frames: 60, size: [640, 480], effects: Vec::new(), walk: Walk::Walking }
     }
 
-    /// Writes a whole sequence folder, which is created where it is missing, and gives what it holds: `sequence.toml`,
+    /// Writes a complete sequence folder, creating it if it is missing, and returns its content: `sequence.toml`,
     /// `camera.toml`, `field.toml`, `frames.csv`, `groundtruth.tum` and the pictures.
     pub fn record(&self, folder: &Path) -> Result<Sequence, Error> {
         self.check()?;

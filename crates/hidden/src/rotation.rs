@@ -1,9 +1,9 @@
-//! Rotations world from camera, written from the conventions of the file formats: forward, right and down from yaw,
+//! Rotations from camera to world, implemented from the conventions of the file formats: forward, right and down from yaw,
 //! pitch (down is positive) and roll (right turns towards down).
 
 use glam::{DMat3, DVec3};
 
-/// The rotation whose columns are right, down and forward in the world.
+/// Returns the rotation whose columns are right, down and forward in the world.
 pub fn from_angles(yaw_rad: f64, pitch_rad: f64, roll_rad: f64) -> DMat3 {
     let forward =
         DVec3::new(yaw_rad.cos() * pitch_rad.cos(), yaw_rad.sin() * pitch_rad.cos(), -pitch_rad.sin());
@@ -12,7 +12,7 @@ pub fn from_angles(yaw_rad: f64, pitch_rad: f64, roll_rad: f64) -> DMat3 {
     roll_about_axis(DMat3::from_cols(level_right, level_down, forward), roll_rad)
 }
 
-/// Yaw, pitch and roll of a rotation that does not look straight up or down, radians.
+/// Returns yaw, pitch and roll in radians of a rotation that does not look straight up or down.
 pub fn to_angles(world_from_camera: DMat3) -> [f64; 3] {
     let forward = world_from_camera.z_axis;
     let yaw_rad = forward.y.atan2(forward.x);
@@ -22,7 +22,7 @@ pub fn to_angles(world_from_camera: DMat3) -> [f64; 3] {
     [yaw_rad, pitch_rad, right.dot(level.y_axis).atan2(right.dot(level.x_axis))]
 }
 
-/// The camera turned in its own frame so that its optical axis goes down by an angle.
+/// Turns the camera in its own frame so that its optical axis goes down by an angle.
 pub fn pitch_in_camera(world_from_camera: DMat3, angle_rad: f64) -> DMat3 {
     let (right, down, forward) =
         (world_from_camera.x_axis, world_from_camera.y_axis, world_from_camera.z_axis);
@@ -30,7 +30,7 @@ pub fn pitch_in_camera(world_from_camera: DMat3, angle_rad: f64) -> DMat3 {
     DMat3::from_cols(right, cosine * down - sine * forward, cosine * forward + sine * down)
 }
 
-/// The camera turned about its optical axis so that its x axis goes towards its y axis by an angle.
+/// Turns the camera about its optical axis so that its x axis goes towards its y axis by an angle.
 pub fn roll_about_axis(world_from_camera: DMat3, angle_rad: f64) -> DMat3 {
     let (right, down, forward) =
         (world_from_camera.x_axis, world_from_camera.y_axis, world_from_camera.z_axis);

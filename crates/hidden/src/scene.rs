@@ -1,4 +1,4 @@
-//! The hall: carpet with paint, floor, walls, posters, goals, a ball, robots, people; and the light that a ray brings.
+//! The hall: carpet with paint, floor, walls, posters, goals, a ball, robots, people; and the light along a ray.
 
 use std::f32::consts::{PI, TAU};
 
@@ -14,19 +14,20 @@ use crate::{
     truth::Truth,
 };
 
-/// From the carpet's edge to the walls, and from the floor to the ceiling, metres.
+/// Distance from the carpet's edge to the walls, metres.
 const AISLE_M: f32 = 2.2;
+/// Height of the ceiling above the floor, metres.
 const CEILING_M: f32 = 3.6;
 const CEILING_RGB: Vec3 = Vec3::new(0.052, 0.048, 0.044);
 const FOG_RGB: Vec3 = Vec3::new(0.30, 0.30, 0.30);
-/// Size of posters' blotches, metres.
+/// Size of the posters' blotches, metres.
 const POSTER_CELL_M: f32 = 2.0;
 
-/// Places in a cell, from its centre, as fractions of its sides: Hammersley's points of base 2, each alone in its row
-/// and its column.
+/// Positions in a cell relative to its centre, as fractions of its sides: Hammersley's points of base 2, no two of which
+/// share a row or a column.
 const CELL_PLACES: [[f32; 2]; 16] = hammersley();
 
-/// A hall for the length of a recording.
+/// Hall during a recording.
 pub struct Scene {
     truth: Truth,
     carpet_rgb: Vec3,
@@ -44,16 +45,16 @@ pub struct Scene {
     lamps: Vec<Lamp>,
 }
 
-/// A rectangle on a wall.
+/// Rectangle on a wall.
 struct Poster {
-    /// +x, −x, +y, −y.
+    /// Index of the wall: +x, −x, +y, −y.
     wall: usize,
     center: Vec2,
     half: Vec2,
     rgb: [Vec3; 2],
 }
 
-/// Somebody who crosses the field, to and fro.
+/// Person who crosses the field to and fro.
 struct Person {
     figure: Thing,
     from: Vec2,
@@ -62,26 +63,26 @@ struct Person {
     start_s: f32,
 }
 
-/// A light that is not even: strength, and the mean over the field that is taken off a spot.
+/// Uneven illumination: its strength, and the mean over the field that is subtracted from a spot.
 struct Lamp {
     strength: f32,
     shape: Light,
     mean: f32,
 }
 
-/// A ray in the world, with what is needed to find its neighbours.
+/// Ray in the world, with the data for finding its neighbours.
 pub struct Ray<'a> {
-    /// The projection centre, metres.
+    /// Projection centre, metres.
     pub origin: Vec3,
     /// Unit vector.
     pub direction: Vec3,
-    /// From this ray to the next on its right and the next below, in the camera's axes.
+    /// Differences from this ray to the next on its right and the next below, in the camera frame.
     pub steps_in_camera: [Vec3; 2],
-    /// Columns: the camera's axes in the world.
+    /// Rotation whose columns are the camera's axes in the world.
     pub world_from_camera: &'a Mat3,
 }
 
-/// What is behind all things.
+/// Surface behind all things.
 #[derive(Clone, Copy)]
 enum Backdrop {
     Ground,
@@ -90,7 +91,7 @@ enum Backdrop {
 }
 
 impl Scene {
-    /// A hall drawn from the seed around the true field, with robots beside the camera's way.
+    /// Draws a hall from the seed around the true field, with robots beside the camera's path.
     pub fn new(seed: u64, nominal: &Nominal, truth: &Truth, trajectory: &Trajectory) -> Self {
         let random = &mut Random::stream(seed, "hall", 0);
         // A larger field lies on the same carpet in the same hall.
@@ -133,13 +134,13 @@ impl Scene {
         }
     }
 
-    /// Everything that can stand before the backdrop at a time, seconds.
+    /// Returns everything that can stand in front of the backdrop at a time, seconds.
     pub fn things(&self, time_s: f64) -> Vec<Thing> {
         let people = self.people.iter().map(|person| person.at(time_s as f32));
         self.things.iter().cloned().chain(people).collect()
     }
 
-    /// Linear light that comes along a ray, with `things` in its way.
+    /// Returns the linear light along a ray, with `things` in its way.
     pub fn light<'a>(&self, ray: &Ray, things: impl Iterator<Item = &'a Thing>) -> Vec3 {
         let (mut distance, backdrop) = self.backdrop(ray);
         let mut thing_rgb = None;
@@ -180,7 +181,8 @@ impl Scene {
         if vertical.0 < nearer { vertical } else { (nearer, Backdrop::Wall(wall)) }
     }
 
-    /// Where a ray that points down meets the ground, waves and all: each step takes the height at the last place.
+    /// Returns the distance at which a ray that points down meets the wavy ground: each step uses the height at the last
+    /// position.
     fn ground_distance(&self, origin: Vec3, direction: Vec3) -> f32 {
         let flat = -origin.z / direction.z;
         (0..if self.truth.waves.is_empty() { 0 } else { 4 }).fold(flat, |distance, _| {
@@ -209,8 +211,8 @@ impl Scene {
         carpet + self.line_rgb * (paint * (1.0 + self.wear.at(place.x, place.y)))
     }
 
-    /// How much of the cell of ground that a ray stands for is painted. A cell on an edge is looked at in many places:
-    /// edges along rows or columns would else jump from ray to ray.
+    /// Returns the painted fraction of a ray's cell on the ground. A cell on an edge is sampled at many positions; otherwise
+    /// edges along rows or columns would jump from ray to ray.
     fn paint(&self, ray: &Ray, place: Vec2) -> f32 {
         let pattern = &self.truth.pattern;
         let distance_m = pattern.distance_m(place.x, place.y);
@@ -259,7 +261,7 @@ const fn hammersley() -> [[f32; 2]; 16] {
     places
 }
 
-/// In the precision of rays.
+/// Converts to the precision of the rays.
 fn single(linear_rgb: [f64; 3]) -> Vec3 {
     Vec3::from(linear_rgb.map(|value| value as f32))
 }
@@ -309,7 +311,7 @@ impl Lamp {
     }
 }
 
-/// The goal on one side: two posts, a bar and a back of cloth.
+/// Builds the goal on one side: two posts, a bar and a back of cloth.
 fn goal(truth: &Truth, side: f32, rgb: Vec3) -> Thing {
     let field = &truth.field;
     let x = side * field.length_m as f32 / 2.0;
@@ -323,7 +325,7 @@ fn goal(truth: &Truth, side: f32, rgb: Vec3) -> Thing {
     Thing::new(vec![post(y), post(-y), bar, Part::cuboid(back, Vec3::new(0.01, y, 0.35), 0.0, rgb * 0.7)])
 }
 
-/// A ball, one to three robots on the field, and boxes beside it.
+/// Draws a ball, one to three robots on the field, and boxes beside it.
 fn standing_things(random: &mut Random, carpet_half: Vec2, trajectory: &Trajectory) -> Vec<Thing> {
     let mut things = Vec::new();
     let ball = free_place(random, carpet_half - 1.0, 0.4, trajectory);
@@ -353,7 +355,7 @@ fn standing_things(random: &mut Random, carpet_half: Vec2, trajectory: &Trajecto
     things
 }
 
-/// A place that the camera keeps away from; the last of many draws where it goes everywhere.
+/// Draws a position that the camera keeps away from; the last of many draws if the camera goes everywhere.
 fn free_place(random: &mut Random, half: Vec2, clearance_m: f64, trajectory: &Trajectory) -> Vec2 {
     let mut place = Vec2::ZERO;
     for _ in 0..200 {
@@ -365,7 +367,7 @@ fn free_place(random: &mut Random, half: Vec2, clearance_m: f64, trajectory: &Tr
     place
 }
 
-/// Two legs, a body, two arms and a head, half a metre tall.
+/// Builds a robot with two legs, a body, two arms and a head, half a metre tall.
 fn robot(heading_rad: f32, rgb: Vec3) -> Thing {
     let side = Vec2::from_angle(heading_rad + PI / 2.0);
     let part = |across: f32, height: f32, half: [f32; 3]| {
@@ -381,7 +383,7 @@ fn robot(heading_rad: f32, rgb: Vec3) -> Thing {
     ])
 }
 
-/// People on straight ways across the field that keep clear of the camera's.
+/// Draws people on straight paths across the field that keep clear of the camera's.
 fn people(seed: u64, count: u32, trajectory: &Trajectory) -> Vec<Person> {
     let random = &mut Random::stream(seed, "people", 0);
     (0..count).map(|_| person(random, trajectory)).collect()

@@ -1,20 +1,20 @@
-//! Things in the hall: boxes, tubes and balls, and what of them a ray meets first.
+//! Things in the hall: boxes, tubes and balls, and the first hit of a ray.
 
 use std::ops::Range;
 
 use glam::{Vec2, Vec3};
 
-/// A thing of several parts inside a ball that spares rays the look at the parts.
+/// Thing with several parts inside a bounding sphere, which saves testing the parts.
 #[derive(Debug, Clone)]
 pub struct Thing {
-    /// Centre of the ball around all parts, metres.
+    /// Centre of the sphere around all parts, metres.
     pub center: Vec3,
-    /// Its radius, metres.
+    /// Radius of the sphere, metres.
     pub radius: f32,
     parts: Vec<Part>,
 }
 
-/// One surface of one colour.
+/// Surface of one colour.
 #[derive(Debug, Clone, Copy)]
 pub struct Part {
     shape: Shape,
@@ -23,13 +23,13 @@ pub struct Part {
 
 #[derive(Debug, Clone, Copy)]
 enum Shape {
-    /// Upright, turned about the vertical.
+    /// Upright box, turned about the vertical.
     Box {
         center: Vec3,
         half: Vec3,
         heading: Vec2,
     },
-    /// Between two points, open at the ends.
+    /// Tube between two points, open at the ends.
     Tube {
         from: Vec3,
         along: Vec3,
@@ -43,23 +43,23 @@ enum Shape {
 }
 
 impl Part {
-    /// An upright box; `heading_rad` is where its first half side points.
+    /// Makes an upright box; `heading_rad` is the direction of its first half side.
     pub fn cuboid(center: Vec3, half: Vec3, heading_rad: f32, rgb: Vec3) -> Self {
         Self { shape: Shape::Box { center, half, heading: Vec2::from_angle(heading_rad) }, rgb }
     }
 
-    /// A round tube from one point to another.
+    /// Makes a round tube from one point to another.
     pub fn tube(from: Vec3, to: Vec3, radius: f32, rgb: Vec3) -> Self {
         let length = from.distance(to);
         Self { shape: Shape::Tube { from, along: (to - from) / length, length, radius }, rgb }
     }
 
-    /// A ball.
+    /// Makes a ball.
     pub fn ball(center: Vec3, radius: f32, rgb: Vec3) -> Self {
         Self { shape: Shape::Ball { center, radius }, rgb }
     }
 
-    /// A ball around it: centre and radius.
+    /// Returns centre and radius of a bounding sphere.
     fn bound(&self) -> (Vec3, f32) {
         match self.shape {
             Shape::Box { center, half, .. } => (center, half.length()),
@@ -70,7 +70,7 @@ impl Part {
         }
     }
 
-    /// Distance to the surface within a range, and its normal.
+    /// Returns the distance to the surface within a range, and its normal.
     fn hit(&self, origin: Vec3, direction: Vec3, range: Range<f32>) -> Option<(f32, Vec3)> {
         match self.shape {
             Shape::Box { center, half, heading } => hit_box(origin - center, direction, half, heading, range),
@@ -86,7 +86,7 @@ impl Part {
 }
 
 impl Thing {
-    /// A thing of these parts, at least one.
+    /// Makes a thing of these parts, at least one.
     pub fn new(parts: Vec<Part>) -> Self {
         let bounds: Vec<_> = parts.iter().map(Part::bound).collect();
         let center = bounds.iter().map(|(center, _)| *center).sum::<Vec3>() / bounds.len() as f32;
@@ -94,7 +94,7 @@ impl Thing {
         Self { center, radius: bounds.iter().map(reach).fold(0.0, f32::max), parts }
     }
 
-    /// The same thing elsewhere.
+    /// Returns the thing moved by a vector.
     pub fn moved(&self, way: Vec3) -> Self {
         let mut moved = self.clone();
         moved.center += way;
@@ -107,7 +107,7 @@ impl Thing {
         moved
     }
 
-    /// Distance and colour, lit a little more from above, of what a ray meets first before `limit`.
+    /// Returns distance and colour of a ray's first hit before `limit`; surfaces are lit slightly more from above.
     pub fn hit(&self, origin: Vec3, direction: Vec3, limit: f32) -> Option<(f32, Vec3)> {
         let to_center = self.center - origin;
         let along = to_center.dot(direction);

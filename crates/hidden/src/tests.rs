@@ -1,4 +1,4 @@
-//! Rendered light and written poses against formulas written once more.
+//! Comparison of rendered light and written poses with independently implemented formulas.
 
 use glam::{DMat3, DQuat, DVec2, DVec3, Mat3, Vec3};
 
@@ -35,7 +35,7 @@ impl Shot {
     }
 }
 
-/// The pixel of a point in the world, by the formula of the lens.
+/// Projects a point in the world to its pixel by the formula of the lens.
 fn pixel_of(truth: &Truth, station: Station, point: DVec3) -> DVec2 {
     let seen = station.world_from_camera.transpose() * (point - station.position);
     let across = seen.x.hypot(seen.y);
@@ -45,7 +45,7 @@ fn pixel_of(truth: &Truth, station: Station, point: DVec3) -> DVec2 {
     DVec2::new(seen.x, seen.y) * (truth.lens.focal_px * bent / across) + truth.lens.center_px
 }
 
-/// Between pixels; none near the rim.
+/// Interpolates between pixels; returns `None` near the rim.
 fn value_at(plane: &[f32], pixel: DVec2) -> Option<f64> {
     let inside = pixel.cmpge(DVec2::splat(3.0)).all() && pixel.x < 636.0 && pixel.y < 476.0;
     inside.then(|| {
@@ -56,7 +56,7 @@ fn value_at(plane: &[f32], pixel: DVec2) -> Option<f64> {
     })
 }
 
-/// Points on the centres of straight lines with the directions across them.
+/// Iterates over points on the centres of straight lines, with the directions across the lines.
 fn line_points() -> impl Iterator<Item = (DVec2, DVec2)> {
     let steps = |half: f64| (0..200).map(move |i| half * (f64::from(i) / 100.0 - 0.995));
     let touch = steps(2.9).flat_map(|x| [-2.0, 2.0].map(|y| (DVec2::new(x, y), DVec2::Y)));
@@ -68,7 +68,7 @@ fn line_points() -> impl Iterator<Item = (DVec2, DVec2)> {
     touch.chain(goal).chain(halfway).filter(move |(p, _)| clear(p) && !junction(p) && !area(p))
 }
 
-/// How far the light's edge lies outside the edge of the paint, pixels; none where it cannot be measured.
+/// Returns how far the light's edge lies outside the edge of the paint, pixels; `None` where it cannot be measured.
 fn edge_error_px(shot: &Shot, plane: &[f32], station: Station, center: DVec2, across: DVec2) -> Option<f64> {
     let middle = pixel_of(&shot.truth, station, center.extend(0.0));
     let edge = pixel_of(&shot.truth, station, (center + 0.025 * across).extend(0.0));
@@ -173,7 +173,7 @@ fn a_hidden_mount_turns_and_raises_the_camera() {
     let pitched = Shot::new(6, &[Hidden::MountPitch { angle_rad: pitch_rad }]);
     let time_s = 1.0;
     let mut station = level.trajectory.station(time_s);
-    // The camera that looks down by the angle, from its axes.
+    // This is the camera pitched down by the angle, computed from its axes.
     let axes = station.world_from_camera;
     let forward = axes.z_axis * pitch_rad.cos() + axes.y_axis * pitch_rad.sin();
     station.world_from_camera = DMat3::from_cols(axes.x_axis, forward.cross(axes.x_axis), forward);

@@ -1,17 +1,17 @@
-//! Blotches: random numbers on lattices, smoothly interpolated.
+//! Blotches: smoothly interpolated random numbers on lattices.
 
 use crate::random::Random;
 
-/// A lattice repeats after this many cells; a power of two.
+/// Number of cells after which a lattice repeats; a power of two.
 const PERIOD: i32 = 128;
 
-/// A multiple of the period; no place in a hall is farther from the centre.
+/// Shift by a multiple of the period; no position in a hall is farther from the centre.
 const SHIFT_CELLS: f32 = 1024.0;
 
-/// Standard deviation of smoothly interpolated numbers against that of the numbers themselves, on average over a cell.
+/// Ratio of the standard deviation of smoothly interpolated numbers to that of the numbers themselves, averaged over a cell.
 const INTERPOLATION_LOSS: f64 = 0.743;
 
-/// A pattern over the plane with mean 0.
+/// Pattern over the plane with mean 0.
 #[derive(Debug, Clone)]
 pub struct Texture {
     layers: Vec<Layer>,
@@ -24,11 +24,11 @@ struct Layer {
 }
 
 impl Texture {
-    /// The sum of layers, each given by the size of its blotches in metres and its standard deviation.
+    /// Adds up layers, each given by the size of its blotches in metres and its standard deviation.
     pub fn new(random: &mut Random, layers: &[(f64, f64)]) -> Self {
         let layers = layers.iter().map(|&(cell_m, deviation)| Layer {
             cells_per_m: (1.0 / cell_m) as f32,
-            // Evenly distributed between ±√3 is a standard deviation of 1.
+            // A uniform distribution between ±√3 has a standard deviation of 1.
             values: (0..PERIOD * PERIOD)
                 .map(|_| (random.between(-1.0, 1.0) * 3_f64.sqrt() * deviation / INTERPOLATION_LOSS) as f32)
                 .collect(),
@@ -36,7 +36,7 @@ impl Texture {
         Self { layers: layers.collect() }
     }
 
-    /// The value at a place, metres.
+    /// Returns the value at a position, metres.
     pub fn at(&self, x_m: f32, y_m: f32) -> f32 {
         self.layers.iter().map(|layer| layer.at(x_m, y_m)).sum()
     }
@@ -44,7 +44,7 @@ impl Texture {
 
 impl Layer {
     fn at(&self, x_m: f32, y_m: f32) -> f32 {
-        // Shifted by whole periods to where cutting off the fraction is rounding down, which is much faster.
+        // The shift by whole periods makes coordinates positive, where truncation rounds down and is much faster.
         let (x, y) = (x_m * self.cells_per_m + SHIFT_CELLS, y_m * self.cells_per_m + SHIFT_CELLS);
         let (column, row) = (x as i32, y as i32);
         let (s, t) = (smooth(x - column as f32), smooth(y - row as f32));
@@ -58,7 +58,7 @@ impl Layer {
     }
 }
 
-/// 3t² − 2t³: level at both ends.
+/// Returns 3t² − 2t³, whose slope is 0 at both ends.
 fn smooth(t: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }

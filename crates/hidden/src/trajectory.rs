@@ -1,4 +1,4 @@
-//! Where the camera really is, at any time: a walk over the field with a humanoid's gait on top.
+//! True motion of the camera: a walk over the field with a humanoid's gait on top.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,61 +6,62 @@ use glam::{DMat3, DVec2, DVec3};
 
 use crate::{random::Random, rotation};
 
-/// Between the computed points of the walk, seconds.
+/// Time between the computed points of the walk, seconds.
 const STEP_S: f64 = 0.005;
-/// The walk begins this long before the first picture's clock, seconds: effects shift the time.
+/// Time by which the walk begins before the first picture, seconds: effects shift the time.
 const LEAD_S: f64 = 1.0;
-/// Of the robot, metres per second and radians per second.
+/// Walking speed of the robot, metres per second.
 const SPEED_M_PER_S: f64 = 0.275;
+/// Largest turning rate of the robot, radians per second.
 const MAX_TURN_RAD_PER_S: f64 = PI / 3.0;
-/// Steps to the left and right per second.
+/// Frequency of the steps to the left and right, hertz.
 const GAIT_HZ: f64 = 0.83;
 const SWAY_ROLL_RAD: f64 = 1.5 * PI / 180.0;
 const SWAY_PITCH_RAD: f64 = 1.2 * PI / 180.0;
 const SWAY_LATERAL_M: f64 = 0.006;
 const BOB_M: f64 = 0.006;
 
-/// What the robot does.
+/// Motion of the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Walk {
-    /// It walks over the field from one random place to the next.
+    /// Walks over the field from one random position to the next.
     #[default]
     Walking,
-    /// It stands still at a random place.
+    /// Stands still at a random position.
     Standing,
 }
 
-/// The robot's way over the ground, without the sway of its gait: what odometry measures.
+/// Pose of the robot on the ground, without the sway of its gait: the odometry measures its motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ground {
-    /// In the world, metres.
+    /// Position in the world, metres.
     pub position: DVec2,
     /// Heading, not wrapped, radians.
     pub yaw_rad: f64,
 }
 
-/// A camera in the world.
+/// Camera pose in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Station {
-    /// The projection centre, metres.
+    /// Projection centre, metres.
     pub position: DVec3,
-    /// Columns: right, down, forward.
+    /// Rotation with the columns right, down, forward.
     pub world_from_camera: DMat3,
 }
 
-/// A way of the camera for every time of a recording.
+/// Path of the camera at every time of a recording.
 #[derive(Debug, Clone)]
 pub struct Trajectory {
     points: Vec<Ground>,
     height_m: f64,
     pitch_rad: f64,
-    /// Of the gait; 0 when standing.
+    /// Amplitude of the gait's sway; 0 when standing.
     sway: f64,
     phase_rad: f64,
 }
 
 impl Trajectory {
-    /// A way inside `half_extent_m` (x and y) for times up to `duration_s`, of a camera carried at a height.
+    /// Draws a path inside `half_extent_m` (x and y) for times up to `duration_s`, for a camera carried at a height.
     pub fn new(seed: u64, walk: Walk, duration_s: f64, half_extent_m: DVec2, height_m: f64) -> Self {
         let random = &mut Random::stream(seed, "trajectory", 0);
         let count = ((duration_s + 2.0 * LEAD_S) / STEP_S) as usize + 2;
@@ -74,7 +75,7 @@ impl Trajectory {
         Self { points, height_m, pitch_rad, sway, phase_rad }
     }
 
-    /// The way over the ground at a time, seconds.
+    /// Returns the pose on the ground at a time, seconds.
     pub fn ground(&self, time_s: f64) -> Ground {
         let place = ((time_s + LEAD_S) / STEP_S).clamp(0.0, (self.points.len() - 1) as f64);
         let (index, part) = (place as usize, place.fract());
@@ -85,7 +86,7 @@ impl Trajectory {
         }
     }
 
-    /// Yaw, pitch and roll at a time, radians.
+    /// Returns yaw, pitch and roll at a time, radians.
     pub fn angles(&self, time_s: f64) -> [f64; 3] {
         let phase = TAU * GAIT_HZ * time_s + self.phase_rad;
         [
@@ -95,7 +96,7 @@ impl Trajectory {
         ]
     }
 
-    /// The camera at a time, seconds.
+    /// Returns the camera pose at a time, seconds.
     pub fn station(&self, time_s: f64) -> Station {
         let ground = self.ground(time_s);
         let phase = TAU * GAIT_HZ * time_s + self.phase_rad;
@@ -109,14 +110,14 @@ impl Trajectory {
         }
     }
 
-    /// The smallest distance of the way from a place, metres.
+    /// Returns the smallest distance of the path from a position, metres.
     pub fn clearance_m(&self, place: DVec2) -> f64 {
         let distances = self.points.iter().step_by(20).map(|point| point.position.distance(place));
         distances.fold(f64::INFINITY, f64::min)
     }
 }
 
-/// The robot on its way to a target.
+/// Robot on its way to a target.
 struct Walker {
     ground: Ground,
     target: DVec2,
@@ -129,7 +130,7 @@ impl Walker {
         let place = |random: &mut Random| {
             DVec2::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0)) * half_extent_m
         };
-        // Looking into the field from where it stands, more or less, so that there are lines to see.
+        // The robot faces the field from where it stands, more or less, so that there are lines to see.
         let position = place(random);
         let yaw_rad = (-position.y).atan2(-position.x) + random.between(-0.9, 0.9);
         Self { ground: Ground { position, yaw_rad }, target: place(random), speed: 0.0, turn: 0.0 }
@@ -160,7 +161,7 @@ impl Walker {
     }
 }
 
-/// An angle in (−π, π].
+/// Wraps an angle to (−π, π].
 pub fn wrapped(angle_rad: f64) -> f64 {
     angle_rad.sin().atan2(angle_rad.cos())
 }

@@ -1,4 +1,4 @@
-//! What is really the case: the nominal numbers with the hidden effects.
+//! True values: the nominal values with the hidden effects.
 
 use glam::DVec2;
 use reality_sim_core::field::FieldDimensions;
@@ -10,7 +10,7 @@ use crate::{
     pattern::Pattern,
 };
 
-/// The camera, the hall and the odometry as they are. Effects of one kind add up.
+/// Camera, hall and odometry as they are. Effects of one kind add up.
 #[derive(Debug, Clone)]
 pub struct Truth {
     /// The lens for green light.
@@ -19,69 +19,69 @@ pub struct Truth {
     pub magnification: [f64; 3],
     /// Displacements in parts of the picture.
     pub dents: Vec<Patch>,
-    /// In the camera's own frame, radians.
+    /// Pitch in the camera frame, radians.
     pub mount_pitch_rad: f64,
-    /// About the optical axis, after the pitch, radians.
+    /// Roll about the optical axis, after the pitch, radians.
     pub mount_roll_rad: f64,
-    /// Of the camera above where it is believed to be, metres.
+    /// Height of the camera above the nominal one, metres.
     pub raised_m: f64,
-    /// From the first row to the last, seconds.
+    /// Readout time from the first row to the last, seconds.
     pub readout_s: f64,
-    /// Of the robot's clock, seconds.
+    /// Offset of the robot's clock, seconds.
     pub offset_s: f64,
-    /// Seconds.
+    /// Exposure time, seconds.
     pub exposure_s: f64,
-    /// Of the disc, pixels; squares add up.
+    /// Standard deviation of the defocus disc, pixels; squares add up.
     pub defocus_px: f64,
-    /// Losses towards the corners.
+    /// Losses of light towards the corners.
     pub vignettes: Vec<(f64, Falloff)>,
-    /// Dark patches: the shift's first number is the opacity.
+    /// Dark patches of dirt: the first number of the amplitude is the opacity.
     pub dirt: Vec<Patch>,
-    /// Amplitude, bands over the height, bands from picture to picture.
+    /// Flicker: amplitude, bands over the height, shift from picture to picture in bands.
     pub flicker: Vec<[f64; 3]>,
-    /// Of red, green, blue.
+    /// Gains of red, green, blue.
     pub gains: [f64; 3],
-    /// Courses of the exposure, stops.
+    /// Courses of the exposure: amplitude in stops, and shape.
     pub drifts: Vec<(f64, Course)>,
-    /// Added to the nominal gamma.
+    /// Change of the nominal gamma.
     pub gamma_change: f64,
-    /// Linear.
+    /// Black level, linear.
     pub black_level: f64,
-    /// Standard deviation against the nominal one.
+    /// Ratio of the noise's standard deviation to the nominal one.
     pub noise: f64,
-    /// How the hall is lit.
+    /// Illumination of the hall: strength and shape.
     pub lights: Vec<(f64, Light)>,
-    /// Per metre.
+    /// Extinction per metre.
     pub extinction_per_m: f64,
-    /// Amplitude, waves per metre in x and y, phase.
+    /// Waves of the ground: amplitude, waves per metre in x and y, phase.
     pub waves: Vec<[f64; 4]>,
-    /// Field and its paint.
+    /// Dimensions of the field.
     pub field: FieldDimensions,
-    /// The paint.
+    /// Paint on the ground.
     pub pattern: Pattern,
-    /// People on the field.
+    /// Number of people on the field.
     pub people: u32,
-    /// Of odometry's distances.
+    /// Factor on the odometry's distances.
     pub odometry_scale: f64,
-    /// Of odometry's heading, radians per second.
+    /// Drift of the odometry's heading, radians per second.
     pub odometry_drift_rad_per_s: f64,
-    /// Of odometry to the left, metres per metre forward.
+    /// Slip of the odometry to the left, metres per metre forward.
     pub odometry_slip: f64,
 }
 
-/// A Gaussian part of the picture.
+/// Gaussian patch of the picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Patch {
-    /// Pixels.
+    /// Centre, pixels.
     pub center_px: DVec2,
     /// Standard deviation, pixels.
     pub sigma_px: f64,
-    /// What is largest at its centre.
+    /// Value at the centre.
     pub amplitude: DVec2,
 }
 
 impl Patch {
-    /// What it is at a pixel.
+    /// Returns the value at a pixel.
     pub fn at(&self, pixel: DVec2) -> DVec2 {
         let square = pixel.distance_squared(self.center_px) / (self.sigma_px * self.sigma_px);
         self.amplitude * (-0.5 * square).exp()
@@ -89,7 +89,7 @@ impl Patch {
 }
 
 impl Truth {
-    /// The nominal numbers with these effects.
+    /// Applies these effects to the nominal values.
     pub fn new(nominal: &Nominal, effects: &[Hidden]) -> Self {
         let mut truth = Self::nothing_hidden(nominal);
         let size = nominal.size.map(f64::from).into();
@@ -135,7 +135,7 @@ impl Truth {
         }
     }
 
-    /// Lens, mount and time.
+    /// Applies effects of lens, mount and time.
     fn hide_in_camera(&mut self, effect: &Hidden, size_px: DVec2) {
         match *effect {
             Hidden::RadialDistortion { k } => {
@@ -163,7 +163,7 @@ impl Truth {
         }
     }
 
-    /// From the light behind the lens to pixel values.
+    /// Applies effects between the light behind the lens and the pixel values.
     fn hide_in_light(&mut self, effect: &Hidden, size_px: DVec2) {
         match *effect {
             Hidden::Vignetting { strength, falloff } => self.vignettes.push((strength, falloff)),
@@ -185,7 +185,7 @@ impl Truth {
         }
     }
 
-    /// Field, light and air.
+    /// Applies effects of field, light and air.
     fn hide_in_hall(&mut self, effect: &Hidden) {
         match *effect {
             Hidden::UnevenIllumination { strength, shape } => self.lights.push((strength, shape)),

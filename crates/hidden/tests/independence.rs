@@ -1,11 +1,11 @@
-//! The generator shares nothing with the models that are fitted: only numbers and the writer of sequences come from
-//! the core.
+//! The generator shares nothing with the models that are fitted: only numbers and the writer of sequences come from the
+//! core.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use std::{fs, path::Path};
 
-/// What the core or the sensor would lend: projections, curves, rotations, blur, noise.
+/// Names that would come from the core or the sensor: projections, curves, rotations, blur, noise.
 const FORBIDDEN: [&str; 22] = [
     "reality_sim_sensor",
     "reality_sim_gap",
@@ -31,7 +31,7 @@ const FORBIDDEN: [&str; 22] = [
     "warp",
 ];
 
-/// All that may be imported from the core.
+/// All names that may be imported from the core.
 const ALLOWED: [&str; 7] = [
     "camera::{Camera, Distortion, OpencvFisheye}",
     "field::FieldDimensions",

@@ -1,4 +1,4 @@
-//! Whole recordings: what is written, what changes with each effect, and what does not.
+//! Tests of whole recordings: the files written, the changes by each effect, and what stays the same.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -13,7 +13,7 @@ fn recipe(effects: Vec<Hidden>) -> Recipe {
     Recipe { frames: 4, size: [160, 120], effects, ..Recipe::new(SEED) }
 }
 
-/// Every file of a recording by its name in the folder; pictures under one name.
+/// Returns every file of a recording by its name in the folder; all pictures share one name.
 fn files(recipe: &Recipe) -> BTreeMap<String, Vec<u8>> {
     let folder = tempfile::tempdir().unwrap();
     recipe.record(folder.path()).unwrap();
@@ -25,7 +25,7 @@ fn files(recipe: &Recipe) -> BTreeMap<String, Vec<u8>> {
     files
 }
 
-/// Names of the files that an effect changes.
+/// Returns the names of the files that an effect changes.
 fn changed(plain: &BTreeMap<String, Vec<u8>>, id: &str) -> Vec<String> {
     let effect = Hidden::of(id, 8.0, &mut Random::new(3)).unwrap();
     let hidden = files(&recipe(vec![effect]));

@@ -1,4 +1,4 @@
-//! What the window's own thread spends on a frame: `cargo bench -p reality-sim-viewer`.
+//! Benchmark of the time that the window's own thread spends on a frame: `cargo bench -p reality-sim-viewer`.
 
 use std::{
     hint::black_box,
@@ -17,7 +17,7 @@ use egui_kittest::{
 use reality_sim_core::backend::CpuBackend;
 use reality_sim_viewer::{Device, ViewerApp, ViewerOptions};
 
-/// Between two frames: about as long as the filter takes for a picture, so that many frames show a new one.
+/// Pause between two frames: about the time that the filter takes for a picture, so that many frames show a new one.
 const PAUSE: Duration = Duration::from_millis(40);
 
 type Window = Harness<'static, ViewerApp>;
@@ -25,7 +25,7 @@ type Window = Harness<'static, ViewerApp>;
 criterion_group!(benches, frames);
 criterion_main!(benches);
 
-/// The demonstration: pictures of 640 × 480 pixels, 800 particles.
+/// Measures frames of the demonstration: pictures of 640 × 480 pixels, 800 particles.
 fn frames(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("viewer");
     group.sample_size(10).measurement_time(Duration::from_secs(8));
@@ -57,14 +57,14 @@ fn window() -> Window {
     window
 }
 
-/// Layout, input, uploads and triangles; the graphics device draws them elsewhere.
+/// Runs layout, input, uploads and tessellation; the graphics device's own work is not included.
 fn frame(window: &mut Window) {
     window.step();
     let output = window.output();
     black_box(window.ctx.tessellate(output.shapes.clone(), output.pixels_per_point));
 }
 
-/// The time of the next frame that shows another picture than the one before; frames that do not are left out.
+/// Returns the time of the next frame that shows a new picture; other frames are left out.
 fn frame_with_new_picture(window: &mut Window) -> Duration {
     loop {
         if window.query_by_label("Play").is_some() {
@@ -82,7 +82,7 @@ fn frame_with_new_picture(window: &mut Window) -> Duration {
     }
 }
 
-/// Which picture is shown, in words.
+/// Returns the description of the current picture.
 fn picture_shown(window: &Window) -> String {
     let texts = window.query_all_by_label_contains("picture ").map(|node| {
         let node = node.accesskit_node();

@@ -1,5 +1,5 @@
-//! Pictures of the viewer for the README, drawn without a window: `cargo run --release -p reality-sim-viewer --example
-//! viewer_pictures` writes docs/images/viewer_*.jpg; with names behind it (`walk`, `drive`, `gap`) only those.
+//! Draws pictures of the viewer for the README without a window: `cargo run --release -p reality-sim-viewer --example
+//! viewer_pictures` writes docs/images/viewer_*.jpg; with names as arguments (`walk`, `drive`, `gap`), only those.
 
 #![allow(clippy::print_stdout, reason = "says what it wrote")]
 
@@ -25,12 +25,13 @@ use reality_sim_viewer::{Device, ViewerApp, ViewerOptions};
 
 type Window = Harness<'static, ViewerApp>;
 
-/// Pauses between steps, and how many are waited for at most.
+/// Pause between steps.
 const PAUSE: Duration = Duration::from_millis(20);
+/// Largest number of steps to wait for.
 const STEPS: usize = 3000;
-/// Of the JPEG files.
+/// Quality of the JPEG files.
 const QUALITY: u8 = 66;
-/// The lens's first coefficient as it is, and as the hidden fault has it.
+/// First distortion coefficient of the lens, true and with the hidden fault.
 const LENS: [&str; 2] = ["[-0.058061286,", "[-0.043061286,"];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -74,7 +75,7 @@ fn walk_and_drive(walk: &Path, images: &Path) -> Result<(), Box<dyn Error>> {
     save(&mut window, &images.join("viewer_drive.jpg"))
 }
 
-/// The walk with a lens that was calibrated badly, as the report on it shows that.
+/// Draws the gap report on the walk with a badly calibrated lens.
 fn gap(walk: &Path, images: &Path) -> Result<(), Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let (recording, report) = (folder.path().join("badly-calibrated"), folder.path().join("found"));
@@ -86,7 +87,7 @@ fn gap(walk: &Path, images: &Path) -> Result<(), Box<dyn Error>> {
     save(&mut window, &images.join("viewer_gap.jpg"))
 }
 
-/// Copies a recording; its camera's file is not true any more.
+/// Copies a recording with a wrong camera file.
 fn miscalibrate(walk: &Path, to: &Path) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(to.join("images"))?;
     for part in ["", "images"] {
@@ -104,7 +105,7 @@ fn miscalibrate(walk: &Path, to: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Finds what the plain model misses in a recording, and writes what the viewer reads.
+/// Finds the effects missing from the nominal model of a recording, and writes the report that the viewer reads.
 fn write_report(recording: &Path, to: &Path) -> Result<(), Box<dyn Error>> {
     let sequence = Sequence::open(recording)?;
     let compared = Recording::new(
@@ -136,7 +137,7 @@ fn open(path: &Path) -> Window {
     builder.wgpu().build_eframe(|cc| ViewerApp::new(cc, options))
 }
 
-/// Lets the window and its threads work until something is to be seen.
+/// Runs the window and its threads until something is shown.
 fn until(window: &mut Window, what: &str, is_there: impl Fn(&Window) -> bool) {
     for _ in 0..STEPS {
         window.step();

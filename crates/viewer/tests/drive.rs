@@ -1,4 +1,4 @@
-//! The Drive panel in the whole window, by clicks, drags and keys.
+//! Tests of the Drive panel in the whole window, by clicks, drags and keys.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -20,7 +20,7 @@ use common::{PATIENCE, SIZE, choose, click, drag, shows, until, until_label, unt
 
 type Window = common::Viewer<'static>;
 
-/// A database of the demonstration walk with all its pictures.
+/// Makes a database of the demonstration walk with all its pictures.
 fn database(folder: &Path) -> PathBuf {
     let sequence = Sequence::open(&walk()).unwrap();
     let path = folder.join("walk.db");
@@ -30,7 +30,7 @@ fn database(folder: &Path) -> PathBuf {
     path
 }
 
-/// The window with a database, when the first picture has come.
+/// Returns the window with a database, once the first picture is there.
 fn driving() -> (Window, TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let mut window = viewer(&database(folder.path()));
@@ -38,13 +38,13 @@ fn driving() -> (Window, TempDir) {
     (window, folder)
 }
 
-/// A number of the robot's pose as it is shown.
+/// Returns a number of the robot's pose as shown.
 fn number(window: &Window, name: &str) -> f64 {
     let node = window.get_by_role_and_label(Role::SpinButton, name);
     node.accesskit_node().numeric_value().unwrap()
 }
 
-/// Where the field is on the screen, and points for a metre: with a metre around the carpet.
+/// Returns the rectangle of the field on the screen, and the points per metre: the view includes a metre around the carpet.
 fn field(window: &Window) -> (Rect, f64) {
     let rect = window.get_by_label("the field from above").rect();
     let extent = 2.0 * (Sequence::open(&walk()).unwrap().field.carpet_half_extent_m() + 1.0);
@@ -52,7 +52,7 @@ fn field(window: &Window) -> (Rect, f64) {
     (rect, scale)
 }
 
-/// Where a place on the field is on the screen.
+/// Returns the screen position of a position on the field.
 fn on_screen(window: &Window, x_m: f64, y_m: f64) -> Pos2 {
     let (rect, scale) = field(window);
     rect.center() + vec2((scale * x_m) as f32, (-scale * y_m) as f32)
@@ -140,7 +140,7 @@ fn all_methods_are_seen_at_once_and_a_database_alone_has_no_true_picture() {
 #[test]
 fn where_nothing_was_recorded_the_pane_says_so_until_best_effort_is_asked_for() {
     let (mut window, _folder) = driving();
-    // Into the corner, and round: nobody has looked out there.
+    // The robot goes to the corner and faces outwards: no picture was recorded in that direction.
     let (from, to) =
         (on_screen(&window, number(&window, "x"), number(&window, "y")), on_screen(&window, 3.4, -2.4));
     drag(&mut window, &[from, from + vec2(20.0, 0.0), to]);
@@ -184,7 +184,7 @@ fn a_path_is_drawn_followed_stopped_and_cleared() {
     assert!(window.get_by_label("Follow the path").accesskit_node().is_disabled());
 }
 
-/// What is drawn of the field, without texts: pictures of it differ where something on it does.
+/// Returns the drawing of the field without texts, to compare layers on it.
 fn picture_of_field(window: &mut Window) -> Vec<u8> {
     window.remove_cursor();
     window.run_steps(3);
@@ -202,7 +202,7 @@ fn every_layer_changes_what_is_drawn_of_the_field_and_back() {
     for layer in ["neighbours", "triangulation", "recorded", "in use", "ground seen"] {
         let before = picture_of_field(&mut window);
         click(&mut window, layer);
-        // Edges come from the thread.
+        // The edges come from the drawing thread.
         let started = Instant::now();
         while picture_of_field(&mut window) == before {
             assert!(started.elapsed() < PATIENCE, "{layer} changes nothing");
@@ -242,7 +242,7 @@ fn the_fields_panel_is_as_wide_as_it_was_dragged_to_be_in_proportion_to_the_wind
     let width = |window: &Window| f64::from(field(window).0.width());
     let before = width(&window);
     let edges: Vec<Pos2> = (-8..=8).map(|offset| edge + vec2(offset as f32, 0.0)).collect();
-    // The line between the panels is where the mouse says so.
+    // The line between the panels follows the mouse.
     for at in edges {
         drag(&mut window, &[at, at + vec2(50.0, 0.0), at + vec2(100.0, 0.0)]);
         if width(&window) < before - 50.0 {
@@ -259,8 +259,8 @@ fn the_fields_panel_is_as_wide_as_it_was_dragged_to_be_in_proportion_to_the_wind
     assert!((width(&window) - dragged).abs() < 2.0, "{dragged} {}", width(&window));
 }
 
-/// The demonstration walk again and again: storing it takes far longer than a few frames of the window, so that it is still
-/// under way when it is cancelled, on a slow machine, too.
+/// Writes the demonstration walk repeated many times: storing it takes far longer than a few frames of the window, so that
+/// it is still under way when it is cancelled, even on a slow machine.
 fn long_walk(folder: &Path, times: usize) {
     for name in ["sequence.toml", "camera.toml", "field.toml"] {
         fs::copy(walk().join(name), folder.join(name)).unwrap();
@@ -343,7 +343,7 @@ fn at_rest_nothing_is_drawn_anew() {
     window.remove_cursor();
     let delay =
         |window: &common::Viewer<'_>| window.output().viewport_output[&ViewportId::ROOT].repaint_delay;
-    // Pictures come and animations end; after that nobody asks for anything.
+    // Pictures arrive and animations end; after that, no repaint is requested.
     until(&mut window, "rest", |window| delay(window) == Duration::MAX);
     std::thread::sleep(Duration::from_millis(300));
     window.run_steps(3);

@@ -1,4 +1,4 @@
-//! The window around the panels: opening, problems, settings, keys.
+//! Tests of the window around the panels: opening, problems, settings, keys.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -24,7 +24,7 @@ use common::{
     viewer_with, walk,
 };
 
-/// A database of the walk's first pictures, in a folder of its own.
+/// Returns a database of the walk's first pictures, in a folder of its own.
 fn database() -> (TempDir, PathBuf) {
     let mut sequence = Sequence::open(&walk()).unwrap();
     sequence.frames.truncate(3);
@@ -36,7 +36,7 @@ fn database() -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-/// The walk under another name.
+/// Copies the walk under another name.
 fn copy_of_walk() -> (TempDir, PathBuf) {
     let folder = tempdir().unwrap();
     let copy = folder.path().join("another-walk");
@@ -70,7 +70,7 @@ fn drop_on(viewer: &mut Viewer<'_>, paths: &[&Path]) {
     viewer.step();
 }
 
-/// Waits for a problem about a path, and gives it back.
+/// Waits for a problem about a path, and returns it.
 #[track_caller]
 fn problem(viewer: &mut Viewer<'_>, path: &Path) -> String {
     let name = path.file_name().unwrap().to_str().unwrap();
@@ -191,7 +191,7 @@ fn a_typed_path_is_opened_by_enter() {
     assert!(message.contains("/no/such/recording"), "{message}");
     assert!(!shows(&viewer, "Choose a folder…"), "the window stays open");
 
-    // What was typed is there again, to be mended.
+    // The typed path is there again, to be corrected.
     press(&mut viewer, Modifiers::COMMAND, Key::O);
     assert_eq!(viewer.get_by_role(Role::TextInput).value().as_deref(), Some("/no/such/recording"));
     press(&mut viewer, Modifiers::COMMAND, Key::A);
@@ -201,7 +201,7 @@ fn a_typed_path_is_opened_by_enter() {
     press_open_until_recent(&mut viewer, &copy);
 }
 
-/// Opens the window again and again until a path is in its list.
+/// Reopens the window until a path is in its list.
 #[track_caller]
 fn press_open_until_recent(viewer: &mut Viewer<'_>, path: &Path) {
     until(viewer, "opened", |viewer| !viewer_is_opening(viewer));
@@ -217,7 +217,7 @@ fn recent_recordings_are_listed_and_open_by_a_click() {
     drop_on(&mut viewer, &[&walk().join("sequence.toml")]);
     until(&mut viewer, "opened", |viewer| !viewer_is_opening(viewer));
     click(&mut viewer, "Open…");
-    // The demonstration has a place of its own.
+    // The demonstration has its own entry.
     assert!(shows(&viewer, "The demonstration walk"));
     assert!(!shows(&viewer, walk().to_str().unwrap()));
     fs::remove_file(copy.join("sequence.toml")).unwrap();
@@ -253,7 +253,7 @@ fn a_dropped_folder_is_opened_and_a_hint_says_so_before() {
     assert!(!painted_text(&viewer).contains("Drop a recording"));
 }
 
-/// All that is written in the window, painted without widgets too.
+/// Returns all text in the window, including text painted without widgets.
 fn painted_text(viewer: &Viewer<'_>) -> String {
     fn text(shape: &eframe::egui::Shape) -> String {
         match shape {
@@ -302,7 +302,7 @@ fn a_key_held_down_does_a_thing_once() {
     assert!(shows(&viewer, "save a screenshot"));
 }
 
-/// Which of the three the theme's button shows.
+/// Returns which of the three themes the button shows.
 fn theme(viewer: &Viewer<'_>) -> &'static str {
     ["System", "Light", "Dark"].into_iter().find(|theme| shows(viewer, theme)).unwrap()
 }
@@ -348,7 +348,7 @@ fn ctrl_q_closes_the_window() {
         let viewports = &viewer.output().viewport_output;
         viewports.values().any(|viewport| viewport.commands.contains(&ViewportCommand::Close))
     };
-    // Every event is a frame of its own; the last one is looked at.
+    // Every event takes a frame of its own, and only the last frame is checked.
     viewer.event(Event::ModifiersChanged(Modifiers::COMMAND));
     viewer.step();
     assert!(!closes(&viewer), "closes without the key");
@@ -407,7 +407,7 @@ fn a_part_of_the_settings_that_cannot_be_read_leaves_the_others() {
 #[test]
 fn a_screenshot_goes_to_the_current_folder_and_the_window_says_where() {
     let folder = tempdir().unwrap();
-    // No other test looks at the current folder: their paths are absolute.
+    // No other test depends on the current folder: their paths are absolute.
     std::env::set_current_dir(folder.path()).unwrap();
     let mut viewer = demonstration();
     click(&mut viewer, "Screenshot");
@@ -422,7 +422,7 @@ fn a_screenshot_goes_to_the_current_folder_and_the_window_says_where() {
 #[test]
 fn nothing_is_drawn_while_nothing_happens() {
     let mut viewer = demonstration();
-    // Panics where frame after frame asks for another one.
+    // This panics if every frame requests another one.
     viewer.run();
     for _ in 0..3 {
         viewer.step();
@@ -437,7 +437,7 @@ fn nothing_is_drawn_while_nothing_happens() {
 
 #[test]
 fn every_button_has_a_name_and_every_letter_a_glyph() {
-    // The harness panics where one has none.
+    // The harness panics if a button has no name or a letter no glyph.
     let mut viewer = demonstration();
     drop_on(&mut viewer, &[Path::new("/missing")]);
     until_label(&mut viewer, "Dismiss");

@@ -1,4 +1,4 @@
-//! The panel Walk in a window without a screen, driven by clicks and keys.
+//! Tests of the Walk panel without a screen, driven by clicks and keys.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -27,19 +27,19 @@ const POSE: [u8; 3] = [255, 45, 160];
 const TRUTH: [u8; 3] = [20, 130, 255];
 const BORDER: [u8; 3] = [255, 205, 0];
 
-/// A window on the demonstration, with its first picture.
+/// Returns a window on the demonstration, with its first picture.
 fn window() -> Window {
     window_on(&walk(), SIZE)
 }
 
-/// A window on a recording, with its first picture.
+/// Returns a window on a recording, with its first picture.
 fn window_on(recording: &Path, size: Vec2) -> Window {
     let mut window = viewer_with(recording, size, None);
     until_part(&mut window, "weighed");
     window
 }
 
-/// Pixels of nearly a colour in a part of the window.
+/// Counts pixels close to a colour in a part of the window.
 fn count(picture: &RgbaImage, rect: Rect, color: [u8; 3]) -> usize {
     let is_near = |pixel: &image::Rgba<u8>| pixel.0.iter().zip(color).all(|(a, b)| a.abs_diff(b) < 24);
     let (min, size) = (rect.min.round(), rect.size().floor());
@@ -47,13 +47,13 @@ fn count(picture: &RgbaImage, rect: Rect, color: [u8; 3]) -> usize {
     part.to_image().pixels().filter(|pixel| is_near(pixel)).count()
 }
 
-/// How many pixels of the camera's picture have a colour.
+/// Counts the pixels of the camera's picture that have a colour.
 fn in_picture(window: &mut Window, color: [u8; 3]) -> usize {
     let rect = rect_of(window, "Camera picture");
     count(&window.render().unwrap(), rect, color)
 }
 
-/// The mean grey value of the camera's picture.
+/// Returns the mean grey value of the camera's picture.
 fn brightness(window: &mut Window) -> f64 {
     let rect = rect_of(window, "Camera picture");
     let picture = window.render().unwrap();
@@ -73,7 +73,7 @@ fn the_first_picture_is_there_with_its_lines_and_nothing_moves() {
     let mut window = window();
     until_part(&mut window, "picture 1 of 60");
     assert!(in_picture(&mut window, POSE) > 500);
-    // Everything has settled: no frame is asked for until something happens.
+    // Nothing changes any more: no frame is requested until something happens.
     window.run();
     assert!(!window.ctx.has_requested_repaint());
 }
@@ -145,7 +145,7 @@ fn overlays_are_switched_on_and_off() {
     for (label, color, is_on) in
         [("Pose found", POSE, true), ("Truth", TRUTH, true), ("Field's border", BORDER, false)]
     {
-        // The truth lies under the pose found: it is to be seen once that is off.
+        // The true lines lie under those of the estimated pose, and become visible once these are off.
         let before = in_picture(&mut window, color);
         click(&mut window, label);
         window.step();
@@ -165,7 +165,7 @@ fn what_the_models_read_is_laid_over_the_picture() {
     let mut seen = vec![bare];
     for veil in ["blurred picture", "white-line evidence", "distances"] {
         choose(&mut window, "Over the picture", veil);
-        // The veil is made by the filter's thread.
+        // The filter's thread makes the veil.
         let before = *seen.last().unwrap();
         let begin = Instant::now();
         let mut now = before;
@@ -177,7 +177,7 @@ fn what_the_models_read_is_laid_over_the_picture() {
         }
         seen.push(now);
     }
-    // Evidence is nearly black, distances nearly white.
+    // The evidence is nearly black, the distances are nearly white.
     assert!(seen[2] < 0.5 * bare && seen[3] > 1.3 * bare, "{seen:?}");
     choose(&mut window, "Over the picture", "nothing");
     let begin = Instant::now();
@@ -194,7 +194,7 @@ fn another_model_and_fewer_particles_act_at_once() {
     assert!(window.query_by_label("Gain").is_some() && window.query_by_label("α").is_none());
     choose(&mut window, "Model", "gauss");
     until_label(&mut window, "α");
-    // A click on the number lets one type another.
+    // Clicking the number allows typing another one.
     click(&mut window, "Particle count");
     window.step();
     window.get_by_label("Particle count").type_text("300");
@@ -225,7 +225,7 @@ fn a_narrow_window_shows_picture_and_field_one_above_the_other() {
     assert!(picture.width() > 150.0 && field.width() > 150.0);
 }
 
-/// The first frames of the demonstration, without ground truth, start and odometry.
+/// Writes the first frames of the demonstration, without ground truth, start and odometry.
 fn bare_recording(folder: &Path, frames: usize) {
     for name in ["camera.toml", "field.toml"] {
         std::fs::copy(walk().join(name), folder.join(name)).unwrap();
@@ -280,7 +280,7 @@ fn a_recording_whose_first_picture_is_broken_is_walked_through_all_the_same() {
     std::fs::write(&first, &bytes[..bytes.len() / 2]).unwrap();
     let mut window = viewer_with(folder.path(), SIZE, None);
     until_part(&mut window, "000000.jpg");
-    // The problem makes room for itself.
+    // The message makes room for itself.
     window.run_steps(3);
     click(&mut window, "Next");
     until_part(&mut window, "picture 2 of 3");
@@ -317,7 +317,7 @@ fn the_view_is_moved_by_the_secondary_button_though_it_followed() {
     };
     let changed = part(&before).pixels().zip(part(&moved).pixels()).filter(|(a, b)| a != b).count();
     assert!(changed > 1000, "{changed} pixels");
-    // It stays where it was moved to.
+    // The particles stay where they were moved to.
     window.run_steps(3);
     assert_eq!(part(&moved), part(&window.render().unwrap()));
 }
@@ -350,13 +350,13 @@ fn a_drag_that_ends_in_another_panel_leaves_nothing_behind() {
 fn the_panel_looks_as_it_did() {
     let mut window = window_on(&walk(), vec2(760.0, 520.0));
     until_label(&mut window, "sure");
-    // Times differ from run to run: picture and field alone.
+    // Times differ from run to run, so only picture and field are compared.
     let views = rect_of(&window, "Camera picture").union(rect_of(&window, "Field from above"));
     let picture = window.render().unwrap();
     let (min, size) = (views.min.round(), views.size().floor());
     let part = image::imageops::crop_imm(&picture, min.x as u32, min.y as u32, size.x as u32, size.y as u32)
         .to_image();
-    // Drivers that run on the processor compile for it: edges of lines differ by a few levels between processors, and
+    // Graphics drivers that run on the processor compile for it: line edges differ by a few levels between processors, and
     // poses in their last digits.
     let options = SnapshotOptions::new().threshold(1.0).max_failed_pixels(600);
     image_snapshot_options(&part, "walk", &options);

@@ -1,4 +1,4 @@
-//! The window's content, driven by clicks and keys, without a window.
+//! Window content for tests, driven by clicks and keys, without a window.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 #![allow(dead_code, reason = "each test program uses some of them")]
@@ -22,12 +22,12 @@ use egui_kittest::{
 use reality_sim_core::backend::CpuBackend;
 use reality_sim_viewer::{Device, ViewerApp, ViewerOptions};
 
-/// Longer than anything takes on a busy machine.
+/// Time limit, longer than anything takes on a busy machine.
 pub const PATIENCE: Duration = Duration::from_secs(120);
-/// The size of a window, points.
+/// Size of a window, points.
 pub const SIZE: Vec2 = vec2(1280.0, 820.0);
 
-/// Settings that last as long as the test.
+/// Storage that lasts as long as the test.
 #[derive(Default)]
 pub struct Memory(pub HashMap<String, String>);
 
@@ -50,17 +50,17 @@ impl Storage for Memory {
 /// The window's content.
 pub type Viewer<'a> = Harness<'a, ViewerApp>;
 
-/// The demonstration walk.
+/// Returns the path of the demonstration walk.
 pub fn walk() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk").canonicalize().unwrap()
 }
 
-/// A window that opens a path, on the processor.
+/// Returns a window that opens a path, on the processor.
 pub fn viewer<'a>(open: &Path) -> Viewer<'a> {
     viewer_with(open, SIZE, None)
 }
 
-/// A window of a size, points, that opens a path and remembers what is stored.
+/// Returns a window of a size, in points, that opens a path and remembers what is stored.
 pub fn viewer_with<'a>(open: &Path, size: Vec2, storage: Option<&'a dyn Storage>) -> Viewer<'a> {
     let device = Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) };
     let options =
@@ -71,14 +71,14 @@ pub fn viewer_with<'a>(open: &Path, size: Vec2, storage: Option<&'a dyn Storage>
     })
 }
 
-/// A window in which the demonstration is open.
+/// Returns a window in which the demonstration is open.
 pub fn demonstration<'a>() -> Viewer<'a> {
     let mut viewer = viewer(&walk());
     until_label(&mut viewer, "Drive");
     viewer
 }
 
-/// Draws frames until something holds: threads answer when they are done.
+/// Draws frames until a condition holds: threads answer when they are done.
 #[track_caller]
 pub fn until(viewer: &mut Viewer<'_>, what: &str, holds: impl Fn(&Viewer<'_>) -> bool) {
     let started = Instant::now();
@@ -98,18 +98,18 @@ pub fn until_label(viewer: &mut Viewer<'_>, label: &str) {
     until(viewer, label, |viewer| shows(viewer, label));
 }
 
-/// Draws frames until something is shown whose name contains a part.
+/// Draws frames until a widget is shown whose name contains a text.
 #[track_caller]
 pub fn until_part(viewer: &mut Viewer<'_>, part: &str) {
     until(viewer, part, |viewer| viewer.query_all_by_label_contains(part).next().is_some());
 }
 
-/// Whether this very text is shown.
+/// Whether exactly this text is shown.
 pub fn shows(viewer: &Viewer<'_>, label: &str) -> bool {
     viewer.query_all_by_label(label).next().is_some()
 }
 
-/// The texts shown that contain a part.
+/// Returns the texts shown that contain a part.
 pub fn texts(viewer: &Viewer<'_>, part: &str) -> Vec<String> {
     let text = |node: egui_kittest::Node<'_>| {
         let node = node.accesskit_node();
@@ -121,7 +121,7 @@ pub fn texts(viewer: &Viewer<'_>, part: &str) -> Vec<String> {
     viewer.query_all_by(contains).map(text).collect()
 }
 
-/// Clicks what has this text.
+/// Clicks the widget with this text.
 #[track_caller]
 pub fn click(viewer: &mut Viewer<'_>, label: &str) {
     viewer.get_by_label(label).click();
@@ -129,7 +129,7 @@ pub fn click(viewer: &mut Viewer<'_>, label: &str) {
     viewer.step();
 }
 
-/// Chooses from a list.
+/// Chooses an entry from a list.
 #[track_caller]
 pub fn choose(viewer: &mut Viewer<'_>, list: &str, entry: &str) {
     viewer.get_by_role_and_label(Role::ComboBox, list).click();
@@ -138,13 +138,13 @@ pub fn choose(viewer: &mut Viewer<'_>, list: &str, entry: &str) {
     viewer.run_steps(4);
 }
 
-/// Where something is, points.
+/// Returns the rectangle of a widget, points.
 #[track_caller]
 pub fn rect_of(viewer: &Viewer<'_>, label: &str) -> Rect {
     viewer.get_by_label(label).rect()
 }
 
-/// Drags the mouse along places.
+/// Drags the mouse along positions.
 pub fn drag(viewer: &mut Viewer<'_>, places: &[Pos2]) {
     viewer.hover_at(places[0]);
     viewer.step();
@@ -165,7 +165,7 @@ pub fn press(viewer: &mut Viewer<'_>, modifiers: Modifiers, key: Key) {
     viewer.step();
 }
 
-/// Types a text into what has the focus: with the keys that a keyboard sends along.
+/// Types a text into the widget with the focus, with the key events that a keyboard sends along.
 pub fn type_text(viewer: &mut Viewer<'_>, text: &str) {
     for letter in text.chars() {
         if let Some(key) = Key::from_name(&letter.to_uppercase().to_string()) {

@@ -1,4 +1,4 @@
-//! A report with something in every part of it, and its folder.
+//! A report with content in every part, and its folder.
 
 use std::{
     collections::BTreeMap,
@@ -32,7 +32,7 @@ fn effect(id: &str, parameter: &str) -> EffectReport {
     }
 }
 
-/// Values on a grid that grow to the right, and a sixth of them after; nothing in the first cell.
+/// Returns a grid of values that increase to the right, and a sixth of them after; the first cell is empty.
 fn map(columns: usize, rows: usize, extent: [f64; 4]) -> Map {
     let value = |cell: usize| (cell > 0).then(|| (cell % columns) as f64 / columns as f64 - 0.5);
     let before: Vec<_> = (0..columns * rows).map(value).collect();
@@ -54,7 +54,7 @@ fn maps() -> Maps {
     }
 }
 
-/// A report with something in every part of it.
+/// Returns a report with content in every part.
 pub fn report() -> Report {
     let channel = ChannelGap { before: 0.2, after: 0.05, floor: 0.04 };
     let rival = EffectReport {
@@ -100,7 +100,7 @@ pub fn report() -> Report {
     }
 }
 
-/// A picture that darkens towards its edges by a share of its brightness.
+/// Returns a picture that darkens towards its edges by a fraction of its brightness.
 fn picture(darker: f32) -> RgbImage {
     RgbImage::from_fn(64, 48, |x, y| {
         let (x, y) = (x as f32 / 32.0 - 1.0, y as f32 / 24.0 - 1.0);

@@ -1,4 +1,4 @@
-//! The Gap panel in the whole window: a report is opened, looked at by clicks, drags and keys, and broken in many ways.
+//! Tests of the Gap panel in the whole window: a report is opened, explored by clicks, drags and keys, and damaged.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -32,7 +32,7 @@ type Window = common::Viewer<'static>;
 const WITHOUT: &str = "measured, 50 % of the width; then simulated without the effect";
 const WITH: &str = "measured, 50 % of the width; then simulated with the effect";
 
-/// The window with a report.
+/// Returns the window with a report.
 fn opened() -> (Window, TempDir) {
     let (folder, path) = written(&report());
     let mut window = viewer(&path);
@@ -41,7 +41,7 @@ fn opened() -> (Window, TempDir) {
     (window, folder)
 }
 
-/// The one problem that is shown.
+/// Returns the only problem shown.
 #[track_caller]
 fn problem(window: &mut Window) -> String {
     until_label(window, "Dismiss");
@@ -49,7 +49,7 @@ fn problem(window: &mut Window) -> String {
     texts.into_iter().find(|text| text.contains("reality-sim gap")).unwrap()
 }
 
-/// The colours of what is painted within something shown.
+/// Counts the rectangles painted within a widget by their fill colour.
 fn painted(window: &Window, label: &str) -> BTreeMap<[u8; 4], usize> {
     fn count(shape: &Shape, inside: eframe::egui::Rect, counts: &mut BTreeMap<[u8; 4], usize>) {
         match shape {
@@ -177,7 +177,7 @@ fn another_channel_has_other_maps_and_another_unit() {
     let legend = |window: &Window| texts(window, " to ").into_iter().find(|text| text.starts_with('−'));
     let (geometry, pixels) = (painted(&window, name), legend(&window).unwrap());
     assert!(pixels.ends_with(" px"), "{pixels}");
-    // By its row in the table, by the keys, and by the list, whose entries come after that row.
+    // The channel is chosen by its row in the table, by the keys, and by the list, whose entries come after that row.
     window.get_by_role_and_label(Role::Button, "Photometry").click();
     window.run();
     assert!(legend(&window).is_some_and(|legend| !legend.ends_with(" px")), "{:?}", legend(&window));
