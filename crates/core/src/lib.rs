@@ -1,4 +1,4 @@
-//! Where a camera was when it took a picture of a soccer field: camera models, the field, recordings, preprocessing,
+//! Localization of a camera from its pictures of a soccer field: camera models, the field, recordings, preprocessing,
 //! observation models and the particle filter of Reality Sim, on the CPU.
 //!
 //! | what | where |
@@ -12,14 +12,14 @@
 //! | particles: motion, weights, resampling, estimate | [`filter::ParticleFilter`], [`filter::FilterConfig`] |
 //! | an exhaustive search of the field | [`search::GlobalSearch`] |
 //! | sub-pixel fits with covariance, whole trajectories | [`refine::Refiner`], [`refine::smooth_trajectory`] |
-//! | all of it together, picture by picture | [`localization::Localizer`], [`localization::Observation`] |
-//! | a picture drawn from others | [`warp::Warper`], [`warp::blend`] |
+//! | everything together, picture by picture | [`localization::Localizer`], [`localization::Observation`] |
+//! | a picture warped from others | [`warp::Warper`], [`warp::blend`] |
 //! | the devices that compute | [`backend::Backend`], [`backend::CpuBackend`] |
 //!
 //! Metres, radians and seconds everywhere; the unit is part of the name. The frames are those of [`pose`]: the world has its
-//! origin at the field's centre, x towards the opponent's goal and z up; a camera's x points right, y down, z into the scene.
-//!
-//! ```
+//! All quantities are in metres, radians and seconds; the unit is part of the name. The frames are defined in [`pose`]:
+//! the world has its origin at the field's centre, x towards the opponent's goal and z up; a camera's x points right, y
+//! down, z into the scene.
 //! use glam::DVec3;
 //! use reality_sim_core::{
 //!     camera::{Camera, Distortion},

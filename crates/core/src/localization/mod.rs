@@ -1,19 +1,19 @@
-//! The pose of a camera from its pictures, one after the other: Monte Carlo localization on a soccer field.
+//! Monte Carlo localization of a camera on a soccer field, picture by picture.
 //!
 //! | type | |
 //! |---|---|
-//! | [`Localizer`] | finds the pose of every picture as it comes; [`Localizer::builder`] makes one |
+//! | [`Localizer`] | finds the pose of every picture as it arrives; [`Localizer::builder`] makes one |
 //! | [`Observation`] | a picture with its time, odometry and mount pose |
 //! | [`Picture`] | RGB or grey; owned, shared or copied from a buffer |
 //! | [`LocalizedFrame`] | the pose of a picture, and how far to trust it |
-//! | [`Run`] | the frames of a recording, by [`Localizer::run`] |
-//! | [`Smoother`] | all frames together, by [`Localizer::smoother`] |
-//! | [`LocalizerConfig`] | every number that can be tuned |
+//! | [`Run`] | iterates over the frames of a recording, by [`Localizer::run`] |
+//! | [`Smoother`] | estimates all frames together, by [`Localizer::smoother`] |
+//! | [`LocalizerConfig`] | every tunable parameter |
 //!
-//! An update is that of a textbook (Thrun, Burgard and Fox, "Probabilistic Robotics", 2005, chapter 8): particles are moved
-//! by the odometry, weighed by the picture and resampled. Where the prediction is worth too little, or the picture
-//! contradicts it, the whole field is searched. The best pose is fitted to a fraction of a pixel, and the colours of the
-//! goals tell it from its mirror image on the field.
+//! An update follows the textbook (Thrun, Burgard and Fox, "Probabilistic Robotics", 2005, chapter 8): particles are
+//! moved by the odometry, weighed by the picture and resampled. If the prediction is too uncertain, or the picture
+//! contradicts it, the whole field is searched. The best pose is fitted with sub-pixel accuracy, and the colours of the
+//! goals tell it from its mirror pose.
 //!
 //! A camera that delivers pictures now:
 //!

@@ -1,4 +1,4 @@
-//! Files that have their name only when they are complete.
+//! Atomic writing: a file gets its name only when it is complete.
 
 use std::{
     io::{self, Write},
@@ -7,8 +7,8 @@ use std::{
 
 use super::error::{Fault, SequenceError};
 
-/// Writes a file under a temporary name in its folder, then gives it its name: whoever is killed in between, or runs
-/// out of disk, leaves the old file or none.
+/// Writes a file under a temporary name in its folder, then renames it. If the program is killed in between or the disk
+/// is full, the old file or none remains. Fails if the operating system does not allow it.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), SequenceError> {
     try_write(path, bytes).map_err(|error| SequenceError::of_file(path, Fault::Unwritable(error)))
 }
@@ -25,7 +25,7 @@ fn try_write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
-/// Temporary files are private by default; a finished file has the permissions of any other.
+/// Returns a builder of temporary files with the usual permissions; by default they are private.
 #[cfg(unix)]
 fn builder() -> tempfile::Builder<'static, 'static> {
     use std::{fs::Permissions, os::unix::fs::PermissionsExt};

@@ -1,4 +1,4 @@
-//! `camera.toml`: the lens, where the camera is mounted and how it turns light into numbers.
+//! `camera.toml`: the lens, the camera's mounting height, and how it turns light into pixel values.
 
 use std::path::Path;
 
@@ -11,17 +11,17 @@ use super::{
 };
 use crate::camera::{Camera, Distortion, ImageCircle, InvalidCamera, Opencv, OpencvFisheye};
 
-/// Higher mounts are a mistake in the file, metres.
+/// Maximum mounting height, metres; anything higher is a mistake in the file.
 const MAX_HEIGHT_M: f64 = 100.0;
 
-/// A camera as it is on the robot.
+/// Camera as mounted on the robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraSetup {
-    /// Lens and size of the picture.
+    /// Lens and picture size.
     pub camera: Camera,
     /// Nominal height of the projection centre above the carpet, metres.
     pub mount_height_m: f64,
-    /// How light becomes pixel values, where it is known.
+    /// How light becomes pixel values, if known.
     pub photometry: Option<Photometry>,
 }
 
@@ -29,7 +29,7 @@ pub struct CameraSetup {
 /// has the standard deviation `sqrt(noise_shot · v + noise_read²)`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Photometry {
-    /// A pixel value is full scale times the linear value to the power of 1 / gamma.
+    /// Gamma: a pixel value is full scale times the linear value to the power of 1 / gamma.
     pub gamma: f64,
     /// Linear values of a white line.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -46,7 +46,7 @@ pub struct Photometry {
     /// Standard deviation of the noise without light, linear.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise_read: Option<f64>,
-    /// Standard deviation of the blur by lens and sensor, pixels: of a Gaussian sampled at the pixels' centres.
+    /// Standard deviation of the blur by lens and sensor, pixels, as a Gaussian sampled at the pixels' centres.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub psf_sigma_px: Option<f64>,
 }
@@ -76,7 +76,7 @@ struct MountTable {
     height_m: f64,
 }
 
-/// As [`ImageCircle`], but other programs may add keys.
+/// Table for an [`ImageCircle`] to which other programs may add keys.
 #[derive(Serialize, Deserialize)]
 struct CircleTable {
     cx: f64,
@@ -84,13 +84,14 @@ struct CircleTable {
     radius: f64,
 }
 
-/// Reads and validates a camera file.
+/// Reads and validates a camera file. Fails if it cannot be read, or with the first value that is missing or invalid.
 pub fn read_camera(path: &Path) -> Result<CameraSetup, SequenceError> {
     read_and_parse(path, CameraSetup::from_toml)
 }
 
 impl CameraSetup {
-    /// A camera from the text of a `camera.toml`. Errors name `origin`: the file, or what else the text comes from.
+    /// Parses the text of a `camera.toml`. Fails with the first value that is missing or invalid. Errors name `origin`:
+    /// the file, or another source of the text.
     pub fn from_toml(origin: &Path, text: &str) -> Result<Self, SequenceError> {
         let table: CameraTable = parse(origin, text)?;
         let camera = build_camera(origin, text, &table)?;
@@ -109,7 +110,8 @@ impl CameraSetup {
         })
     }
 
-    /// The text of a `camera.toml` with this camera. Errors name `origin`: the file, or what else the text is for.
+    /// Returns the text of a `camera.toml` with this camera. Fails if the camera cannot be written as TOML. Errors name
+    /// `origin`: the file, or another destination of the text.
     pub fn to_toml(&self, origin: &Path) -> Result<String, SequenceError> {
         let camera = &self.camera;
         let table = CameraTable {
@@ -134,7 +136,7 @@ impl CameraSetup {
     }
 }
 
-/// The largest angle, where it is not the one that follows from the distortion.
+/// Returns the largest angle, if it differs from the one that follows from the distortion.
 fn limited_angle_rad(camera: &Camera) -> Option<f64> {
     let natural = Camera::new(
         [camera.width, camera.height],
@@ -178,7 +180,7 @@ fn build_distortion(table: &CameraTable) -> Result<Distortion, Fault> {
     }
 }
 
-/// The key in whose line the fault is shown.
+/// Returns the key in whose line the fault is shown.
 fn faulty_key(table: &CameraTable, error: &InvalidCamera) -> &'static str {
     let fits = |size| (1..=32768).contains(&size);
     match error {

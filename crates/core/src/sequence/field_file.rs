@@ -1,4 +1,4 @@
-//! `field.toml`: the field's dimensions.
+//! `field.toml`: dimensions of the field.
 
 use std::path::Path;
 
@@ -9,13 +9,14 @@ use super::{
 };
 use crate::field::FieldDimensions;
 
-/// Reads and validates a field file.
+/// Reads and validates a field file. Fails if it cannot be read, or with the first value that is missing or invalid.
 pub fn read_field(path: &Path) -> Result<FieldDimensions, SequenceError> {
     read_and_parse(path, FieldDimensions::from_toml)
 }
 
 impl FieldDimensions {
-    /// A field from the text of a `field.toml`. Errors name `origin`: the file, or what else the text comes from.
+    /// Parses the text of a `field.toml`. Fails with the first value that is missing or invalid. Errors name `origin`:
+    /// the file, or another source of the text.
     pub fn from_toml(origin: &Path, text: &str) -> Result<Self, SequenceError> {
         let field: Self = parse(origin, text)?;
         field.validate().map_err(|error| {
@@ -24,7 +25,8 @@ impl FieldDimensions {
         Ok(field)
     }
 
-    /// The text of a `field.toml` with this field. Errors name `origin`: the file, or what else the text is for.
+    /// Returns the text of a `field.toml` with this field. Fails if the field cannot be written as TOML. Errors name
+    /// `origin`: the file, or another destination of the text.
     pub fn to_toml(&self, origin: &Path) -> Result<String, SequenceError> {
         print(origin, self)
     }

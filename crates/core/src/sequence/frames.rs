@@ -1,4 +1,4 @@
-//! `frames.csv`: one line a picture.
+//! `frames.csv`: one line per picture.
 
 use std::{
     fmt::Write,
@@ -16,24 +16,24 @@ use crate::pose::{CameraPose, Pose2};
 
 const ODOMETRY_COLUMNS: [&str; 3] = ["odometry_x_m", "odometry_y_m", "odometry_yaw_rad"];
 
-/// One picture and what the robot knew when it took it.
+/// Record of one picture and of what the robot knew when it was taken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameRecord {
-    /// When the picture was taken, seconds.
+    /// Time at which the picture was taken, seconds.
     pub timestamp_s: f64,
-    /// The picture's file, relative to the sequence's folder.
+    /// Picture file, relative to the sequence's folder.
     pub image: PathBuf,
-    /// Dead-reckoned from the start of the recording, where the robot has odometry: its own frame, not the field's.
+    /// Pose by dead reckoning since the start of the recording, in the odometry's own frame, if the robot has odometry.
     pub odometry: Option<Pose2>,
-    /// The camera's depression below the horizon, from the IMU and the joints, radians.
+    /// Pitch of the camera from joints and IMU: depression of the optical axis below the horizon, radians.
     pub pitch_rad: f64,
-    /// The camera's roll, clockwise seen from behind, from the IMU and the joints, radians.
+    /// Roll of the camera from joints and IMU, clockwise seen from behind the camera, radians.
     pub roll_rad: f64,
-    /// The camera's pose by other means than the pictures, as motion capture, where it is known.
+    /// Pose of the camera from a source other than the pictures, such as motion capture, if known.
     pub reference_pose: Option<CameraPose>,
 }
 
-/// Frames from the text of their file, without reference poses, which stand in another one.
+/// Parses the text of the file, without reference poses, which are in a file of their own.
 pub(super) fn parse_frames(path: &Path, text: &str) -> Result<Vec<FrameRecord>, SequenceError> {
     let mut reader =
         ReaderBuilder::new().has_headers(false).flexible(true).trim(Trim::All).from_reader(text.as_bytes());
@@ -69,7 +69,7 @@ pub(super) fn parse_frames(path: &Path, text: &str) -> Result<Vec<FrameRecord>, 
     Ok(frames)
 }
 
-/// The text of the frames' file.
+/// Returns the text of the file.
 pub(super) fn print_frames(path: &Path, frames: &[FrameRecord]) -> Result<String, SequenceError> {
     let with_odometry = frames.iter().filter(|frame| frame.odometry.is_some()).count();
     if with_odometry != 0 && with_odometry != frames.len() {
@@ -102,13 +102,13 @@ fn print_frame(frame: &FrameRecord, image: &str) -> String {
     line
 }
 
-/// A name as a field of a table, in quotation marks where it needs them.
+/// Returns a name as a field of a table, in quotation marks if it needs them.
 fn quoted(name: &str) -> String {
     let needs_quotes = name.contains([',', '"', '\n', '\r']);
     if needs_quotes { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }
 
-/// The line of the record that starts at or after an offset: the blank lines and line ends before it do not count.
+/// Returns the line of the record that starts at or after an offset, skipping blank lines and line ends before it.
 fn record_line(text: &str, offset: u64) -> usize {
     let bytes = text.as_bytes();
     let start = usize::try_from(offset).map_or(bytes.len(), |offset| offset.min(bytes.len()));
@@ -116,7 +116,7 @@ fn record_line(text: &str, offset: u64) -> usize {
     line_of_offset(bytes, start + blank)
 }
 
-/// Where the columns are.
+/// Positions of the columns.
 struct Columns {
     count: usize,
     timestamp_s: usize,
@@ -190,7 +190,7 @@ fn find_odometry(header: &StringRecord) -> Result<Option<[usize; 3]>, Fault> {
     }
 }
 
-/// A finite number from a field.
+/// Parses a finite number from a field.
 pub(super) fn number(column: &'static str, text: &str) -> Result<f64, Fault> {
     let value: f64 = text.parse().map_err(|_| Fault::NotANumber { column, text: excerpt(text) })?;
     if value.is_finite() { Ok(value) } else { Err(Fault::NotFinite { column }) }

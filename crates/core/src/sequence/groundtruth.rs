@@ -1,4 +1,4 @@
-//! The reference pose of every frame, by timestamp.
+//! Reference poses of the frames, matched by timestamp.
 
 use std::path::Path;
 
@@ -9,11 +9,11 @@ use super::{
 };
 use crate::pose::CameraPose;
 
-/// Timestamps that differ by no more belong together, seconds: both files may be rounded to milliseconds.
+/// Maximum difference of matching timestamps, seconds: both files may be rounded to milliseconds.
 const TOLERANCE_S: f64 = 0.51e-3;
 
-/// The pose nearest in time to each frame, where one is near enough. A file without poses says nothing; poses of
-/// which none belongs to any frame are a mistake.
+/// Returns for each frame the pose nearest in time, if it is near enough. A file without poses is allowed. Fails if
+/// there are poses, but none belongs to any frame.
 pub fn match_poses(
     path: &Path,
     mut poses: Vec<StampedPose>,
@@ -35,7 +35,7 @@ pub fn match_poses(
     }
 }
 
-/// Of poses in the order of time.
+/// Returns the pose nearest in time; the poses are sorted by time.
 fn nearest(poses: &[StampedPose], timestamp_s: f64) -> Option<CameraPose> {
     let after = poses.partition_point(|pose| pose.timestamp_s < timestamp_s);
     let distance_s = |pose: &StampedPose| (pose.timestamp_s - timestamp_s).abs();

@@ -1,7 +1,7 @@
-//! Recordings: a folder with the camera, the field, one line a picture and, where it is known, where the camera was.
+//! Recordings: a folder with the camera, the field, one record per picture and, if known, the reference poses.
 //!
-//! Keys and columns that are not known are left to the programs that added them; what is missing, malformed or
-//! impossible is a [`SequenceError`] that names file, line, fault and remedy in one line.
+//! Unknown keys and columns are ignored: other programs may have added them. Anything missing, malformed or impossible
+//! is a [`SequenceError`] that names file, line, fault and remedy in one line.
 
 mod atomic;
 mod camera_file;
@@ -44,27 +44,28 @@ use crate::{
     pose::{CameraPose, Pose2},
 };
 
-/// A recording, all but its pictures in memory.
+/// Recording, loaded into memory except for its pictures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sequence {
-    /// Where it lies.
+    /// Folder of the recording.
     pub folder: PathBuf,
-    /// The text files it was read from.
+    /// Text files from which the recording was read.
     pub files: Vec<PathBuf>,
-    /// What it is called.
+    /// Name of the recording.
     pub name: String,
-    /// The camera on the robot.
+    /// Camera as mounted on the robot.
     pub setup: CameraSetup,
-    /// The field it was recorded on.
+    /// Field on which it was recorded.
     pub field: FieldDimensions,
-    /// The pictures in the order of time, at least one.
+    /// Frames in order of time, at least one.
     pub frames: Vec<FrameRecord>,
-    /// Pose of the first frame in the world, where it is known.
+    /// Pose of the first frame in the world, if known.
     pub start: Option<Pose2>,
 }
 
 impl Sequence {
-    /// Reads and validates a sequence's text files, not its pictures.
+    /// Reads and validates a sequence's text files, not its pictures. Fails if a file is missing or cannot be read, or
+    /// with the first value that is missing or invalid.
     pub fn open(folder: &Path) -> Result<Self, SequenceError> {
         check_folder(folder)?;
         let main_file = folder.join(SEQUENCE_FILE);
@@ -91,36 +92,39 @@ impl Sequence {
         })
     }
 
-    /// The reference pose of each frame, where there is one.
+    /// Returns the reference pose of each frame, if there is one.
     pub fn reference_poses(&self) -> impl ExactSizeIterator<Item = Option<CameraPose>> + Clone {
         self.frames.iter().map(|frame| frame.reference_pose)
     }
 
-    /// Whether any frame has a reference pose.
+    /// Returns whether any frame has a reference pose.
     pub fn has_reference_poses(&self) -> bool {
         self.reference_poses().any(|pose| pose.is_some())
     }
 
-    /// The picture of a frame (from 0), JPEG or PNG, in the camera's size. Grey pictures become RGB.
+    /// Loads the picture of a frame (from 0), JPEG or PNG; grey pictures become RGB. Fails if there is no such frame,
+    /// or if the picture cannot be read or does not have the camera's size.
     pub fn load_image(&self, index: usize) -> Result<RgbImage, SequenceError> {
         let camera = &self.setup.camera;
         load_picture(&self.image_path(index)?, [camera.width, camera.height])
     }
 
-    /// The bytes of a frame's picture file (frames count from 0) as they are: a whole JPEG or PNG in the camera's size, by
-    /// its header and its end. The pixels are not decoded.
+    /// Returns the bytes of a frame's picture file (frames count from 0) unchanged. Fails if there is no such frame or
+    /// the file is not a whole JPEG or PNG of the camera's size; header and end are checked, the pixels are not
+    /// decoded.
     pub fn image_bytes(&self, index: usize) -> Result<Vec<u8>, SequenceError> {
         let camera = &self.setup.camera;
         read_picture(&self.image_path(index)?, [camera.width, camera.height])
     }
 
-    /// Copies the picture of a frame (from 0) as it is into another sequence's folder, under the same name.
+    /// Copies the picture file of a frame (from 0) unchanged into another sequence's folder, under the same name. Fails
+    /// if there is no such frame, or if the file cannot be read or written.
     pub fn copy_image(&self, index: usize, folder: &Path) -> Result<(), SequenceError> {
         let from = self.image_path(index)?;
         copy_picture(&from, &folder.join(&self.frames[index].image))
     }
 
-    /// Where the picture of a frame (from 0) lies.
+    /// Returns the path of a frame's picture (from 0). Fails if there is no such frame.
     pub fn image_path(&self, index: usize) -> Result<PathBuf, SequenceError> {
         let frame = self.frames.get(index).ok_or_else(|| {
             let fault = Fault::NoSuchFrame { index, count: self.frames.len() };

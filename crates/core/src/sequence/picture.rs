@@ -1,4 +1,4 @@
-//! Pictures of a sequence: decoded within limits, encoded, copied.
+//! Pictures of a sequence: decoding within limits, encoding, copying.
 
 use std::{fs, io::Cursor, path::Path};
 
@@ -13,32 +13,32 @@ use super::{
     text::read_bytes,
 };
 
-/// A picture may take no more memory while it is decoded, and its file no more of the disk, bytes.
+/// Maximum size of a picture file, and of the memory for decoding it, bytes.
 const MAX_PICTURE_BYTES: u64 = 512 << 20;
 
-/// Quality of written JPEG files: nearly without loss for edges.
+/// Quality of written JPEG files: nearly lossless at edges.
 const JPEG_QUALITY: u8 = 95;
 
-/// Reads a JPEG or PNG picture of this size, pixels; grey pictures become RGB, transparency is left out.
+/// Reads a JPEG or PNG picture of this size, pixels; grey pictures become RGB, transparency is dropped.
 pub(super) fn load_picture(path: &Path, size: [u32; 2]) -> Result<RgbImage, SequenceError> {
     decode_image(path, &read_bytes(path, MAX_PICTURE_BYTES)?, size)
 }
 
-/// The bytes of a picture's file, once they are known to be a whole picture of this size, pixels.
+/// Reads the bytes of a picture file, and checks that they are a whole picture of this size, pixels.
 pub(super) fn read_picture(path: &Path, size: [u32; 2]) -> Result<Vec<u8>, SequenceError> {
     let bytes = read_bytes(path, MAX_PICTURE_BYTES)?;
     check_image(path, &bytes, size)?;
     Ok(bytes)
 }
 
-/// Checks that bytes are a whole JPEG or PNG of this size, pixels, by its header and its end; the pixels are not decoded.
-/// `path` is what an error calls them.
+/// Checks by header and end that bytes are a whole JPEG or PNG of this size, pixels; the pixels are not decoded. Fails
+/// if they are not. Errors name `path`.
 pub fn check_image(path: &Path, bytes: &[u8], size: [u32; 2]) -> Result<(), SequenceError> {
     check_picture(bytes, size).map_err(|fault| SequenceError::of_file(path, fault))
 }
 
-/// Writes a picture as PNG or JPEG, by the ending of the file's name, and creates its folder. The file has its name
-/// only when it is complete.
+/// Writes a picture as PNG or JPEG, by the extension of the file name, and creates its folder. The file gets its name
+/// only when it is complete. Fails if the picture cannot be encoded or written.
 pub fn save_image(path: &Path, picture: &RgbImage) -> Result<(), SequenceError> {
     let fail = |fault| SequenceError::of_file(path, fault);
     let format = ImageFormat::from_path(path).map_err(|_| fail(Fault::ImageFormat))?;
@@ -61,7 +61,7 @@ pub fn save_image(path: &Path, picture: &RgbImage) -> Result<(), SequenceError> 
     write_atomically(path, &bytes)
 }
 
-/// Copies a picture's file as it is and creates the folder that it goes to.
+/// Copies a picture file unchanged, and creates the destination folder.
 pub(super) fn copy_picture(from: &Path, to: &Path) -> Result<(), SequenceError> {
     let bytes = read_bytes(from, MAX_PICTURE_BYTES)?;
     create_parent(to)?;
@@ -74,8 +74,9 @@ fn create_parent(path: &Path) -> Result<(), SequenceError> {
     })
 }
 
-/// The picture of this size, pixels, in the bytes of a JPEG or PNG file; grey pictures become RGB, transparency is left
-/// out. Errors name `origin`: the file, or what else the bytes come from.
+/// Decodes a JPEG or PNG file of this size, pixels; grey pictures become RGB, transparency is dropped. Fails if the
+/// bytes are damaged, incomplete or a picture of another size. Errors name `origin`: the file, or another source of the
+/// bytes.
 pub fn decode_image(origin: &Path, bytes: &[u8], size: [u32; 2]) -> Result<RgbImage, SequenceError> {
     decode_picture(bytes, size).map_err(|fault| SequenceError::of_file(origin, fault))
 }
@@ -85,12 +86,12 @@ pub(super) fn decode_picture(bytes: &[u8], size: [u32; 2]) -> Result<RgbImage, F
     DynamicImage::from_decoder(decoder).map(DynamicImage::into_rgb8).map_err(|error| decode_fault(&error))
 }
 
-/// Whether the bytes are a whole picture of this size, by all but its pixels.
+/// Checks that the bytes are a whole picture of this size, without decoding its pixels.
 pub(super) fn check_picture(bytes: &[u8], size: [u32; 2]) -> Result<(), Fault> {
     checked_decoder(bytes, size).map(drop)
 }
 
-/// The size is compared before anything as large as the header claims is allocated.
+/// Returns a decoder. Compares the size first, before anything as large as the header claims is allocated.
 fn checked_decoder(bytes: &[u8], [width, height]: [u32; 2]) -> Result<impl ImageDecoder + '_, Fault> {
     let format = image::guess_format(bytes).map_err(|_| Fault::ImageFormat)?;
     let is_whole = match format {
@@ -129,7 +130,7 @@ fn decode_fault(error: &ImageError) -> Fault {
     }
 }
 
-/// Whether a PNG's chunks reach up to its last, which is empty.
+/// Returns whether a PNG's chunks reach its last one, which is empty.
 fn is_whole_png(bytes: &[u8]) -> bool {
     let mut rest = bytes.get(8..).unwrap_or_default();
     loop {
@@ -144,14 +145,14 @@ fn is_whole_png(bytes: &[u8]) -> bool {
     }
 }
 
-/// Whether a JPEG's pixels are followed by its end marker: the decoder fills what is missing with grey and says
-/// nothing. Segments before the pixels are skipped, a thumbnail has an end marker of its own.
+/// Returns whether an end marker follows the pixels of a JPEG: the decoder silently fills missing pixels with grey.
+/// Segments before the pixels are skipped, since a thumbnail has an end marker of its own.
 fn is_whole_jpeg(bytes: &[u8]) -> bool {
     const START_OF_SCAN: u8 = 0xda;
     let mut rest = bytes.get(2..).unwrap_or_default();
     loop {
         match *rest {
-            // Any number of fill bytes may stand before a marker.
+            // Any number of fill bytes may precede a marker.
             [0xff, 0xff, ..] => rest = &rest[1..],
             [0xff, START_OF_SCAN, ..] => return rest.windows(2).any(|pair| pair == [0xff, 0xd9]),
             [0xff, _, high, low, ..] => {

@@ -1,4 +1,4 @@
-//! `sequence.toml`: the recording's name, its files and where it starts.
+//! `sequence.toml`: name of the recording, its files and its start pose.
 
 use std::path::{Component, Path};
 
@@ -10,10 +10,10 @@ use super::{
 };
 use crate::pose::Pose2;
 
-/// The file of a folder that makes it a sequence.
+/// Name of the file that makes a folder a sequence.
 pub(super) const SEQUENCE_FILE: &str = "sequence.toml";
 
-/// As the file holds it.
+/// Table as the file holds it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct SequenceTable {
     pub name: String,
@@ -26,7 +26,7 @@ pub(super) struct SequenceTable {
     pub start: Option<StartTable>,
 }
 
-/// As [`Pose2`], but other programs may add keys.
+/// Table for a [`Pose2`] to which other programs may add keys.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct StartTable {
     x_m: f64,
@@ -46,7 +46,7 @@ impl From<StartTable> for Pose2 {
     }
 }
 
-/// The table from the text of its file. An empty name of the ground truth's file means that there is none.
+/// Parses the table from the text of its file. An empty name of the ground truth's file means that there is none.
 pub(super) fn parse_sequence(path: &Path, text: &str) -> Result<SequenceTable, SequenceError> {
     let mut table: SequenceTable = parse(path, text)?;
     table.groundtruth = table.groundtruth.filter(|name| !name.is_empty());
@@ -71,7 +71,7 @@ pub(super) fn parse_sequence(path: &Path, text: &str) -> Result<SequenceTable, S
     Ok(table)
 }
 
-/// Whether a relative path names something inside the folder that it is relative to.
+/// Returns whether a relative path names something inside the folder to which it is relative.
 pub(super) fn is_inside_folder(path: &Path) -> bool {
     let mut names = 0;
     for component in path.components() {

@@ -1,4 +1,4 @@
-//! Bytes and text from files, within limits.
+//! Reading of bytes and text from files, within limits.
 
 use std::{
     fs::{self, File},
@@ -8,10 +8,10 @@ use std::{
 
 use super::error::{Fault, SequenceError};
 
-/// No text file of a sequence is larger, bytes: a day at 30 frames a second fits.
+/// Maximum size of a text file of a sequence, bytes: a day at 30 frames a second fits.
 const MAX_TEXT_BYTES: u64 = 256 << 20;
 
-/// All bytes of a regular file that is not larger than the limit.
+/// Reads all bytes of a regular file that is not larger than the limit.
 pub(super) fn read_bytes(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, SequenceError> {
     let fail = |error: io::Error| SequenceError::of_file(path, read_fault(error));
     let metadata = fs::metadata(path).map_err(fail)?;
@@ -40,7 +40,7 @@ pub(super) fn read_and_parse<T>(
     parse(path, decode(path, &bytes)?)
 }
 
-/// The text of a file, without the byte order mark that some editors put in front.
+/// Decodes the text of a file, without the byte order mark that some editors put in front.
 pub(super) fn decode<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, SequenceError> {
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = line_of_offset(bytes, error.valid_up_to());
@@ -49,7 +49,7 @@ pub(super) fn decode<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, Sequen
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
 }
 
-/// The line, from 1, in which a byte lies.
+/// Returns the line, from 1, that contains a byte.
 pub(super) fn line_of_offset(bytes: &[u8], offset: usize) -> usize {
     1 + bytes.iter().take(offset).filter(|&&byte| byte == b'\n').count()
 }

@@ -1,4 +1,4 @@
-//! TOML with faults that name a line.
+//! Parsing and printing of TOML, with errors that name a line.
 
 use std::path::Path;
 
@@ -10,13 +10,13 @@ use super::{
     text::line_of_offset,
 };
 
-/// Values from a TOML text. Keys that `T` does not have are left to other programs.
+/// Parses values from a TOML text. Ignores keys that `T` does not have: they belong to other programs.
 pub(super) fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, SequenceError> {
     toml::from_str(text).map_err(|error| {
         let line = error.span().map(|span| line_of_offset(text.as_bytes(), span.start));
         let message = one_line(error.message());
         match message.strip_prefix("missing field `").and_then(|rest| rest.strip_suffix('`')) {
-            // The line is that of the table, which the file's own table does not have.
+            // The line is that of the table's header, which the top-level table does not have.
             Some(key) => {
                 let line = line.filter(|_| error.span().is_some_and(|span| span.start > 0));
                 SequenceError::at(path, line, Fault::MissingKey { key: key.to_owned() })
@@ -26,13 +26,13 @@ pub(super) fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, S
     })
 }
 
-/// The TOML text of values.
+/// Prints values as TOML text.
 pub(super) fn print<T: Serialize>(path: &Path, values: &T) -> Result<String, SequenceError> {
     toml::to_string(values)
         .map_err(|error| SequenceError::of_file(path, Fault::Toml { message: one_line(&error.to_string()) }))
 }
 
-/// The line, from 1, of a value: `["mount", "height_m"]`.
+/// Returns the line, from 1, of a value given by its keys: `["mount", "height_m"]`.
 pub(super) fn line_of_key(text: &str, keys: &[&str]) -> Option<usize> {
     let document = DeTable::parse(text).ok()?;
     let (first, rest) = keys.split_first()?;
@@ -44,18 +44,18 @@ pub(super) fn line_of_key(text: &str, keys: &[&str]) -> Option<usize> {
     Some(line_of_offset(text.as_bytes(), value.span().start))
 }
 
-/// Checks numbers of a table: a value that breaks its rule is named with its line.
+/// Checks numbers of a table, and names a value that breaks its rule with its line.
 pub(super) struct NumberCheck<'a> {
-    /// The file.
+    /// Path of the file.
     pub path: &'a Path,
-    /// The whole text.
+    /// Whole text of the file.
     pub text: &'a str,
-    /// The table in which the keys are, empty for the file's own.
+    /// Table that contains the keys; empty for the top-level table.
     pub table: &'a str,
 }
 
 impl NumberCheck<'_> {
-    /// Refuses a value that is not finite or does not fulfil the rule.
+    /// Rejects a value that is not finite or breaks the rule.
     pub(super) fn check(
         &self,
         key: &'static str,

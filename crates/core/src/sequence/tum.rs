@@ -1,4 +1,4 @@
-//! Poses as TUM files hold them: `timestamp x y z qx qy qz qw`, the rotation world from camera.
+//! Poses in TUM files: `timestamp x y z qx qy qz qw`, with the rotation world from camera.
 
 use std::{fmt::Write, path::Path};
 
@@ -14,29 +14,31 @@ use crate::pose::CameraPose;
 
 const COLUMNS: [&str; 8] = ["timestamp", "x", "y", "z", "qx", "qy", "qz", "qw"];
 
-/// A quaternion whose largest part is smaller has no direction that could be trusted.
+/// Minimum of a quaternion's largest component: below it, the quaternion has no reliable direction.
 const SMALLEST_QUATERNION: f64 = 1e-9;
 
-/// A camera pose and when it was taken.
+/// Camera pose with its timestamp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StampedPose {
-    /// Seconds.
+    /// Time at which the pose was taken, seconds.
     pub timestamp_s: f64,
-    /// Where the camera was.
+    /// Pose of the camera.
     pub pose: CameraPose,
 }
 
-/// Reads a TUM file. Comments (`#`) and blank lines are left out, quaternions are normalised; the order is kept.
+/// Reads a TUM file. Skips comments (`#`) and blank lines, normalises quaternions and keeps the order. Fails if the
+/// file cannot be read, or with the first malformed line.
 pub fn read_tum(path: &Path) -> Result<Vec<StampedPose>, SequenceError> {
     read_and_parse(path, parse_tum)
 }
 
-/// Writes a TUM file that reads back as the same poses. The file has its name only when it is complete.
+/// Writes a TUM file that reads back as the same poses. The file gets its name only when it is complete. Fails if a
+/// number is not finite or the file cannot be written.
 pub fn write_tum(path: &Path, poses: &[StampedPose]) -> Result<(), SequenceError> {
     write_atomically(path, print_tum(path, poses)?.as_bytes())
 }
 
-/// Poses from the text of their file.
+/// Parses poses from the text of their file.
 pub(super) fn parse_tum(path: &Path, text: &str) -> Result<Vec<StampedPose>, SequenceError> {
     let rows = text.lines().map(str::trim).enumerate();
     rows.filter(|(_, row)| !row.is_empty() && !row.starts_with('#'))
@@ -44,7 +46,7 @@ pub(super) fn parse_tum(path: &Path, text: &str) -> Result<Vec<StampedPose>, Seq
         .collect()
 }
 
-/// The text of the poses' file.
+/// Returns the text of the poses' file.
 pub(super) fn print_tum(path: &Path, poses: &[StampedPose]) -> Result<String, SequenceError> {
     let mut text = String::from("# timestamp x y z qx qy qz qw\n");
     for StampedPose { timestamp_s, pose } in poses {
@@ -75,7 +77,7 @@ fn parse_row(row: &str) -> Result<StampedPose, Fault> {
     Ok(StampedPose { timestamp_s, pose: CameraPose::from_world_from_camera(DVec3::new(x, y, z), rotation) })
 }
 
-/// Scales by the largest part first: the square of a large number would be infinite.
+/// Normalises a quaternion. It is divided by its largest component first: the square of a large number would overflow.
 fn unit_quaternion(parts: DVec4) -> Option<DQuat> {
     let largest = parts.abs().max_element();
     (largest >= SMALLEST_QUATERNION).then(|| DQuat::from_vec4((parts / largest).normalize()))

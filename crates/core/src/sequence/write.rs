@@ -19,9 +19,10 @@ const FRAMES_FILE: &str = "frames.csv";
 const GROUNDTRUTH_FILE: &str = "groundtruth.tum";
 
 impl Sequence {
-    /// Writes the text files into a folder, which is created where it is missing; the pictures are the caller's, see
-    /// [`Sequence::copy_image`] and [`super::save_image`]. What [`Sequence::open`] would refuse is not written;
-    /// `sequence.toml`, which makes the folder a sequence, comes last.
+    /// Writes the text files into a folder, which is created if missing. The caller writes the pictures, see
+    /// [`Sequence::copy_image`] and [`super::save_image`]. `sequence.toml`, which makes the folder a sequence, is
+    /// written last. Fails without writing anything if [`Sequence::open`] would reject the files. Fails also if a file
+    /// cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), SequenceError> {
         let files = self.texts(folder)?;
         fs::create_dir_all(folder)
@@ -29,7 +30,7 @@ impl Sequence {
         files.iter().try_for_each(|(name, text)| write_atomically(&folder.join(name), text.as_bytes()))
     }
 
-    /// Names and texts of the files, in the order in which they are written.
+    /// Returns names and texts of the files, in the order in which they are written.
     fn texts(&self, folder: &Path) -> Result<Vec<(&'static str, String)>, SequenceError> {
         let path = folder.join(CAMERA_FILE);
         let camera = self.setup.to_toml(&path)?;

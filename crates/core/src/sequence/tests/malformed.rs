@@ -1,8 +1,8 @@
-//! Every fault has a message that names file and line, in one line.
+//! Every fault has a message of one line that names file and line.
 
 use super::*;
 
-/// Opens a valid recording in which one file has another text, and checks the message.
+/// Opens a valid recording in which the text of one file is replaced, and checks the message.
 fn refuses(file: &str, text: impl AsRef<[u8]>, line: Option<usize>, parts: &[&str]) {
     let folder = folder_with(file, text);
     let error = Sequence::open(folder.path()).expect_err(&format!("{file} was accepted: {parts:?}"));
@@ -13,7 +13,7 @@ fn refuses(file: &str, text: impl AsRef<[u8]>, line: Option<usize>, parts: &[&st
     }
 }
 
-/// As [`refuses`], with one part of the valid text replaced.
+/// Works as [`refuses`], with one part of the valid text replaced.
 fn refuses_change(file: &str, valid: &str, [from, to]: [&str; 2], line: Option<usize>, parts: &[&str]) {
     assert!(valid.contains(from), "the test itself is wrong: {from:?}");
     refuses(file, valid.replacen(from, to, 1), line, parts);

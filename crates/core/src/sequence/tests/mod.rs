@@ -1,4 +1,4 @@
-//! A small valid recording, and what breaks when one thing about it is wrong.
+//! Tests of a small valid recording, and of what fails when one thing about it is wrong.
 
 mod malformed;
 mod never_panics;
@@ -74,7 +74,7 @@ pub(super) const GROUNDTRUTH: &str = "# timestamp x y z qx qy qz qw
 0.6 -1.752 0.026 0.527 -0.7875121 0.2804026 -0.1913086 0.5143929
 ";
 
-/// A valid recording without pictures, all but one file of which has this text instead.
+/// Makes a valid recording without pictures in which the text of one file is replaced.
 pub(super) fn folder_with(changed: &str, text: impl AsRef<[u8]>) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, valid) in [
@@ -94,7 +94,7 @@ pub(super) fn valid_folder() -> TempDir {
     folder_with("", "")
 }
 
-/// The message names the file, says these things and is one line.
+/// Asserts that the message names the file, contains these parts and is a single line.
 pub(super) fn assert_message(error: &SequenceError, file: &Path, parts: &[&str]) {
     let message = error.to_string();
     assert!(message.starts_with(&file.display().to_string()), "{message:?} does not name {}", file.display());

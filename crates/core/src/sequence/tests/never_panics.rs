@@ -1,4 +1,4 @@
-//! Any bytes give a value or a message of one line, never a panic. `PROPTEST_CASES` sets how many are tried.
+//! Any bytes give a value or a message of one line, never a panic. `PROPTEST_CASES` sets how many cases are tried.
 
 use image::{ExtendedColorType, ImageEncoder, codecs::jpeg::JpegEncoder, codecs::png::PngEncoder};
 use proptest::prelude::*;
@@ -89,7 +89,7 @@ fn parse<T>(bytes: &[u8], parser: impl FnOnce(&Path, &str) -> Result<T, Sequence
     result.ok()
 }
 
-/// Every reader of text, and again what it made of the bytes.
+/// Runs every reader of text, and writes and reads again what it made of the bytes.
 fn read_all(bytes: &[u8]) {
     let path = Path::new("file");
     if let Some(table) = parse(bytes, parse_sequence) {

@@ -1,10 +1,10 @@
-//! Pictures: formats, sizes, damage, hostile headers.
+//! Tests of pictures: formats, sizes, damage, hostile headers.
 
 use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb};
 
 use super::*;
 
-/// A valid recording whose first picture has these bytes.
+/// Makes a valid recording whose first picture has these bytes.
 fn with_picture(bytes: &[u8]) -> (TempDir, Sequence) {
     let folder = valid_folder();
     fs::create_dir(folder.path().join("images")).unwrap();
@@ -29,7 +29,7 @@ fn refuses(bytes: &[u8], parts: &[&str]) {
     assert_message(&error, &folder.path().join("images/0.png"), parts);
 }
 
-/// A PNG with this header and no pixels.
+/// Returns a PNG with this header and no pixels.
 fn png_header(width: u32, height: u32) -> Vec<u8> {
     let mut bytes = encode(&sample(2, 2).into(), ImageFormat::Png);
     bytes[16..20].copy_from_slice(&width.to_be_bytes());

@@ -1,4 +1,4 @@
-//! Valid recordings in all the ways in which they may be written.
+//! Tests of valid recordings, in all the ways in which they may be written.
 
 use super::*;
 use crate::camera::{Distortion, Opencv};

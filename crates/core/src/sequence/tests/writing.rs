@@ -1,4 +1,4 @@
-//! What is written reads back as the same.
+//! Whatever is written reads back as the same.
 
 use proptest::prelude::*;
 
@@ -9,7 +9,7 @@ fn open(folder: &TempDir) -> Sequence {
     Sequence::open(folder.path()).unwrap()
 }
 
-/// The largest difference of two poses in any coordinate, metres or radians.
+/// Returns the largest difference of two poses in any coordinate, metres or radians.
 fn difference(a: CameraPose, b: CameraPose) -> f64 {
     let lengths = [a.x_m - b.x_m, a.y_m - b.y_m, a.height_m - b.height_m];
     let angles = [a.yaw_rad - b.yaw_rad, a.pitch_rad - b.pitch_rad, a.roll_rad - b.roll_rad];
