@@ -16,10 +16,11 @@
 //! | a picture warped from others | [`warp::Warper`], [`warp::blend`] |
 //! | the devices that compute | [`backend::Backend`], [`backend::CpuBackend`] |
 //!
-//! Metres, radians and seconds everywhere; the unit is part of the name. The frames are those of [`pose`]: the world has its
 //! All quantities are in metres, radians and seconds; the unit is part of the name. The frames are defined in [`pose`]:
 //! the world has its origin at the field's centre, x towards the opponent's goal and z up; a camera's x points right, y
 //! down, z into the scene.
+//!
+//! ```
 //! use glam::DVec3;
 //! use reality_sim_core::{
 //!     camera::{Camera, Distortion},
