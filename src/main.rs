@@ -1,4 +1,4 @@
-//! The program `reality-sim`: one file a command in `commands/`.
+//! The program `reality-sim`, with one file per command in `commands/`.
 
 mod commands;
 
@@ -32,14 +32,14 @@ fn main() -> ExitCode {
     }
 }
 
-/// Mesa's device-select layer looks for a display at every list of adapters and complains on standard error where there
-/// is none, in the midst of our own messages. Adapters are ordered without its help.
+/// Disables Mesa's device-select layer: whenever adapters are listed without a display, it complains on standard error
+/// among the program's own messages. Adapters are ordered without its help.
 fn quiet_drivers() {
     // SAFETY: the program has no other thread yet that could read the environment at the same time.
     unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
 }
 
-/// A message without line breaks and other control characters.
+/// Replaces line breaks and other control characters of a message.
 fn one_line(message: &str) -> String {
     let printable: String =
         message.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();

@@ -1,5 +1,5 @@
-//! Which package may use which: the library must stay usable without a GPU, without a window and without what only a
-//! program needs. And what its packages hold.
+//! Rules on which package may use which: the library must stay usable without a GPU, without a window and without the
+//! dependencies of a program. Also checks the contents of the packages.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -10,10 +10,10 @@ use serde_json::Value;
 /// The root package, the program.
 const ROOT: &str = "reality-sim-cli";
 
-/// The library's package. Graphics come under it with its feature `gpu` only.
+/// Package of the library. Graphics may come only with its feature `gpu`.
 const LIBRARY: &str = "reality-sim";
 
-/// Packages that must build without graphics and without a program's dependencies whatever their features.
+/// Packages that must never depend on graphics or on a program's dependencies, whatever their features.
 const PLAIN: [&str; 6] = [
     "reality-sim-core",
     "reality-sim-db",
@@ -23,13 +23,13 @@ const PLAIN: [&str; 6] = [
     "reality-sim-gap",
 ];
 
-/// What belongs to a graphics card or a window.
+/// Dependencies that belong to a graphics card or a window.
 const GRAPHICS: [&str; 7] = ["wgpu", "wgpu-core", "winit", "egui", "eframe", "egui-wgpu", "egui-winit"];
 
-/// What belongs to a program.
+/// Dependencies that belong to a program.
 const PROGRAM: [&str; 3] = ["clap", "indicatif", "anyhow"];
 
-/// The packages of this workspace that each package may use.
+/// Packages of this workspace that each package may use.
 const MAY_USE: [(&str, &[&str]); 10] = [
     ("reality-sim-core", &[]),
     ("reality-sim-gpu", &["reality-sim-core"]),
@@ -76,7 +76,7 @@ fn cargo(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Every package of the workspace with the names of what it depends on directly, tests excluded.
+/// Returns every package of the workspace with the names of its direct dependencies, tests excluded.
 fn workspace() -> BTreeMap<String, Vec<String>> {
     let metadata: Value =
         serde_json::from_str(&cargo(&["metadata", "--no-deps", "--format-version", "1"])).unwrap();
@@ -103,7 +103,7 @@ fn packages_use_each_other_in_one_direction() {
     }
 }
 
-/// The names of a package and of all that it is built from, tests excluded.
+/// Returns the names of a package and of everything that it is built from, tests excluded.
 fn packages_under(package: &str, features: &[&str]) -> Vec<String> {
     let arguments = ["tree", "--package", package, "--edges", "normal,build", "--prefix", "none"];
     let tree = cargo(&[&arguments, features].concat());
@@ -135,7 +135,7 @@ fn the_graphics_card_comes_under_the_library_with_its_feature_but_no_window_does
     }
 }
 
-/// Shaders lie outside of the package that is built from them, which reaches them through a link.
+/// The shaders are outside the package that is built from them, which reaches them through a link.
 #[test]
 fn every_shader_is_in_the_package_that_is_built_from_it() {
     let list = cargo(&["package", "--list", "--allow-dirty", "--package", "reality-sim-gpu"]);

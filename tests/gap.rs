@@ -21,7 +21,7 @@ use reality_sim_hidden::{Course, Falloff, Hidden, Recipe, Walk};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A small recording with these effects.
+/// Records a small sequence with these effects.
 fn record(seed: u64, effects: &[Hidden]) -> (TempDir, Sequence) {
     recorded(&Recipe { effects: effects.to_vec(), ..small(seed) })
 }
@@ -53,9 +53,9 @@ fn named(report: &Report) -> Vec<&str> {
     report.effects.iter().map(|effect| effect.id.as_str()).collect()
 }
 
-/// The estimate of a parameter is within four of its standard deviations of the truth.
+/// Asserts that the estimate of a parameter is within four of its standard deviations of the truth.
 fn assert_size(report: &Report, id: &str, parameter: &str, truth: f64) {
-    // The hidden defocus is a disc, the library's a Gaussian with the same edges: a tenth wider.
+    // The hidden defocus is a disc; the library's Gaussian with the same edges is a tenth wider.
     let form = if id == "defocus" { 0.15 * truth } else { 0.0 };
     let effect = report.effects.iter().find(|effect| effect.id == id).unwrap();
     let estimate = &effect.parameters[parameter];
@@ -131,7 +131,7 @@ fn two_effects_are_both_named() {
 
 #[test]
 fn two_large_effects_that_hide_each_other_are_both_named() {
-    // Neither foretells anything for sure while the other is not in the model.
+    // The gain of neither can be predicted reliably while the other is not in the model.
     let effects =
         [Hidden::RadialDistortion { k: [0.006, 0.0, 0.0, 0.0] }, Hidden::MountRoll { angle_rad: -0.019 }];
     let (_folder, sequence) = recorded(&Recipe { frames: 40, effects: effects.to_vec(), ..small(30_042) });
@@ -168,7 +168,7 @@ fn of_two_effects_that_explain_nearly_the_same_the_one_at_work_is_named() {
     let report = reported(&sequence);
     assert_eq!(named(&report), ["black_level"], "{}", summary(&report));
     assert_size(&report, "black_level", "offset", 0.06);
-    // A tone curve of two numbers does what a black level does to two brightnesses.
+    // A tone curve of two parameters does to two brightnesses what a black level does.
     for effect in &report.effects {
         assert!(
             effect.confusable_with.iter().all(|rival| rival == "tone_curve"),
@@ -180,7 +180,7 @@ fn of_two_effects_that_explain_nearly_the_same_the_one_at_work_is_named() {
 
 #[test]
 fn lines_far_from_where_the_model_has_them_are_found_and_the_effect_named() {
-    // 22 pixels in a picture of 320: farther than lines are looked for.
+    // The shift is 22 pixels in a picture 320 pixels wide: beyond the search range for lines.
     let (dx_px, dy_px) = (-15.0, 16.0);
     let (_folder, sequence) = record(23, &[Hidden::PrincipalPoint { dx_px, dy_px }]);
     let report = reported(&sequence);
@@ -232,7 +232,7 @@ fn what_no_effect_explains_is_called_unknown_and_located() {
             _ => None,
         })
         .collect();
-    // Lines of the two goal areas, and no other ones.
+    // Only lines of the two goal areas are missing.
     let field = &sequence.field;
     let is_of_goal_area = |[x, y]: &[f64; 2]| {
         x.abs() > 0.5 * field.length_m - field.goal_area_length_m - 1e-6
@@ -297,7 +297,7 @@ fn differences_are_shown_where_the_recorded_picture_has_the_field() {
     let analysis = analysed(&sequence, &model, &Options::default());
     let Pictures { measured, field, .. } =
         Pictures::new(&recording_of(&sequence), &model, &analysis).unwrap();
-    // Carpet is the only thing in the hall that is green.
+    // The carpet is the only green thing in the hall.
     let green = |shown: u8| {
         let shown = measured.pixels().zip(field.pixels()).filter(|(_, mask)| mask.0[0] == shown);
         let is_green: Vec<bool> =
@@ -316,7 +316,7 @@ fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
 
-/// The program fails with one line that has all these parts.
+/// Asserts that the program fails with one line that contains all these parts.
 fn assert_refused(arguments: &[&str], parts: &[&str]) {
     let output = program(arguments);
     assert_eq!(output.status.code(), Some(1), "{arguments:?}");
@@ -349,7 +349,7 @@ fn the_program_writes_a_report_a_page_pictures_and_a_model_that_it_takes_again()
     }
     assert!(written["not_found"][0]["detection_limit"]["value"].as_f64().unwrap() > 0.0);
     let page = fs::read_to_string(out.join("report.html")).unwrap();
-    // Its pictures are inside: nothing is fetched.
+    // Its pictures are embedded: nothing is fetched.
     let fetched =
         page.match_indices("src=\"").all(|(at, _)| page[at..].starts_with("src=\"data:image/jpeg;base64,"));
     assert!(page.contains("mount_pitch") && fetched && !page.contains("href="), "self-contained");
@@ -417,7 +417,7 @@ fn what_the_camera_file_does_not_tell_is_not_judged() {
         assert_eq!(cause, Some(UnobservableCause::MissingInput { input }), "{id}");
     }
     assert_eq!(named(&report), Vec::<&str>::new());
-    // Of a given effect nothing is learnt either: it stays.
+    // A given effect is not estimated either: it stays as it is.
     let vignetting = reality_sim::sensor::effect("vignetting").unwrap();
     let given = Model::default().with(vignetting, [0.3]);
     let extended = analysed(&sequence, &given, &Options::default()).model;

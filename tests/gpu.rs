@@ -1,5 +1,5 @@
-//! The graphics device through the program and the library: the same walk with the same result. Needs an adapter; the
-//! package mesa-vulkan-drivers has one that runs on the processor.
+//! The graphics device through the program and the library: the same walk must give the same result. Needs an adapter; the
+//! package mesa-vulkan-drivers provides one that runs on the processor.
 
 #![cfg(feature = "gpu")]
 #![allow(clippy::print_stdout, reason = "a test")]
@@ -49,12 +49,13 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Both filters go their own way over the whole walk. One survivor more or less of a particle changes the random numbers
-/// that all after it get, so they part within a few pictures; what they find must be worth the same.
+/// Both filters run independently over the whole walk. One survivor more or less of a particle changes the random numbers
+/// of all particles after it, so the filters diverge within a few pictures; their results must be equally good.
 #[test]
 fn the_walk_is_tagged_as_well_as_on_the_cpu() {
     let (sequence, gpu) = (walk(), gpu());
-    // Half the pictures agree to the first number, 95 % to the second: the filters' own noise; `contrast` is fitted.
+    // Half the pictures agree to the first number, 95 % to the second: this is the filters' own noise, and `contrast` is
+    // refined.
     for (kind, median_m, p95_m) in [
         (ObservationKind::Gauss, 0.005, 0.015),
         (ObservationKind::Distance, 0.01, 0.025),
@@ -80,15 +81,16 @@ fn the_walk_is_tagged_as_well_as_on_the_cpu() {
     }
 }
 
-/// From the same particles, the same picture and the same random numbers the best of five iterations' particles is the same
-/// to a tolerance in at least 95 of 100 pictures, and in most of them the very same. In the others a particle whose expected copies lie at a whole number left one survivor more or less, which moved those behind it to
-/// other random numbers. The residual scheme rounds every particle's copies, the systematic one hardly any.
+/// With the same particles, the same picture and the same random numbers, the best particle of five iterations agrees to a
+/// tolerance in at least 95 of 100 pictures, and is identical in most of them. In the others, a particle whose expected
+/// number of copies is nearly whole had one survivor more or less, which gave other random numbers to all particles after
+/// it. The residual scheme rounds every particle's copies, the systematic one hardly any.
 #[test]
 fn the_best_particle_is_that_of_the_cpu() {
     let (sequence, gpu) = (walk(), gpu());
     let Sequence { setup, field, .. } = &sequence;
     let preprocessor = Preprocessor::new(&setup.camera, field.line_width_m);
-    // Metres. Many poses of the distance model weigh nearly the same: it is 2 cm off in the mean.
+    // Tolerances in metres. Many poses of the distance model have nearly equal weights: it is 2 cm off on average.
     for (kind, tolerance_m) in [
         (ObservationKind::Gauss, 0.001),
         (ObservationKind::Distance, 0.015),

@@ -1,4 +1,4 @@
-//! The library as others depend on it: `tests/minimal_user` is a package outside the workspace.
+//! The library as a dependency of others: `tests/minimal_user` is a package outside the workspace.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -9,22 +9,22 @@ use std::{
     process::Command,
 };
 
-/// What nobody should get who only wants the library.
+/// Dependencies that nobody should get who only wants the library.
 const FORBIDDEN: [&str; 7] = ["clap", "indicatif", "anyhow", "wgpu", "winit", "egui", "eframe"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The package's folder; it gets the versions of the workspace's `Cargo.lock`, which are those at hand without a network.
+/// Returns the package's folder, with the versions of the workspace's `Cargo.lock`, which are available without a network.
 fn user() -> PathBuf {
     let folder = root().join("tests/minimal_user");
     fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
     folder
 }
 
-/// What a cargo command prints on standard output. It compiles into the workspace's target folder, where most of what is
-/// needed lies already.
+/// Runs a cargo command and returns its standard output. It compiles into the workspace's target folder, which already
+/// contains most of what is needed.
 fn cargo(folder: &Path, arguments: &[&str]) -> String {
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
     let output = Command::new(env!("CARGO"))
@@ -43,7 +43,7 @@ fn cargo(folder: &Path, arguments: &[&str]) -> String {
 fn a_package_outside_the_workspace_gets_a_picture_without_a_programs_or_a_windows_dependencies() {
     let folder = user();
     let tree = cargo(&folder, &["tree", "--edges", "normal,build", "--prefix", "none"]);
-    // Name, version; those that were printed before are marked behind that.
+    // Each line has name and version; packages printed before are marked after that.
     let packages: BTreeSet<Vec<&str>> =
         tree.lines().map(|line| line.split_whitespace().take(2).collect()).collect();
     println!("the library pulls in {} packages, itself among them", packages.len() - 1);

@@ -1,7 +1,9 @@
-//! What the program writes for recordings that do not change, held against what it wrote before: a redesign changes none
-//! of it. `PINNED=write cargo test --test pinned` writes `tests/pinned/` anew; look at the difference before it is committed.
+//! Comparison of the program's output for unchanging recordings with the pinned output of earlier versions, which a
+//! redesign must not change. `PINNED=write cargo test --test pinned` writes `tests/pinned/` anew; review the difference
+//! before committing it.
 //!
 //! On one processor the same seed gives the same bits. Other processors round differently (fused multiplications), which a
+//! particle filter's resampling amplifies to less than a millimetre: hence the tolerances.
 //! particle filter's resampling amplifies to less than a millimetre: hence the tolerances.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
@@ -17,15 +19,15 @@ use reality_sim_hidden::{Hidden, Random, Recipe};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Numbers of a report agree to this part of their size.
+/// Relative tolerance of the numbers in a report.
 const RELATIVE: f64 = 1e-3;
-/// Numbers this small are rounding.
+/// Size below which a number is rounding.
 const NOTHING: f64 = 1e-9;
-/// Places agree to this, metres, angles to this, radians: a tenth of the tags' own error.
+/// Tolerance of places, metres, and angles, radians: a tenth of the localization error.
 const POSE: f64 = 1e-3;
-/// Grey levels by which the mean colours of 8 × 8 pixels agree.
+/// Tolerance of the mean colours of 8 × 8 pixels, grey levels.
 const LEVELS: u8 = 1;
-/// Keys whose values are times that were measured.
+/// Keys whose values are measured times.
 const MEASURED_TIMES: [&str; 1] = ["seconds_per_frame"];
 
 fn root() -> &'static Path {
@@ -39,7 +41,7 @@ fn run(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The file of what was written before; `None` where it has just been written anew.
+/// Returns the path of the pinned file; `None` if it has just been written anew.
 fn pinned(name: &str, write: impl FnOnce(&Path)) -> Option<PathBuf> {
     let path = root().join("tests/pinned").join(name);
     if env::var_os("PINNED").is_some_and(|value| value == "write") {
@@ -57,7 +59,7 @@ fn assert_text(name: &str, text: &str, agree: impl Fn(&str, &str)) {
     }
 }
 
-/// Both texts have the same words, and numbers that agree.
+/// Asserts that both texts have the same words, and numbers that agree.
 fn same_numbers(name: &str, before: &str, now: &str, agree: impl Fn(f64, f64) -> bool) {
     let words = |text: &str| -> Vec<String> {
         text.split([' ', ',', '\n']).filter(|word| !word.is_empty()).map(str::to_owned).collect()
@@ -85,7 +87,7 @@ fn is_as_likely(before: f64, now: f64) -> bool {
 fn assert_value(place: &str, before: &Value, now: &Value) {
     match (before, now) {
         (Value::Object(before), Value::Object(now)) => {
-            // Keys may be added, none may go.
+            // Keys may be added but not removed.
             for key in before.keys() {
                 assert!(now.contains_key(key), "{place}.{key} is gone");
             }
@@ -115,7 +117,7 @@ fn assert_json(name: &str, text: &str) {
     });
 }
 
-/// The mean colours of 8 × 8 pixels.
+/// Compares the mean colours of 8 × 8 pixels with the pinned ones.
 fn assert_picture(name: &str, picture: &RgbImage) {
     let (width, height) = (picture.width() / 8, picture.height() / 8);
     let small = imageops::resize(picture, width, height, imageops::FilterType::Triangle);
@@ -127,7 +129,7 @@ fn assert_picture(name: &str, picture: &RgbImage) {
     assert_eq!(different, 0, "{name}: so many numbers differ");
 }
 
-/// Everything that `gap` writes for a recording.
+/// Compares everything that `gap` writes for a recording.
 fn assert_gap(name: &str, recording: &Path) {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("report");
@@ -141,7 +143,7 @@ fn assert_gap(name: &str, recording: &Path) {
     assert_picture(&format!("{name}/after.png"), &drawn);
 }
 
-/// A small ray-traced recording with this effect, if any.
+/// Makes a small ray-traced recording with this effect, if any.
 fn hidden(seed: u64, effect: Option<(&str, f64)>) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let effects = effect.map(|(id, multiple)| Hidden::of(id, multiple, &mut Random::new(seed)).unwrap());
@@ -165,7 +167,8 @@ fn assert_tags(name: &str, options: &[&str]) {
     });
     let details = fs::read_to_string(details).unwrap();
     assert_text(&format!("{name}.csv"), &details, |before, now| {
-        // The columns up to the standard deviations are the pose's; the effective sample size is a tenth's matter.
+        // The columns up to the standard deviations hold the pose; the effective sample size needs to agree only to a
+        // tenth.
         same_numbers(name, before, now, |before, now| {
             (before - now).abs() < POSE + 0.1 * before.abs().max(now.abs())
         });

@@ -25,14 +25,14 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-/// The one JSON object on standard output.
+/// Returns the one JSON object on standard output.
 fn tag_json(arguments: &[&str]) -> Value {
     let output = tag(Path::new(WALK), &[arguments, &["--json"]].concat());
     assert!(output.status.success(), "{}", text(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// Error statistics of the first 30 pictures.
+/// Returns the error statistics of the first 30 pictures.
 fn error_of(observation: &str) -> (f64, u64) {
     let report = tag_json(&["--observation", observation, "--frames", "0..30"]);
     let error = &report["error"];
@@ -180,7 +180,7 @@ fn another_field_and_camera_can_be_given() {
     }
 }
 
-/// A copy of the beginning of the demonstration walk, to be broken.
+/// Copy of the beginning of the demonstration walk, to be broken.
 struct Walk(TempDir);
 
 impl Walk {
@@ -214,7 +214,8 @@ impl Walk {
     }
 }
 
-/// Exit code 1, nothing on standard output, one line on standard error that holds all `words`; no file `out`.
+/// Asserts exit code 1, nothing on standard output, one line on standard error that contains all `words`, and no file
+/// `out`.
 fn assert_fails(sequence: &Path, arguments: &[&str], words: &[&str]) {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("poses.tum");
@@ -287,7 +288,7 @@ fn broken_pictures_are_named() {
 
 #[test]
 fn outputs_without_a_place_are_refused_before_the_work_starts() {
-    // A missing picture: whoever complains of the output first has not looked at it.
+    // A picture is missing: a complaint about the output shows that no picture was read before.
     let walk = Walk::new(1);
     fs::remove_file(walk.path("images/000000.jpg")).unwrap();
     let below_a_file = walk.path("camera.toml/poses.tum");

@@ -1,4 +1,4 @@
-//! What a recording's tags are worth, on the demonstration walk: from nowhere, after being carried, and smoothed.
+//! Accuracy of localization on the demonstration walk: with unknown start, after kidnapping, and smoothed.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ fn walk() -> Sequence {
     Sequence::open(Path::new("assets/walk")).expect("the demonstration walk is part of the repository")
 }
 
-/// The frames of a range, as a recording of its own.
+/// Cuts a range of frames out as a recording of its own.
 fn cut(mut sequence: Sequence, frames: std::ops::Range<usize>) -> Sequence {
     sequence.frames = sequence.frames[frames].to_vec();
     sequence
@@ -69,7 +69,7 @@ fn goals_of_two_colours_tell_the_halves_apart() {
     assert!(tagged.iter().all(|frame| frame.mirrored_probability == 0.5), "nothing tells them apart");
 }
 
-/// Carried while nobody looked: pictures are missing, and the odometry starts again.
+/// The robot is carried between pictures: pictures are missing, and the odometry starts again.
 #[test]
 fn found_again_after_being_carried_and_never_sure_while_wrong() {
     for kind in [ObservationKind::Contrast, ObservationKind::Gauss, ObservationKind::Distance] {
@@ -85,14 +85,14 @@ fn found_again_after_being_carried_and_never_sure_while_wrong() {
             let truth = sequence.frames[index].reference_pose.expect("exact truth");
             let right = is_right(frame.pose, truth);
             assert!(right || !frame.sure, "{kind:?}: sure and wrong at picture {index}");
-            // Which half it was put down in, only the colours of the goals tell, once one is in view.
+            // Only the colours of the goals tell in which half it was put down, once one is in view.
             let found = right || is_right(frame.pose.mirrored(), truth);
             assert!(found || (10..20).contains(&index), "{kind:?}: lost at picture {index}");
         }
     }
 }
 
-/// Pose errors in units of their covariance, against the quantiles of χ² with three degrees of freedom.
+/// Compares pose errors, in units of their covariance, with the quantiles of χ² with three degrees of freedom.
 #[test]
 fn smoothed_poses_are_exact_and_their_covariances_honest() {
     let sequence = walk();
@@ -118,7 +118,7 @@ fn smoothed_poses_are_exact_and_their_covariances_honest() {
         }
     }
     assert!(worst_m < 0.016, "{worst_m} m");
-    // Sixty poses: two standard errors of a count are 8, 5 and 4.
+    // For sixty poses, two standard errors of a count are 8, 5 and 4.
     let [half, ninety, ninety_five] = inside;
     assert!((20..=46).contains(&half), "{half} of 60 in the 50 % region");
     assert!(

@@ -1,4 +1,4 @@
-//! `reality-sim viewer`, run as users run it: without a display, and in a window on a display of its own.
+//! `reality-sim viewer`, run as users run it: without a display, and in a window on its own display.
 
 #![cfg(all(feature = "viewer", target_os = "linux"))]
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
@@ -26,10 +26,10 @@ use x11rb::{
 
 const WALK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/walk");
 
-/// Longer than anything takes on a busy machine.
+/// Time limit, longer than anything takes on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(300);
 
-/// Gives back the first answer that is not `None`.
+/// Waits for the first answer that is not `None` and returns it.
 #[track_caller]
 fn wait_for<T>(what: &str, mut answer: impl FnMut() -> Option<T>) -> T {
     let started = Instant::now();
@@ -42,7 +42,7 @@ fn wait_for<T>(what: &str, mut answer: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-/// A process that ends with the test.
+/// Process that is killed at the end of the test.
 struct Process(Child);
 
 impl Drop for Process {
@@ -53,15 +53,15 @@ impl Drop for Process {
     }
 }
 
-/// A display without a screen.
+/// Display without a screen.
 struct Display {
-    /// As in `DISPLAY`.
+    /// Name of the display, as in `DISPLAY`.
     name: String,
     _server: Process,
 }
 
 impl Display {
-    /// On a number that is free.
+    /// Starts a display with a free number.
     fn start() -> Self {
         let mut command = Command::new("Xvfb");
         command.args(["-displayfd", "1", "-screen", "0", "1400x900x24", "-nolisten", "tcp"]);
@@ -79,7 +79,7 @@ impl Display {
     }
 }
 
-/// The folders that the program may write to.
+/// Folders that the program may write to.
 struct Home(TempDir);
 
 impl Home {
@@ -95,7 +95,7 @@ impl Home {
         self.0.path().join(name)
     }
 
-    /// `reality-sim viewer` with these folders, and without a display.
+    /// Makes a command `reality-sim viewer` with these folders, and without a display.
     fn viewer(&self, open: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_reality-sim"));
         command.args(["viewer", open]).current_dir(self.path("here"));
@@ -113,7 +113,7 @@ impl Home {
         command
     }
 
-    /// The first complete screenshot.
+    /// Returns the first complete screenshot.
     fn screenshot(&self) -> Option<RgbImage> {
         let files = fs::read_dir(self.path("here")).unwrap().map(|file| file.unwrap().path());
         files.filter(|path| path.extension().is_some_and(|kind| kind == "png")).find_map(|path| {
@@ -122,13 +122,13 @@ impl Home {
         })
     }
 
-    /// What is remembered for the next start.
+    /// Returns the settings that are remembered for the next start.
     fn settings(&self) -> Option<String> {
         fs::read_to_string(self.path("data").join("reality-sim/app.ron")).ok()
     }
 }
 
-/// The window, its program and its display.
+/// Window of a viewer with its program and its display.
 struct Viewer {
     process: Process,
     complaints: PathBuf,
@@ -155,7 +155,7 @@ impl Viewer {
         Self { process, complaints, connection, root, window }
     }
 
-    /// Presses Ctrl and a letter once the window listens, as often as it takes.
+    /// Presses Ctrl and a letter once the window listens, again and again until `happens` returns something.
     fn press_ctrl_until<T>(
         &mut self,
         letter: char,
@@ -174,7 +174,7 @@ impl Viewer {
     }
 
     fn press_ctrl(&self, detail: Keycode) {
-        // The window may not be on the screen yet, or not any more: then the next try counts.
+        // The window may not be on the screen yet, or no longer: then the next attempt counts.
         let _ = self.connection.set_input_focus(InputFocus::PARENT, self.window, x11rb::CURRENT_TIME);
         for response_type in [KEY_PRESS_EVENT, KEY_RELEASE_EVENT] {
             let event = KeyPressEvent {
@@ -197,7 +197,7 @@ impl Viewer {
         let _ = self.connection.flush();
     }
 
-    /// The key that gives a letter on this display's keyboard.
+    /// Returns the key that gives a letter on this display's keyboard.
     fn keycode(&self, letter: char) -> Keycode {
         let setup = self.connection.setup();
         let (first, last) = (setup.min_keycode, setup.max_keycode);
@@ -222,20 +222,20 @@ impl Viewer {
         self.process.0.try_wait().unwrap()
     }
 
-    /// What the program wrote to standard error.
+    /// Returns what the program wrote to standard error.
     fn complaints(&self) -> String {
         fs::read_to_string(&self.complaints).unwrap()
     }
 }
 
-/// A window's title; empty for a window that has none, or is gone.
+/// Returns a window's title; empty if the window has none, or is gone.
 fn title(connection: &RustConnection, window: Window) -> String {
     let property = connection.get_property(false, window, AtomEnum::WM_NAME, AtomEnum::ANY, 0, 64);
     let reply = property.ok().and_then(|property| property.reply().ok());
     reply.map(|reply| String::from_utf8_lossy(&reply.value).into_owned()).unwrap_or_default()
 }
 
-/// Runs a viewer that must not open a window, and gives back its one line on standard error.
+/// Runs a viewer that must not open a window, and returns its one line on standard error.
 fn refusal(command: &mut Command) -> String {
     let complaints = tempfile::NamedTempFile::new().unwrap();
     let mut process = Process(command.stderr(complaints.reopen().unwrap()).spawn().unwrap());
@@ -295,7 +295,7 @@ fn the_window_opens_gives_a_screenshot_and_remembers_what_was_set() {
 #[test]
 fn a_home_that_cannot_be_written_to_does_no_harm() {
     let (home, display) = (Home::new(), Display::start());
-    // Not a folder without permissions: root may write to those.
+    // A file takes the folder's place; a folder without permissions would not do, since root may write to those.
     fs::remove_dir(home.path("data")).unwrap();
     fs::write(home.path("data"), "a file").unwrap();
     let mut viewer = Viewer::start(&home, &display);

@@ -1,4 +1,4 @@
-//! The options and commands that help against an error of the library, which knows nothing of a command line.
+//! Options and commands that remedy errors of the library, which knows nothing of a command line.
 
 #[cfg(feature = "gpu")]
 use reality_sim::gpu::GpuError;
@@ -11,7 +11,7 @@ use reality_sim::{
 #[cfg(feature = "viewer")]
 use reality_sim_viewer::ViewerError;
 
-/// What to type, in a few words; `None` where the message says all.
+/// Returns what to type, in a few words; `None` if the message says everything.
 pub fn advice(error: &anyhow::Error) -> Option<&'static str> {
     error.chain().find_map(|cause| {
         if let Some(error) = cause.downcast_ref() {

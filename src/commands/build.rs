@@ -1,4 +1,4 @@
-//! `reality-sim build`: recordings with their poses into a database.
+//! `reality-sim build`: stores recordings with their poses in a database.
 
 use std::{path::PathBuf, sync::Arc};
 
@@ -54,14 +54,14 @@ pub struct BuildArgs {
 struct Report {
     database: String,
     sequences: Vec<SequenceReport>,
-    /// In the database now.
+    /// Number of images now in the database.
     images: usize,
-    /// Where it was measured now.
+    /// The hall, if it was measured in this run.
     #[serde(skip_serializing_if = "Option::is_none")]
     hall: Option<HallReport>,
 }
 
-/// Walls, ceiling and goals, from the field's centre.
+/// Distances of walls, ceiling and goals from the field's centre.
 #[derive(Serialize)]
 struct HallReport {
     min_x_m: f64,
@@ -75,18 +75,18 @@ struct HallReport {
 #[derive(Serialize)]
 struct SequenceReport {
     name: String,
-    /// `groundtruth`, `file` or `filter`.
+    /// Source of the poses: `groundtruth`, `file` or `filter`.
     poses: &'static str,
     added: usize,
     already_there: usize,
-    /// Left out.
+    /// Number of frames that were left out.
     without_pose: usize,
-    /// Of storing alone.
+    /// Speed of storage alone.
     images_per_second: f64,
 }
 
 impl BuildArgs {
-    /// Refuses one file of poses for several sequences.
+    /// Refuses a single file of poses for several sequences.
     pub fn check_usage(&self) -> Result<(), String> {
         if self.poses.is_some() && self.sequences.len() > 1 {
             return Err(
@@ -144,7 +144,7 @@ impl BuildArgs {
     }
 }
 
-/// Says which options help.
+/// Adds the options that remedy an error.
 fn with_options(error: PipelineError) -> anyhow::Error {
     match error {
         PipelineError::NothingSure { folder } => anyhow!(

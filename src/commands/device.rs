@@ -1,4 +1,4 @@
-//! The device that a command computes on, chosen once.
+//! Choice of the device that a command computes on.
 
 use std::sync::Arc;
 
@@ -25,14 +25,14 @@ enum Choice {
     Gpu,
 }
 
-/// A device that was chosen.
+/// Device that was chosen.
 pub struct Device {
     pub backend: Arc<dyn Backend>,
-    /// `cpu` or `gpu`.
+    /// Name of the backend: `cpu` or `gpu`.
     pub name: &'static str,
-    /// The graphics adapter's name, where it is one.
+    /// Name of the graphics adapter, if the device is one.
     pub adapter: Option<String>,
-    /// Why it is not the graphics card, in a sentence; empty where nobody would ask.
+    /// Reason why the device is not the graphics card, in a sentence; `None` if nobody would ask.
     pub reason: Option<String>,
 }
 
@@ -53,7 +53,7 @@ impl BackendArgs {
         }
     }
 
-    /// The processor, for what no graphics card does.
+    /// Returns the processor, for an option that no graphics card supports.
     pub fn processor_only(&self, option: &str) -> anyhow::Result<Device> {
         if self.backend == Choice::Gpu || self.adapter.is_some() {
             bail!("{option}: is not computed on the graphics card: leave it out, or use --backend cpu");
@@ -61,7 +61,7 @@ impl BackendArgs {
         Ok(Device::processor(None))
     }
 
-    /// The device asked for.
+    /// Opens the requested device.
     #[cfg(feature = "gpu")]
     pub fn device(&self) -> anyhow::Result<Device> {
         use reality_sim::gpu::{GpuBackend, GpuContext};
@@ -84,26 +84,26 @@ impl BackendArgs {
         Ok(Device { backend, name: "gpu", adapter, reason: None })
     }
 
-    /// The processor: this build knows nothing else.
+    /// Returns the processor: this build supports nothing else.
     #[cfg(not(feature = "gpu"))]
     pub fn device(&self) -> anyhow::Result<Device> {
         self.processor_only("--backend gpu")
     }
 }
 
-/// The error of a device that cannot be opened, with the device's own error in it where there is one.
+/// Wraps the error of a device that cannot be opened; keeps the device's own error, if there is one.
 #[cfg(feature = "gpu")]
 pub fn backend_error(error: anyhow::Error) -> BackendError {
     error.downcast::<reality_sim::gpu::GpuError>().map_or_else(BackendError::new, BackendError::from)
 }
 
-/// The error of a device that cannot be opened.
+/// Wraps the error of a device that cannot be opened.
 #[cfg(not(feature = "gpu"))]
 pub fn backend_error(error: anyhow::Error) -> BackendError {
     BackendError::new(error)
 }
 
-/// The devices that a window lets choose from, the usual one first.
+/// Lists the devices that the viewer offers, the default first.
 #[cfg(feature = "viewer")]
 pub fn all() -> Vec<reality_sim_viewer::Device> {
     let choose = |name: String, backend: Choice, adapter: Option<String>| {
@@ -119,13 +119,13 @@ pub fn all() -> Vec<reality_sim_viewer::Device> {
     devices
 }
 
-/// The graphics adapters of this machine.
+/// Returns the names of this machine's graphics adapters.
 #[cfg(all(feature = "viewer", feature = "gpu"))]
 fn adapter_names() -> Vec<String> {
     reality_sim::gpu::adapters().into_iter().map(|adapter| adapter.name).collect()
 }
 
-/// This build knows none.
+/// Returns no names: this build does not support graphics adapters.
 #[cfg(all(feature = "viewer", not(feature = "gpu")))]
 fn adapter_names() -> Vec<String> {
     Vec::new()

@@ -1,4 +1,4 @@
-//! `reality-sim doctor`: which graphics adapters there are, and whether they compute what the CPU computes.
+//! `reality-sim doctor`: lists the graphics adapters and checks whether they compute what the CPU computes.
 
 use std::{fmt::Write, sync::Arc, time::Instant};
 
@@ -16,10 +16,10 @@ use reality_sim::{
 
 use super::output::{print, print_json};
 
-/// Scenes that every model and every lens is compared on.
+/// Number of scenes on which every model and every lens is compared.
 const SCENES: u64 = 4;
 
-/// Pictures that are drawn from others for comparison: from none to all sources, once.
+/// Number of pictures drawn for the comparison: one for each number of sources, zero included.
 const PICTURES: u64 = 9;
 
 /// Options of `doctor`.
@@ -36,7 +36,7 @@ pub struct DoctorArgs {
 #[derive(Serialize)]
 struct Report {
     adapters: Vec<AdapterReport>,
-    /// What to do where there is no graphics card.
+    /// Remedy if there is no graphics card.
     #[serde(skip_serializing_if = "Option::is_none")]
     advice: Option<String>,
 }
@@ -45,15 +45,15 @@ struct Report {
 struct AdapterReport {
     #[serde(flatten)]
     summary: AdapterSummary,
-    /// From nothing to a device, without the list of adapters, seconds.
+    /// Time to open the device, without listing the adapters, seconds.
     start_seconds: f64,
     /// Largest relative difference of a pose's score from the CPU's.
     #[serde(skip_serializing_if = "Option::is_none")]
     worst_difference: Option<f64>,
-    /// Of the filter's updates, those with the same best particle as on the CPU.
+    /// Number of the filter's updates with the same best particle as on the CPU, and of all updates.
     #[serde(skip_serializing_if = "Option::is_none")]
     same_best_particle: Option<[usize; 2]>,
-    /// Of the pixels drawn from other pictures, those that are as on the CPU to a grey level.
+    /// Number of pixels drawn from other pictures that agree with the CPU's to one grey level, and of all pixels.
     #[serde(skip_serializing_if = "Option::is_none")]
     same_pixels: Option<[usize; 2]>,
     agrees: bool,

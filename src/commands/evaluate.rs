@@ -1,4 +1,4 @@
-//! `reality-sim evaluate`: pictures at poses that are not in the database, against those really taken there.
+//! `reality-sim evaluate`: compares pictures at poses that are not in the database with those taken there.
 
 use std::{collections::BTreeMap, fmt::Write, path::PathBuf};
 
@@ -44,11 +44,11 @@ pub struct EvaluateArgs {
 struct Report {
     database: String,
     probes: usize,
-    /// Of them at the very pose of a recorded image: their figures mean nothing.
+    /// Number of probes at exactly the pose of a recorded image, whose results are meaningless.
     probes_in_database: usize,
-    /// Images of the field that they are made from.
+    /// Number of images of the field that pictures are made from.
     images: usize,
-    /// By method.
+    /// Results by method.
     methods: BTreeMap<&'static str, MethodReport>,
 }
 
@@ -93,7 +93,7 @@ pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
     if args.json { print_json(&report) } else { print(&report.text()) }
 }
 
-/// No camera was where some ground truths say it was.
+/// Refuses ground truth with poses that no camera can have.
 fn check_poses(args: &EvaluateArgs, probes: &Sequence) -> anyhow::Result<()> {
     let is_impossible = |pose: Option<CameraPose>| pose.is_some_and(|pose| !pose.is_possible());
     match probes.reference_poses().position(is_impossible) {
@@ -114,7 +114,7 @@ fn check_outputs(args: &EvaluateArgs, probes: &Sequence) -> anyhow::Result<()> {
     args.pictures.as_ref().map_or(Ok(()), |folder| create_output_folder(folder, &inputs))
 }
 
-/// True picture first; grey where a method has no answer.
+/// Arranges the true picture first, then those of the methods; grey where a method has no answer.
 fn side_by_side(probe: &ProbeResult) -> RgbImage {
     let missing = RgbImage::from_pixel(probe.truth.width(), probe.truth.height(), image::Rgb([128; 3]));
     let of = |name| probe.outcomes.get(name).map_or(&missing, |outcome| &outcome.picture).clone();
@@ -123,7 +123,7 @@ fn side_by_side(probe: &ProbeResult) -> RgbImage {
     grid(&rows, probe.truth.width())
 }
 
-/// Pictures of all probes would fill the memory.
+/// Drops the pictures of a probe: those of all probes would fill the memory.
 fn without_pictures(mut probe: ProbeResult) -> ProbeResult {
     probe.outcomes.values_mut().for_each(|outcome| outcome.picture = RgbImage::default());
     probe

@@ -1,4 +1,4 @@
-//! The particle filter on the way to something else: what `build` and `gap` share.
+//! Configuration of the particle filter that `build` and `gap` share.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use reality_sim::{
 
 use super::device::{BackendArgs, backend_error};
 
-/// The filter with the usual settings, on the device that the options name.
+/// Returns the filter with default settings, on the device that the options name.
 pub fn filter_plan(backend: &BackendArgs, seed: u64) -> FilterPlan {
     let backend = backend.clone();
     let open: OpenDevice = Arc::new(move || {
@@ -24,7 +24,7 @@ pub fn filter_plan(backend: &BackendArgs, seed: u64) -> FilterPlan {
         .with_program(concat!("reality-sim ", env!("CARGO_PKG_VERSION")))
 }
 
-/// Says which option helps where a file has no poses.
+/// Adds the option that remedies a file without poses.
 pub fn pose_error(error: PipelineError) -> anyhow::Error {
     match error {
         PipelineError::NoPoses { file } => {

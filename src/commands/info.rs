@@ -1,4 +1,4 @@
-//! `reality-sim info`: what a database holds.
+//! `reality-sim info`: summarises the contents of a database.
 
 use std::{collections::BTreeMap, fs, path::PathBuf};
 
@@ -19,7 +19,7 @@ use super::output::{aligned, check_output_file, print, print_json};
 /// Side of a cell of the carpet, metres.
 const CELL_M: f64 = 0.25;
 
-/// Pictures nearer than this, pixels, are near: most of what is seen is in both.
+/// Distance below which pictures are near, pixels: both show most of the same.
 const NEAR_PX: f64 = 100.0;
 
 /// Options of `info`.
@@ -45,7 +45,7 @@ struct Report {
     cameras: Vec<CameraReport>,
     fields: Vec<FieldReport>,
     pose_sources: Vec<PoseSourceReport>,
-    /// Where there are images.
+    /// Coverage of the field, if there are images.
     #[serde(skip_serializing_if = "Option::is_none")]
     coverage: Option<CoverageReport>,
 }
@@ -66,7 +66,7 @@ struct CameraReport {
     images: usize,
 }
 
-/// Pictures are given of the field that most images show.
+/// Field that most images show, and of which pictures can be made.
 #[derive(Serialize)]
 struct FieldReport {
     name: String,
@@ -75,23 +75,23 @@ struct FieldReport {
 
 #[derive(Serialize)]
 struct PoseSourceReport {
-    /// `groundtruth`, `filter` or `file`.
+    /// Source of the poses: `groundtruth`, `filter` or `file`.
     kind: &'static str,
-    /// The filter's settings, or the file's name.
+    /// Settings of the filter, or name of the file.
     description: String,
     images: usize,
 }
 
-/// Over the carpet, in squares of 25 cm and eight headings.
+/// Coverage of the carpet in squares of 25 cm and eight headings.
 #[derive(Serialize)]
 struct CoverageReport {
     /// Share of the squares in which a picture was taken.
     squares_with_pictures: f64,
     /// Share of squares and headings with a picture nearer than 100 px.
     near: f64,
-    /// From a square's middle, over squares and headings, root mean square pixels.
+    /// Median distance from a square's centre to the nearest picture, over squares and headings, root mean square pixels.
     median_distance_px: f64,
-    /// The same, 95th percentile.
+    /// 95th percentile of the same distances.
     p95_distance_px: f64,
 }
 

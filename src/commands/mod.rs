@@ -1,4 +1,4 @@
-//! The program's commands.
+//! Commands of the program.
 
 mod advice;
 mod build;
@@ -42,7 +42,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// Refuses options that contradict each other; what clap can say of them alone it has said before.
+    /// Refuses options that contradict each other, beyond what clap has checked already.
     pub fn check_usage(&self) -> Result<(), String> {
         match self {
             Self::Tag(args) => args.check_usage(),
@@ -58,7 +58,7 @@ impl Command {
         }
     }
 
-    /// Does it.
+    /// Runs the command.
     pub fn run(&self) -> anyhow::Result<()> {
         match self {
             Self::Tag(args) => tag::run(args),

@@ -1,4 +1,4 @@
-//! What all commands share: output that is checked before long work and complete when it has its name, progress, JSON.
+//! Output of all commands: checked before long work, complete once it has its name, with progress and JSON.
 
 use std::{
     fs,
@@ -11,10 +11,10 @@ use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
-/// Names of values have this much room at least.
+/// Smallest width of the column with the names of values.
 const NAME: usize = 10;
 
-/// Checks that a file can be written under this name later, and that it is none of `inputs`.
+/// Checks that a file can be written under this name later, and that it is not one of `inputs`.
 pub fn check_output_file(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<()> {
     let name = path.display();
     if path.is_dir() {
@@ -29,8 +29,8 @@ pub fn check_output_file(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<()> 
     Ok(())
 }
 
-/// Creates a folder for pictures where it is missing (its parent must be there), and checks that files can be written
-/// into it and that none of `inputs` lies in it.
+/// Creates a folder for pictures if it is missing (its parent must exist), and checks that files can be written into it
+/// and that none of `inputs` lies in it.
 pub fn create_output_folder(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<()> {
     let name = path.display();
     if !path.exists() {
@@ -46,7 +46,7 @@ pub fn create_output_folder(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<(
     Ok(())
 }
 
-/// Checks, as [`check_output_file`], a file that a picture will be written to: its name says in which format.
+/// Checks a picture file that will be written, as [`check_output_file`] does; its name must give the format.
 pub fn check_output_picture(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<()> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     if !["png", "jpg", "jpeg"].contains(&ending.as_str()) {
@@ -58,7 +58,7 @@ pub fn check_output_picture(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<(
     check_output_file(path, inputs)
 }
 
-/// Refuses two outputs of one name.
+/// Refuses two outputs with the same name.
 pub fn check_distinct(outputs: &[&PathBuf]) -> anyhow::Result<()> {
     for (index, output) in outputs.iter().enumerate() {
         if outputs[..index].contains(output) {
@@ -68,7 +68,7 @@ pub fn check_distinct(outputs: &[&PathBuf]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Lines of a name and a value each, the values below each other.
+/// Formats lines of one name and one value each, with the values aligned.
 pub fn aligned(lines: &[(&str, String)]) -> String {
     let width = lines.iter().map(|(name, _)| name.len() + 1).fold(NAME, usize::max);
     lines.iter().map(|(name, value)| format!("{name:width$}{value}\n")).collect()
@@ -79,7 +79,7 @@ pub fn print_json(report: &impl Serialize) -> anyhow::Result<()> {
     print(&format!("{}\n", serde_json::to_string_pretty(report)?))
 }
 
-/// Prints text on standard output. A reader that has seen enough is no error.
+/// Prints text on standard output. It is not an error if the reader has closed the pipe.
 pub fn print(text: &str) -> anyhow::Result<()> {
     let mut output = io::stdout().lock();
     match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
@@ -90,7 +90,7 @@ pub fn print(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// A progress bar over frames on standard error: on a terminal only.
+/// Makes a progress bar over frames on standard error, shown only in a terminal.
 pub fn frame_progress(frames: usize) -> anyhow::Result<ProgressBar> {
     if !io::stderr().is_terminal() {
         return Ok(ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()));
@@ -101,26 +101,26 @@ pub fn frame_progress(frames: usize) -> anyhow::Result<ProgressBar> {
     Ok(bar)
 }
 
-/// One progress bar after the other, for work in stages.
+/// Progress bars of successive stages, one after the other.
 #[derive(Default)]
 pub struct StageProgress(Option<ProgressBar>);
 
 impl StageProgress {
-    /// A stage of so many frames begins.
+    /// Starts a stage with this many frames.
     pub fn begin(&mut self, frames: usize) -> anyhow::Result<()> {
         self.finish();
         self.0 = Some(frame_progress(frames)?);
         Ok(())
     }
 
-    /// So many frames of the stage are done.
+    /// Sets the number of frames of the stage that are done.
     pub fn set(&self, done: usize) {
         if let Some(bar) = &self.0 {
             bar.set_position(done as u64);
         }
     }
 
-    /// The stage is over.
+    /// Ends the stage.
     pub fn finish(&self) {
         if let Some(bar) = &self.0 {
             bar.finish_and_clear();
@@ -135,7 +135,7 @@ fn parent(path: &Path) -> PathBuf {
     }
 }
 
-/// Only an attempt tells whether a folder can be written to; nothing stays behind.
+/// Checks that a folder can be written to, which only an attempt can tell; nothing is left behind.
 fn check_writable_folder(folder: &Path) -> anyhow::Result<()> {
     let name = folder.display();
     match fs::metadata(folder) {

@@ -1,4 +1,4 @@
-//! What `render` and `evaluate` share: a database opened, and the device that draws.
+//! Options that `render` and `evaluate` share: opening of a database, and the device that draws.
 
 use std::{path::Path, sync::Arc};
 
@@ -30,7 +30,7 @@ impl SynthesisArgs {
         Ok(Arc::new(Archive::open(database, (self.cache as usize) << 20)?))
     }
 
-    /// What gives pictures of a camera.
+    /// Makes the synthesizer for pictures of a camera.
     pub fn synthesizer(&self, archive: Arc<Archive>, camera: Camera) -> anyhow::Result<Synthesizer> {
         let mut config = SynthesisConfig::new(&archive);
         config.sources = usize::from(self.neighbours);

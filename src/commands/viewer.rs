@@ -1,4 +1,4 @@
-//! `reality-sim viewer`: everything in a window.
+//! `reality-sim viewer`: opens recordings, databases and reports in a window.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use reality_sim_viewer::ViewerOptions;
 
 use super::device;
 
-/// Where the demonstration lies, below the project's folder.
+/// Path of the demonstration, relative to the project's folder.
 const DEMONSTRATION: &str = "assets/walk";
 
 /// Options of `viewer`.
@@ -39,7 +39,7 @@ pub fn run(args: &ViewerArgs) -> anyhow::Result<()> {
     Ok(reality_sim_viewer::run(ViewerOptions { open, demonstration, devices: device::all() })?)
 }
 
-/// The demonstration: here, in a folder above the program, or where the program was built.
+/// Finds the demonstration: in the current folder, in a folder above the program, or where the program was built.
 fn demonstration() -> Option<PathBuf> {
     let program = std::env::current_exe().unwrap_or_default();
     let folders = std::iter::once(Path::new("."))

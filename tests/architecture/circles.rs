@@ -1,22 +1,22 @@
-//! Files of a crate that use each other in a circle.
+//! Circular dependencies between the files of a crate.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::module_tree::{ModuleId, ModuleTree, Sources};
 
-/// What the files of a crate use of each other: `uses[user][used]` are the names.
+/// Names that files of a crate use of each other, as `uses[user][used]`.
 pub type Uses = BTreeMap<String, BTreeMap<String, BTreeSet<String>>>;
 
-/// What a name stands for.
+/// Target of a name.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 enum Target {
     Module(ModuleId),
-    /// An item of a module, by its name there.
+    /// Item of a module, by its name there.
     Item(ModuleId, String),
 }
 
-/// Finds out which file uses which names of which other: every path is followed, through re-exports, to the file that
-/// defines the item. Naming a module alone, declaring it or re-exporting from it uses nothing.
+/// Finds out which file uses which names of which other one: every path is followed, through re-exports, to the file that
+/// defines the item. Naming a module alone, declaring it or re-exporting from it does not count as a use.
 pub fn uses(sources: &Sources, root: &str) -> Uses {
     let tree = ModuleTree::read(sources, root);
     let mut uses = Uses::new();
@@ -37,8 +37,9 @@ pub fn uses(sources: &Sources, root: &str) -> Uses {
 }
 
 impl ModuleTree {
-    /// All that a path may stand for in a module: a name can be a module and a function at once. Empty for what other
-    /// crates define. `trail` holds the names being looked up, as re-exports may lead round.
+    /// Returns everything that a path may mean in a module, since a name can be a module and a function at once. The
+    /// result is empty for items of other crates. `trail` holds the names being resolved, since re-exports may be
+    /// circular.
     fn resolve(
         &self,
         from: ModuleId,
@@ -53,7 +54,7 @@ impl ModuleTree {
             name => self.look_up(from, name, trail),
         };
         for name in rest {
-            // What has something inside is rather the module than the function of its name.
+            // A name with further segments means the module rather than the function of that name.
             if targets.iter().any(|target| matches!(target, Target::Module(_))) {
                 targets.retain(|target| matches!(target, Target::Module(_)));
             }
@@ -103,7 +104,7 @@ impl ModuleTree {
     }
 }
 
-/// Groups of files of which each uses, directly or not, each other.
+/// Returns groups of files that all use each other, directly or indirectly.
 pub fn circles(uses: &Uses) -> Vec<BTreeSet<String>> {
     let reached: BTreeMap<&String, BTreeSet<&String>> =
         uses.keys().map(|file| (file, reached_from(uses, file))).collect();
@@ -131,7 +132,7 @@ fn reached_from<'a>(uses: &'a Uses, file: &'a String) -> BTreeSet<&'a String> {
     reached
 }
 
-/// The files of a circle with the names that tie them, a line for each pair.
+/// Describes a circle: its files with the names that they use, one line per pair.
 pub fn describe(circle: &BTreeSet<String>, uses: &Uses) -> String {
     let mut lines = Vec::new();
     for user in circle {
@@ -143,8 +144,8 @@ pub fn describe(circle: &BTreeSet<String>, uses: &Uses) -> String {
     lines.join("\n")
 }
 
-/// The same between the modules that a crate's root declares: all files of one are taken together, by its path without
-/// `.rs`.
+/// Reduces the uses to those between the modules that a crate's root declares: all files of a module are merged under its
+/// path without `.rs`.
 pub fn between_top_modules(uses: &Uses, root: &str) -> Uses {
     let folder = root.rsplit_once('/').map_or("", |(folder, _)| folder);
     let module = |file: &str| -> String {

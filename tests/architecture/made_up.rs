@@ -1,4 +1,4 @@
-//! The rules themselves, on sources that are made up.
+//! Tests of the rules themselves on invented sources.
 
 use std::collections::BTreeSet;
 

@@ -1,5 +1,5 @@
-//! The shape of the workspace's sources: files of a crate use each other in one direction, and nothing is too long to be
-//! read at once.
+//! Architecture of the workspace's sources: files of a crate use each other in one direction only, and no file or function
+//! is too long to be read at once.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
@@ -15,20 +15,20 @@ use std::{
 
 use self::module_tree::Sources;
 
-/// What may be longer than the rest, each with its reason.
+/// Files and functions that may be longer, each with its reason.
 const LONG_FOR_A_REASON: [(&str, &str); 0] = [];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Folders of all packages.
+/// Returns the folders of all packages.
 fn packages() -> Vec<PathBuf> {
     let crates = fs::read_dir(root().join("crates")).unwrap().map(|entry| entry.unwrap().path());
     crates.filter(|folder| folder.join("Cargo.toml").exists()).chain([root().to_owned()]).collect()
 }
 
-/// Rust files below a folder, by their path from the workspace's root.
+/// Reads the Rust files below a folder, by their path relative to the workspace's root.
 fn sources(folder: &Path) -> Sources {
     let mut sources = Sources::new();
     let mut open = vec![folder.to_owned()];
@@ -46,7 +46,7 @@ fn sources(folder: &Path) -> Sources {
     sources
 }
 
-/// Circles between the files of every crate, and between the modules that its root declares; described.
+/// Describes the circles between the files of every crate, and between the modules that its root declares.
 fn all_circles() -> Vec<String> {
     let mut found = Vec::new();
     for package in packages() {

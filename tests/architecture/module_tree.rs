@@ -1,4 +1,4 @@
-//! The modules of a crate with what each defines, imports and mentions, read from its sources.
+//! Module tree of a crate: what each module defines, imports and mentions, read from the sources.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,42 +8,42 @@ use syn::{
     visit::{self, Visit},
 };
 
-/// Sources of a crate: path of each file and its text.
+/// Sources of a crate: text of each file by its path.
 pub type Sources = BTreeMap<String, String>;
 
 /// Index of a module in its tree; the crate's root is 0.
 pub type ModuleId = usize;
 
-/// One module: a file, or a `mod name { … }` inside one.
+/// Module: a file, or a `mod name { … }` inside one.
 #[derive(Debug, Default)]
 pub struct Module {
     pub file: String,
     pub parent: Option<ModuleId>,
     pub children: BTreeMap<String, ModuleId>,
-    /// Names of the items that are defined here.
+    /// Names of the items that are defined in the module.
     pub items: BTreeSet<String>,
     pub imports: Vec<Import>,
-    /// Paths in the code of this module, `use` declarations aside.
+    /// Paths in the code of the module, apart from `use` declarations.
     pub mentions: BTreeSet<Vec<String>>,
 }
 
-/// One name of a `use` declaration.
+/// Name imported by a `use` declaration.
 #[derive(Debug)]
 pub struct Import {
-    /// The name it has in this module; `*` for all names of a module.
+    /// Name in this module; `*` for all names of another module.
     pub name: String,
     pub path: Vec<String>,
     pub is_reexport: bool,
 }
 
-/// All modules of a crate but those for tests.
+/// All modules of a crate except those for tests.
 #[derive(Debug)]
 pub struct ModuleTree {
     pub modules: Vec<Module>,
 }
 
 impl ModuleTree {
-    /// Reads a crate from its root file on, along its `mod` declarations.
+    /// Reads a crate from its root file along the `mod` declarations.
     pub fn read(sources: &Sources, root: &str) -> Self {
         let mut tree = Self { modules: Vec::new() };
         tree.add_file(sources, root, None);
@@ -52,7 +52,7 @@ impl ModuleTree {
 
     fn add_file(&mut self, sources: &Sources, file: &str, parent: Option<ModuleId>) -> ModuleId {
         let syntax = syn::parse_file(&sources[file]).unwrap_or_else(|error| panic!("{file}: {error}"));
-        // Submodules of `lib.rs`, `main.rs` and `mod.rs` lie beside the file, those of `name.rs` in `name/`.
+        // Submodules of `lib.rs`, `main.rs` and `mod.rs` are beside the file, those of `name.rs` in `name/`.
         let (folder, name) = file.rsplit_once('/').unwrap_or(("", file));
         let stem = name.trim_end_matches(".rs");
         let is_beside = parent.is_none() || stem == "mod";
@@ -88,7 +88,7 @@ impl ModuleTree {
         id
     }
 
-    /// `place` is the path of the child's file without `.rs`.
+    /// Adds a submodule; `place` is the path of its file without `.rs`.
     fn add_child(
         &mut self,
         sources: &Sources,
@@ -111,12 +111,12 @@ fn inside(folder: &str, name: &str) -> String {
     if folder.is_empty() { name.to_owned() } else { format!("{folder}/{name}") }
 }
 
-/// Collects what a module's code mentions.
+/// Visitor that collects what a module's code mentions.
 #[derive(Default)]
 struct Reader {
     imports: Vec<Import>,
     mentions: BTreeSet<Vec<String>>,
-    /// Names of local variables and parameters: alone they mean no item.
+    /// Names of local variables and parameters: on their own they do not refer to items.
     bound: BTreeSet<String>,
 }
 
@@ -160,7 +160,7 @@ impl<'ast> Visit<'ast> for Reader {
     fn visit_visibility(&mut self, _: &'ast Visibility) {}
 }
 
-/// Paths in the tokens of a macro's call, which are no syntax tree.
+/// Collects paths from the tokens of a macro call, which are not parsed as a syntax tree.
 fn collect_paths(tokens: TokenStream, paths: &mut BTreeSet<Vec<String>>) {
     let mut path: Vec<String> = Vec::new();
     let mut colons = 0;

@@ -5,13 +5,13 @@ use syn::{
     visit::{self, Visit},
 };
 
-/// Lines a file may have.
+/// Largest number of lines of a file.
 pub const MAX_FILE_LINES: usize = 500;
-/// Lines a function may have, from `fn` to its closing brace.
+/// Largest number of lines of a function, from `fn` to its closing brace.
 pub const MAX_FUNCTION_LINES: usize = 60;
 
-/// Lists what is longer than it may be, as pairs of a place and its number of lines. A file's place is its path, a
-/// function's is `path::function`.
+/// Lists files and functions that are too long, as pairs of a place and its number of lines. The place of a file is its
+/// path, that of a function `path::function`.
 pub fn too_long(file: &str, text: &str) -> Vec<(String, usize)> {
     let syntax = syn::parse_file(text).unwrap_or_else(|error| panic!("{file}: {error}"));
     let mut lengths = FunctionLengths::default();

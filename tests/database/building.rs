@@ -1,4 +1,4 @@
-//! What is stored of recordings, and what `info` says of it.
+//! Storage of recordings by `build`, and the summary of `info`.
 
 use std::{
     fs,
@@ -101,7 +101,7 @@ fn a_build_that_was_killed_goes_on_where_it_was() {
     const FRAMES: usize = 2000;
     let own = tempfile::tempdir().unwrap();
     let out = own.path().join("out.db");
-    // Enough pictures for several transactions.
+    // There are enough pictures for several transactions.
     let mut walk = Sequence::open(Path::new(WALK)).unwrap();
     let folder = own.path().join("long");
     let picture = walk.load_image(0).unwrap();
@@ -128,7 +128,7 @@ fn a_build_that_was_killed_goes_on_where_it_was() {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    // Killed once something was committed.
+    // The program is killed once something has been committed.
     while child.try_wait().unwrap().is_none() {
         if Database::open(&out).and_then(|database| database.images()).is_ok_and(|images| !images.is_empty())
         {

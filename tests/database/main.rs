@@ -35,7 +35,7 @@ fn json(arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// Exit code 1, one line on standard error with all these words, nothing on standard output.
+/// Asserts exit code 1, one line on standard error with all these words, and nothing on standard output.
 fn assert_fails(arguments: &[&str], words: &[&str]) {
     let output = program(arguments);
     let message = text(&output.stderr);
@@ -51,7 +51,7 @@ fn shown(path: &Path) -> &str {
     path.to_str().unwrap()
 }
 
-/// The walk's text files in a folder of their own with these frames; the pictures are linked.
+/// Copies the walk's text files with these frames into a folder of their own; the pictures are linked.
 fn part_of_walk(folder: &Path, name: &str, frames: std::ops::Range<usize>) -> PathBuf {
     let mut walk = Sequence::open(Path::new(WALK)).unwrap();
     walk.frames = walk.frames[frames].to_vec();
@@ -65,7 +65,7 @@ fn part_of_walk(folder: &Path, name: &str, frames: std::ops::Range<usize>) -> Pa
     part
 }
 
-/// A database of the walk's first 40 pictures, and its other 20 as probes.
+/// Makes a database of the walk's first 40 pictures, and a sequence of its other 20 as probes.
 fn demonstration() -> &'static (TempDir, PathBuf, PathBuf) {
     static MADE: OnceLock<(TempDir, PathBuf, PathBuf)> = OnceLock::new();
     MADE.get_or_init(|| {

@@ -1,4 +1,4 @@
-//! The simulated picture with a camera's effects.
+//! Simulated pictures with a camera's effects.
 
 use std::{fs, path::Path};
 
@@ -6,7 +6,7 @@ use image::RgbImage;
 
 use super::{assert_fails, demonstration, json, shown};
 
-/// The simulated picture at a pose, with a model in the folder.
+/// Renders the simulated picture at a pose, with a model file in the folder.
 fn simulated(folder: &Path, model: &str) -> RgbImage {
     let (_, database, _) = demonstration();
     let (file, out) = (folder.join("model.toml"), folder.join("out.png"));

@@ -1,4 +1,4 @@
-//! What cannot be done is said in one line.
+//! Refusals, each explained in one line.
 
 use std::{fs, process::Command};
 

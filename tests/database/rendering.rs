@@ -122,7 +122,7 @@ fn drawing_on_the_graphics_device_gives_the_same_picture() {
     assert!(different < cpu.len() / 500, "{different} of {}", cpu.len());
 }
 
-/// One picture, and a robot that stood still and turned: no triangulation, and pictures all the same.
+/// A single picture, and a robot that only turned on the spot: there is no triangulation, but there are pictures.
 #[test]
 fn the_smallest_databases_give_pictures() {
     let own = tempfile::tempdir().unwrap();

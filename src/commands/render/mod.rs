@@ -1,4 +1,4 @@
-//! `reality-sim render`: the picture at a pose, or those along a path.
+//! `reality-sim render`: makes the picture at a pose, or those along a path.
 
 mod options;
 mod painter;
@@ -24,7 +24,7 @@ use self::{
 };
 use super::output::{frame_progress, print, print_json};
 
-/// Pictures of a path in its strip.
+/// Number of pictures of a path in its strip.
 const STRIP_PICTURES: usize = 8;
 
 /// Runs the command.
@@ -50,7 +50,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     if args.json { print_json(&report) } else { print(&report.text()) }
 }
 
-/// The camera's way through the poses; at a single one it stands still.
+/// Returns the camera's trajectory through the poses; at a single pose the camera stands still.
 fn trajectory(args: &RenderArgs, poses: &[StampedPose]) -> anyhow::Result<Trajectory> {
     let Some(path) = &args.path else { return Ok(Trajectory::still(poses[0].pose)) };
     let stamped: Vec<_> = poses.iter().map(|stamped| (stamped.timestamp_s, stamped.pose)).collect();
@@ -64,7 +64,7 @@ fn at_pose(
     pose: StampedPose,
 ) -> anyhow::Result<Report> {
     painter.paint(pose)?;
-    // Once more, for the time that it takes when the neighbours are decoded.
+    // The picture is drawn again to measure the time with the neighbours already decoded.
     let Painted { work, milliseconds } = painter.paint(pose)?;
     save_image(&args.out, work.picture())?;
     let mut report = Report {
@@ -126,7 +126,7 @@ fn along_path(
     })
 }
 
-/// Whether a picture is one of those evenly spread over the path.
+/// Whether a picture is one of those spread evenly over the path.
 fn is_in_strip(index: usize, count: usize) -> bool {
     let shown = count.min(STRIP_PICTURES);
     (0..shown).any(|i| i * (count - 1) / (shown - 1).max(1) == index)

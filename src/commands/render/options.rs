@@ -1,4 +1,4 @@
-//! The options of `render`, and what they ask for.
+//! Options of `render`, and their interpretation.
 
 use std::path::PathBuf;
 
@@ -70,7 +70,7 @@ pub enum MethodName {
     Simulated,
 }
 
-/// A pose, of which the last three numbers may be left open.
+/// Pose whose last three numbers may be left out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WantedPose {
     planar: Pose2,
@@ -111,8 +111,8 @@ impl RenderArgs {
         self.synthesis.backend.check_usage()
     }
 
-    /// The poses asked for, with their times; what a pose leaves open is as usual in the archive. A single pose is at
-    /// time 0.
+    /// Returns the requested poses with their times; numbers that a pose leaves out are the archive's usual ones. A single
+    /// pose has time 0.
     pub fn poses(&self, archive: &Archive) -> anyhow::Result<Vec<StampedPose>> {
         let usual = archive.usual_pose();
         match (&self.pose, &self.path) {
@@ -129,12 +129,12 @@ impl RenderArgs {
                 }
                 Ok(poses)
             }
-            // The options require one of the two.
+            // Clap requires one of the two options.
             (None, None) => bail!("give --pose or --path"),
         }
     }
 
-    /// Whoever waited for a thousand pictures must not learn then that one of them has no place.
+    /// Checks the outputs first: nobody should wait for a thousand pictures and learn then that one cannot be written.
     pub fn check_outputs(&self) -> anyhow::Result<()> {
         let inputs: Vec<PathBuf> =
             [Some(&self.database), self.path.as_ref(), self.camera.as_ref(), self.model.as_ref()]

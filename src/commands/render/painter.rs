@@ -1,4 +1,4 @@
-//! What makes the pictures: recorded ones, or the model of the field.
+//! Source of the pictures: recorded ones, or the model of the field.
 
 use std::{path::Path, time::Instant};
 
@@ -17,28 +17,28 @@ use super::options::MethodName;
 /// Pictures at different times have different noise.
 const NOISE_SEED: u64 = 0;
 
-/// What draws.
+/// Source of the pictures.
 pub enum Painter<'a> {
     Recorded(&'a Synthesizer, &'static dyn Method),
     Simulated(Box<Renderer>),
-    /// With effects, by a camera on its way.
+    /// Simulated camera with effects, moving along its trajectory.
     Modelled(Box<Renderer>, Trajectory),
 }
 
-/// A picture.
+/// Picture with the time that it took.
 pub struct Painted {
     pub work: Work,
     pub milliseconds: f64,
 }
 
-/// With where it came from, or without.
+/// Picture with or without the origins of its pixels.
 pub enum Work {
     Reconstructed(Reconstruction),
     Drawn(RgbImage),
 }
 
 impl Work {
-    /// The picture.
+    /// Returns the picture.
     pub fn picture(&self) -> &RgbImage {
         match self {
             Self::Reconstructed(reconstruction) => &reconstruction.picture,
@@ -46,7 +46,7 @@ impl Work {
         }
     }
 
-    /// The share of the pixels that some recorded picture shows, where it is made from such.
+    /// Share of the pixels that some recorded picture shows, if the picture is made from such.
     pub fn covered(&self) -> Option<f64> {
         match self {
             Self::Reconstructed(reconstruction) => Some(reconstruction.covered()),
@@ -56,7 +56,7 @@ impl Work {
 }
 
 impl<'a> Painter<'a> {
-    /// By this method; `setup` is the camera whose pictures are made.
+    /// Makes a painter for this method; `setup` is the camera whose pictures are made.
     pub fn new(method: MethodName, synthesizer: &'a Synthesizer, setup: &CameraSetup) -> Self {
         let field = synthesizer.archive().field();
         let recorded: &'static dyn Method = match method {
@@ -73,7 +73,7 @@ impl<'a> Painter<'a> {
         Self::Recorded(synthesizer, recorded)
     }
 
-    /// The simulated camera with the effects of a model file, on its way.
+    /// Makes a painter for the simulated camera with the effects of a model file, moving along its trajectory.
     pub fn with_model(
         model: &Path,
         trajectory: Trajectory,
@@ -85,7 +85,7 @@ impl<'a> Painter<'a> {
         Ok(Self::Modelled(Box::new(renderer.map_err(|error| error.in_file(model))?), trajectory))
     }
 
-    /// The method's name.
+    /// Returns the name of the method.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Recorded(_, method) => method.name(),
@@ -93,7 +93,7 @@ impl<'a> Painter<'a> {
         }
     }
 
-    /// The picture at a pose.
+    /// Draws the picture at a pose.
     pub fn paint(&self, StampedPose { timestamp_s, pose }: StampedPose) -> anyhow::Result<Painted> {
         let start = Instant::now();
         let work = match self {

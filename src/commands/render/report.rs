@@ -1,4 +1,4 @@
-//! What `render` tells of its pictures.
+//! Report of `render` on its pictures.
 
 use serde::Serialize;
 
@@ -6,14 +6,14 @@ use reality_sim::{Archive, Reconstruction, synthesis::UsedImage};
 
 use crate::commands::output::aligned;
 
-/// What `--json` prints.
+/// Report that `--json` prints.
 #[derive(Serialize)]
 pub struct Report {
     pub method: &'static str,
     pub pictures: usize,
-    /// Of one picture with its neighbours decoded; along a path the median, decoding included. Writing is not.
+    /// Time of one picture with its neighbours decoded; along a path the median, decoding included. Writing is excluded.
     pub milliseconds: f64,
-    /// Share of the pixels that some recorded picture shows: the mean over the pictures.
+    /// Share of the pixels that some recorded picture shows, averaged over the pictures.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub covered: Option<f64>,
     /// Pictures that a single picture was made from.
@@ -22,7 +22,7 @@ pub struct Report {
     pub out: String,
 }
 
-/// A picture that another was made from.
+/// Recorded picture that another was made from.
 #[derive(Serialize)]
 pub struct UsedReport {
     sequence: String,
@@ -31,7 +31,7 @@ pub struct UsedReport {
     share: f64,
 }
 
-/// Which pictures one was made from.
+/// Lists the pictures that a reconstruction was made from.
 pub fn used(archive: &Archive, reconstruction: &Reconstruction) -> anyhow::Result<Vec<UsedReport>> {
     let names = archive.database().sequences()?;
     let report = |used: &UsedImage| {
@@ -47,7 +47,7 @@ pub fn used(archive: &Archive, reconstruction: &Reconstruction) -> anyhow::Resul
 }
 
 impl Report {
-    /// The same for people.
+    /// Formats the report for people.
     pub fn text(&self) -> String {
         let mut lines = vec![("method", self.method.to_owned())];
         if self.pictures > 1 {

@@ -1,4 +1,4 @@
-//! `reality-sim tag`: a camera pose for every picture of a sequence.
+//! `reality-sim tag`: finds the camera pose of every picture of a sequence.
 
 mod options;
 mod report;
@@ -52,7 +52,7 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     if args.json { print_json(&report) } else { print(&report.text(&sequence.name)) }
 }
 
-/// Localizes every picture, and draws it where that is asked for.
+/// Localizes every picture, and draws it if that is requested.
 fn localize(
     args: &TagArgs,
     sequence: &Sequence,
@@ -80,14 +80,14 @@ fn localize(
     Ok(frames)
 }
 
-/// Every picture's pose as it was found when the picture came.
+/// Returns the filter's pose of every picture, from this and earlier pictures only.
 fn filtered(tagged: &[LocalizedFrame]) -> Vec<PoseResult> {
     let sigmas =
         |frame: &LocalizedFrame| frame.fit.map(|fit| fit.covariance.diagonal().map(f64::sqrt).into());
     tagged.iter().map(|frame| PoseResult { pose: frame.pose, sigmas: sigmas(frame) }).collect()
 }
 
-/// The most probable poses of the whole recording.
+/// Returns the most probable poses of the whole recording.
 fn smoothed(
     sequence: &Sequence,
     localizer: &Localizer,
@@ -107,7 +107,7 @@ fn smoothed(
     Ok(smoothed.iter().map(result).collect())
 }
 
-/// Whoever waited for an hour must not learn then that the result has no place.
+/// Checks the outputs first: nobody should wait for an hour and learn then that the result cannot be written.
 fn check_outputs(args: &TagArgs, sequence: &Sequence) -> anyhow::Result<()> {
     let inputs = args.inputs(sequence);
     for output in [&args.out, &args.details].into_iter().flatten() {

@@ -1,4 +1,4 @@
-//! The options of `tag`, and what they ask for.
+//! Options of `tag`, and their interpretation.
 
 use std::{
     ops::Range,
@@ -17,7 +17,7 @@ use reality_sim::{
 
 use crate::commands::device::{BackendArgs, Device};
 
-/// Odometry that jumps to its origin by more than this was reset, metres.
+/// Distance beyond which a jump of the odometry to its origin counts as a reset, metres.
 const RESET_JUMP_M: f64 = 0.1;
 
 /// Options of `tag`.
@@ -155,7 +155,7 @@ impl From<EstimatorKind> for Estimator {
     }
 }
 
-/// A half-open range, open where nothing is given.
+/// Half-open range of frames; a missing bound leaves that side open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FrameRange {
     pub first: usize,
@@ -196,7 +196,7 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 impl TagArgs {
-    /// Refuses options that would be ignored.
+    /// Refuses options that would have no effect.
     pub fn check_usage(&self) -> Result<(), String> {
         self.backend.check_usage()?;
         let (contrast, distance) =
@@ -214,7 +214,7 @@ impl TagArgs {
         }
     }
 
-    /// The device that particles are weighed on.
+    /// Returns the device on which particles are weighted.
     pub fn device(&self) -> anyhow::Result<Device> {
         if self.adaptive {
             return self.backend.processor_only("--adaptive");
@@ -222,7 +222,7 @@ impl TagArgs {
         self.backend.device()
     }
 
-    /// The filter's settings.
+    /// Returns the settings of the filter.
     pub fn config(&self) -> LocalizerConfig {
         let mut config = LocalizerConfig::new(self.observation.into());
         let observation = &mut config.observation;
@@ -241,7 +241,7 @@ impl TagArgs {
         config
     }
 
-    /// The sequence as the options want it: other camera, other field, fewer frames, another start.
+    /// Opens the sequence and applies the options: another camera or field, fewer frames, another start.
     pub fn open_sequence(&self) -> anyhow::Result<Sequence> {
         let mut sequence = Sequence::open(&self.sequence)?;
         if let Some(camera) = &self.camera {
@@ -271,7 +271,7 @@ impl TagArgs {
         Ok(first..end)
     }
 
-    /// The pose of a frame from the sequence's start and its odometry; `None` where they do not tell.
+    /// Returns the pose of a frame by dead reckoning from the sequence's start; `None` if start or odometry is missing.
     fn start_at(&self, sequence: &Sequence, frame: usize) -> Option<Pose2> {
         let start = sequence.start?;
         if frame == 0 {
@@ -286,7 +286,7 @@ impl TagArgs {
         (!reset).then(|| start.moved(odometry[0].motion_to(odometry[frame])))
     }
 
-    /// Every file that the command reads.
+    /// Lists every file that the command reads.
     pub fn inputs(&self, sequence: &Sequence) -> Vec<PathBuf> {
         let mut inputs = sequence.files.clone();
         inputs.extend(sequence.frames.iter().map(|frame| sequence.folder.join(&frame.image)));
@@ -295,7 +295,7 @@ impl TagArgs {
     }
 }
 
-/// A preset, or a field file.
+/// Returns a preset, or reads a field file.
 fn field_by_name(name: &Path) -> anyhow::Result<FieldDimensions> {
     if let Some(field) = name.to_str().and_then(FieldDimensions::preset) {
         return Ok(field);

@@ -1,4 +1,4 @@
-//! What `tag` tells of its results: a line a picture, and a summary for people and for programs.
+//! Report of `tag`: one line per picture, and a summary for people and for programs.
 
 use std::{fmt::Write, path::Path};
 
@@ -13,14 +13,14 @@ use reality_sim::{
 use super::options::TagArgs;
 use crate::commands::{device::Device, output::aligned};
 
-/// A pose to hand out, with what is known of its errors.
+/// Resulting pose with its uncertainty.
 pub struct PoseResult {
     pub pose: CameraPose,
     /// Standard deviations of x, y, yaw, height, pitch and roll, metres and radians.
     pub sigmas: Option<[f64; 6]>,
 }
 
-/// One line a picture; what is not known is empty.
+/// Formats one line per picture; unknown values are left empty.
 pub fn details_csv(sequence: &Sequence, tagged: &[LocalizedFrame], results: &[PoseResult]) -> String {
     const DEGREES_OF_FREEDOM: [&str; 6] = ["x_m", "y_m", "yaw_rad", "height_m", "pitch_rad", "roll_rad"];
     let mut csv = String::from("timestamp_s");
@@ -63,16 +63,16 @@ pub fn details_csv(sequence: &Sequence, tagged: &[LocalizedFrame], results: &[Po
     csv
 }
 
-/// What `--json` prints.
+/// Report that `--json` prints.
 #[derive(Debug, Serialize)]
 pub struct Report {
     sequence: String,
     frames: usize,
     observation: ObservationKind,
     backend: &'static str,
-    /// The graphics adapter's name.
+    /// Name of the graphics adapter.
     adapter: Option<String>,
-    /// Why it is not the graphics card.
+    /// Reason why the device is not the graphics card.
     #[serde(skip_serializing_if = "Option::is_none")]
     backend_reason: Option<String>,
     particles: usize,
@@ -82,7 +82,7 @@ pub struct Report {
     adaptive: bool,
     seed: u64,
     smoothed: bool,
-    /// Median; decoding, drawing and writing excluded.
+    /// Median time per frame; decoding, drawing and writing are excluded.
     seconds_per_frame: f64,
     sure_frames: usize,
     searched_frames: usize,
@@ -137,7 +137,7 @@ impl Report {
         format!("{}{}", self.backend, why.unwrap_or_default())
     }
 
-    /// The same for people.
+    /// Formats the report for people.
     pub fn text(&self, name: &str) -> String {
         let observation = match self.observation {
             ObservationKind::Gauss => "gauss",

@@ -1,4 +1,4 @@
-//! Asks for a picture at a pose: `minimal-user RECORDING DATABASE` makes the database of the recording's first frames.
+//! Makes a picture at a pose: `minimal-user RECORDING DATABASE` makes the database of the recording's first frames.
 
 use std::{env, error::Error, path::PathBuf, sync::Arc};
 
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let poses: Vec<_> = walk.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
     Database::create_or_open(database)?.ingest(&walk, &poses, &PoseSource::GroundTruth, |_| ())?;
 
-    // A simulator's own camera, without distortion.
+    // The camera is a simulator's own, without distortion.
     let camera = Camera::new([160, 120], [80.0, 80.0, 79.5, 59.5], Distortion::Pinhole)?;
     let archive = Arc::new(Archive::open(database, 64 << 20)?);
     let config = SynthesisConfig::new(&archive);
