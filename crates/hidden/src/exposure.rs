@@ -123,7 +123,7 @@ impl Exposer {
         }
     }
 
-    /// Returns the true camera where it is believed to be at `believed`.
+    /// Returns the true camera pose for the one that is believed.
     fn view(&self, believed: Station) -> View {
         let pitched = rotation::pitch_in_camera(believed.world_from_camera, self.truth.mount_pitch_rad);
         let turned = rotation::roll_about_axis(pitched, self.truth.mount_roll_rad);

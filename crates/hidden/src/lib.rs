@@ -1,13 +1,13 @@
 //! Synthetic recordings with effects of camera, hall or odometry that the files beside the pictures do not mention, for
 //! testing the search for missing effects.
 //!
-//! | type | what |
+//! | type | role |
 //! |---|---|
 //! | [`Recipe`] | a recording from a seed: frames, size, hidden effects, walk |
-//! | [`Hidden`] | an effect with its size; [`LIBRARY`] and [`FOREIGN`] are the names of all |
-//! | [`Walk`] | what the robot does |
-//! | [`Random`] | numbers by seed |
-//! | [`Error`] | what cannot be recorded |
+//! | [`Hidden`] | an effect with its size; [`LIBRARY`] and [`FOREIGN`] list all ids |
+//! | [`Walk`] | the robot's motion |
+//! | [`Random`] | random numbers from a seed |
+//! | [`Error`] | error of making a recording |
 //!
 //! The pictures are made by ray casting with nine or more rays per pixel, and share no code with the models that are fitted:
 //! lens, rotations, field pattern, blur and noise are implemented again here. Only plain numbers and the writer of sequence

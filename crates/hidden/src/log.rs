@@ -24,7 +24,7 @@ const IMU_RAD: f64 = 0.17_f64.to_radians();
 /// Noise of one step of the odometry while walking; standing has a tenth of it.
 const ODOMETRY_M: f64 = 0.003;
 const ODOMETRY_RAD: f64 = 0.3_f64.to_radians();
-/// Precision of the files: numbers per unit.
+/// Precision of the files: values are multiples of 1 / `PER_UNIT`.
 const PER_UNIT: f64 = 1e5;
 
 /// Returns the time of a frame (from 0), seconds.

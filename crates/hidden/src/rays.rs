@@ -8,7 +8,7 @@ use crate::truth::Truth;
 /// Number of rays along each side of a pixel.
 pub const PER_PIXEL: usize = 3;
 
-/// Side, in pixels, of the squares that share one cone for finding the things they may see.
+/// Number of neighbouring pixels in a row that share one cone for finding the things they may see.
 pub const CONE_PX: usize = 8;
 
 /// Rays of the channels that the lens magnifies alike.

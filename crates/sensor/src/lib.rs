@@ -1,16 +1,16 @@
 //! Simulated pictures to compare real ones with: the field, its lines and goals in a plain hall, projected through the true
 //! lens from a camera's pose.
 //!
-//! | type | what |
+//! | type | role |
 //! |---|---|
 //! | [`Renderer`] | whole pictures, at a pose or while the camera moves |
-//! | [`Effect`], [`library()`] | a way in which a real camera differs from what is written down of it; all that are known |
-//! | [`Model`] | which effects there are and how large, as in `model.toml` |
+//! | [`Effect`], [`library()`] | a deviation of a real camera or robot from the nominal model; all known effects |
+//! | [`Model`] | the effects present and their sizes, as in `model.toml` |
 //! | [`Chain`] | a camera with its model, for points, light and motions one by one |
-//! | [`Trajectory`] | where the camera is at any time, between stamped poses |
-//! | [`Frame`] | one picture's points, row by row |
+//! | [`Trajectory`] | the camera's pose at any time, interpolated between stamped poses |
+//! | [`Frame`] | projection of points into one picture, row by row |
 //! | [`SceneColors`] | the colours of carpet, lines, goals and hall |
-//! | [`ModelError`], [`RenderError`], [`TrajectoryError`] | what cannot be read or drawn, and why |
+//! | [`ModelError`], [`RenderError`], [`TrajectoryError`] | errors of reading, drawing and interpolating |
 //!
 //! Light runs one way: world → motion → mount → lens → exposure → sensor → encoding, one [`Stage`] each; the odometry is
 //! beside it. Up to the encoding, light is linear RGB with 1 as full scale. Metres, radians, seconds and the frames of

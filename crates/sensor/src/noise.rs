@@ -1,4 +1,4 @@
-//! The sensor's noise.
+//! Noise of the sensor.
 
 /// Poisson–Gaussian noise of a linear value `v`: its variance is `shot · v + read_variance` (Foi et al., "Practical
 /// Poissonian-Gaussian noise modeling and fitting for single-image raw-data", TIP 2008).

@@ -26,7 +26,7 @@ pub enum TrajectoryError {
         /// Index of the pose.
         index: usize,
     },
-    /// A pose is not later than the one before.
+    /// A pose is not later than the previous one.
     #[error("time {time_s} s does not follow {previous_s} s: sort the poses by time and remove doubles")]
     NotIncreasing {
         /// Time of the previous pose, seconds.

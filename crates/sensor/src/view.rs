@@ -1,4 +1,4 @@
-//! The world as rays from a camera, and the fraction of a pixel that each shape covers.
+//! View of the world from a camera, and the fraction of a pixel that each shape covers.
 //!
 //! A shape with straight edges occupies the rays between planes through the projection centre. A ray's position relative to
 //! such a plane is linear in the ray, so that the covered fraction of a pixel has a closed form, however far away or thin

@@ -39,7 +39,7 @@ pub(crate) struct Layer {
     pub(crate) on_ground: bool,
 }
 
-/// The scene.
+/// Scene: ground, goals and hall.
 #[derive(Debug, Clone)]
 pub(crate) struct World {
     wall: Vec3,

@@ -1,13 +1,13 @@
 //! Window of Reality Sim: the particle filter running on a recording, a robot driven through recorded pictures, and the
 //! differences between a camera's simulation and its pictures.
 //!
-//! | type | what |
+//! | type | role |
 //! |---|---|
 //! | [`run`] | opens the window, and returns when it is closed |
-//! | [`ViewerOptions`] | what it shows first: a recording, a database, or a report of the gap |
-//! | [`Device`] | where filter and pictures can be computed, opened when it is chosen |
-//! | [`ViewerApp`] | what is in the window, for tests and pictures without one |
-//! | [`ViewerError`] | why there is no window |
+//! | [`ViewerOptions`] | what the window first shows: a recording, a database, or a report of the gap |
+//! | [`Device`] | a device that runs the filter and draws pictures, opened when it is chosen |
+//! | [`ViewerApp`] | the window's content, for tests and pictures without a window |
+//! | [`ViewerError`] | error of opening the window |
 //!
 //! Nothing that takes longer than a frame runs in the window's thread: separate threads open recordings, find poses and draw
 //! pictures. They send messages and request a repaint. While nothing happens, nothing is drawn. Units and frames are those

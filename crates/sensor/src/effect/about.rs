@@ -109,7 +109,7 @@ pub struct Opposite {
 pub struct About {
     /// Name in files: `vignetting`.
     pub id: &'static str,
-    /// What happens, in plain words: "the lens darkens towards the corners".
+    /// Description in plain words: "the lens darkens towards the corners".
     pub name: &'static str,
     /// Its signature, as one clause: "lines and carpet darken towards the corners, with the distance from …".
     pub because: &'static str,

@@ -63,7 +63,7 @@ impl Effect for SensorNoise {
     }
 }
 
-/// Returns the change of the noise variance where it is known best, with the light there in tenths of full scale. Shot noise
+/// Returns the light, in tenths of full scale, at which the change of the noise variance is known best, and that change. Shot noise
 /// and read noise may be hard to separate while their sum is well known.
 fn best_known_variance(estimates: &Estimates<'_>) -> Option<(i32, Uncertain)> {
     let (shot, read) = (estimates.get("shot")?, estimates.get("read_variance")?);
