@@ -12,7 +12,7 @@ use reality_sim::{
     warp::Warper,
 };
 
-/// The pictures of a sequence, decoded once for all runs.
+/// Pictures of a sequence, decoded once for all runs.
 pub struct Recording {
     pub sequence: Sequence,
     pub pictures: Vec<Arc<RgbImage>>,

@@ -43,9 +43,9 @@ fn box_muller(a: u32, b: u32) -> vec2<f32> {
 }
 
 struct Normals {
-    /// For x, y, yaw.
+    /// Numbers for x, y and yaw.
     planar: vec3<f32>,
-    /// For height, pitch, roll.
+    /// Numbers for height, pitch and roll.
     attitude: vec3<f32>,
 }
 

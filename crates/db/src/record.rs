@@ -30,7 +30,7 @@ impl From<CameraPose> for PoseEstimate {
 
 impl PoseEstimate {
     /// Returns the poses of a localized recording, one per frame: the smoothed ones if there are any, else the filter's.
-    /// Frames of which the filter is not sure have none, unless `with_unsure` is set.
+    /// Frames that the filter is not sure of have none, unless `with_unsure` is set.
     ///
     /// # Panics
     ///
@@ -61,7 +61,7 @@ impl PoseEstimate {
 pub enum PoseSource {
     /// Ground truth of the recording itself.
     GroundTruth,
-    /// The particle filter.
+    /// Particle filter.
     Filter {
         /// Settings and seed of the filter, as JSON.
         settings: String,

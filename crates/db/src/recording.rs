@@ -20,9 +20,9 @@ pub struct Recording {
     pub(crate) first_frame: String,
     /// Width and height of its pictures, pixels.
     pub(crate) size: [u32; 2],
-    /// The text of its camera's file.
+    /// Text of its camera's file.
     pub(crate) camera: String,
-    /// The text of its field's file.
+    /// Text of its field's file.
     pub(crate) field: String,
     pub(crate) source: PoseSource,
 }

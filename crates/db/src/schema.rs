@@ -16,7 +16,7 @@ pub const SCHEMA_VERSION: i64 = STEPS.len() as i64;
 /// is never changed; another one is added.
 const STEPS: [&str; 1] = [VERSION_1];
 
-/// The bytes have a table of their own, so that reading all poses does not touch them.
+/// The bytes are in a separate table, so that reading all poses does not touch them.
 const VERSION_1: &str = "
     CREATE TABLE sequences (
         id INTEGER PRIMARY KEY,

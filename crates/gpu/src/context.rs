@@ -28,7 +28,7 @@ pub struct AdapterSummary {
     pub max_workgroups: u32,
 }
 
-/// A graphics device and its queue.
+/// Open graphics device with its queue.
 #[derive(Debug)]
 pub struct GpuContext {
     pub(crate) device: wgpu::Device,

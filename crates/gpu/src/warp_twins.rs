@@ -90,7 +90,7 @@ fn cameras() -> Result<Vec<Camera>, InvalidCamera> {
     ])
 }
 
-/// A pose and the pictures seen from other poses around it. Cameras are given by their position in the list.
+/// Pose to draw from, and pictures seen from other poses around it. Cameras are given by their position in the list.
 struct Scene {
     camera: usize,
     pose: CameraPose,

@@ -52,7 +52,7 @@ pub struct FilterPlan {
     pub device: OpenDevice,
     /// Whether all poses of a recording are smoothed together.
     pub smooths: bool,
-    /// Whether poses are kept of which the filter is not sure.
+    /// Whether poses that the filter is not sure of are kept.
     pub keeps_unsure: bool,
     /// Name and version of the program, which the database records.
     pub program: String,
@@ -137,7 +137,7 @@ impl FilterPlan {
         Self { smooths, ..self }
     }
 
-    /// Sets whether poses are kept of which the filter is not sure.
+    /// Sets whether poses that the filter is not sure of are kept.
     pub fn with_unsure(self, keeps_unsure: bool) -> Self {
         Self { keeps_unsure, ..self }
     }

@@ -48,7 +48,7 @@ fn shade(share: f64) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// One of the two fields.
+/// One of the two drawn fields.
 #[derive(Clone, Copy)]
 struct Panel<'a> {
     left: f64,

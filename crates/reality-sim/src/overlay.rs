@@ -56,7 +56,7 @@ pub struct Overlay<'a> {
     pub truth: Option<CameraPose>,
     /// Border of the field, if it was searched for.
     pub border: Option<BorderOutline<'a>>,
-    /// The particles.
+    /// Particles to be drawn.
     pub particles: &'a [CameraPose],
     /// Poses so far, drawn on the map.
     pub path: &'a [CameraPose],

@@ -43,7 +43,7 @@ pub struct ProbeResult {
     pub frame: usize,
     /// Distance from the nearest recorded picture, root mean square pixels.
     pub distance_px: Option<f64>,
-    /// The true picture.
+    /// True picture.
     pub truth: RgbImage,
     /// Outcomes by the names of the methods.
     pub outcomes: BTreeMap<&'static str, Outcome>,

@@ -31,7 +31,7 @@ pub struct UsedImage {
 /// Reconstructed picture at a requested pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reconstruction {
-    /// The picture.
+    /// Reconstructed picture.
     pub picture: RgbImage,
     /// Name of the method.
     pub method: &'static str,
