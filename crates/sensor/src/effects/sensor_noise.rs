@@ -63,8 +63,8 @@ impl Effect for SensorNoise {
     }
 }
 
-/// Returns the light, in tenths of full scale, at which the change of the noise variance is known best, and that change. Shot noise
-/// and read noise may be hard to separate while their sum is well known.
+/// Returns the light, in tenths of full scale, at which the change of the noise variance is known best, and that change.
+/// Shot noise and read noise may be hard to separate while their sum is well known.
 fn best_known_variance(estimates: &Estimates<'_>) -> Option<(i32, Uncertain)> {
     let (shot, read) = (estimates.get("shot")?, estimates.get("read_variance")?);
     let correlation = estimates.correlation("shot", "read_variance");

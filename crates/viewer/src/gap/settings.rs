@@ -15,7 +15,7 @@ pub struct GapSettings {
     pub is_difference: bool,
     /// Position of the line of the wipe, 0 to 1 from the left.
     pub wipe_share: f32,
-    /// Channel whose residuals are shown; if the report does not have it, the one with the largest gap relative to its floor.
+    /// Channel whose residuals are shown; if the report lacks it, the one with the largest gap relative to its floor.
     pub channel: Option<Channel>,
 }
 
