@@ -18,19 +18,19 @@ pub const RADIAL_TERMS: usize = 11;
 /// Map from a direction to a point in the plane of unit focal length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Lens {
-    /// `place = (x, y)/|p| · Σ cᵢ tⁱ`, t = z/|p| mapped to [−1, 1]. For Kannala–Brandt θ_d/sin θ is an even function of
-    /// θ, hence a smooth function of cos θ = z/|p|: a short polynomial replaces square root and arc tangent.
+    /// Point `(x, y)/|p| · Σ cᵢ tⁱ`, with t = z/|p| mapped to [−1, 1]. For Kannala–Brandt, θ_d/sin θ is an even function
+    /// of θ, hence a smooth function of cos θ = z/|p|: a short polynomial replaces square root and arc tangent.
     Radial {
-        /// cᵢ.
+        /// Coefficients cᵢ.
         coefficients: [f32; RADIAL_TERMS],
-        /// t = scale · z/|p| + offset.
+        /// Scale of t = scale · z/|p| + offset.
         scale: f32,
         /// Offset of t, see `scale`.
         offset: f32,
     },
-    /// `place = (x, y)/z` with Brown–Conrady distortion k1, k2, p1, p2, k3.
+    /// Point `(x, y)/z` with Brown–Conrady distortion k1, k2, p1, p2, k3.
     Perspective {
-        /// k1, k2, p1, p2, k3.
+        /// Coefficients k1, k2, p1, p2, k3.
         distortion: [f32; 5],
     },
 }
@@ -89,9 +89,9 @@ impl KernelCamera {
 /// Pixels of sixteen points.
 #[derive(Debug, Clone, Copy)]
 pub struct Pixels {
-    /// Pixels from the left.
+    /// Columns, pixels from the first pixel's centre.
     pub u: Lanes,
-    /// Pixels from the top.
+    /// Rows, pixels from the first pixel's centre.
     pub v: Lanes,
     /// 1 where the point has a pixel, else 0.
     pub seen: Lanes,

@@ -298,8 +298,8 @@ impl Camera {
         self.pixel_from_plane(self.distortion.distort(scaled))
     }
 
-    /// Works as [`Camera::project`], and returns also the gradients of u and v with respect to the point (pixels per
-    /// metre).
+    /// Projects a point as [`Camera::project`] does, and returns also the gradients of u and v with respect to the point
+    /// (pixels per metre). Fails if the camera does not see the point.
     pub fn project_with_gradients(&self, point_in_camera: DVec3) -> Result<(DVec2, [DVec3; 2]), NoPixel> {
         let (scaled, scale_m) = self.scaled_point(point_in_camera)?;
         let pixel = self.pixel_from_plane(self.distortion.distort(scaled))?;

@@ -216,7 +216,7 @@ impl Localizer {
     ) -> Result<FilterEstimate, LocalizationError> {
         let prior = track.prior_of_lost();
         let mut modes = self.modes(picture, mount, Some(prior))?;
-        // From many places no line is in view: they fit every picture a little and none well.
+        // From many places no line is in view: such a place fits every picture a little, and none well.
         modes.retain(|mode| self.search.line_fraction(mode.pose) >= self.config.track.lost_line_fraction);
         let Some(best) = modes.first() else { return Ok(estimate) };
         let Some(own) = self.search.best_of(&[estimate.pose], mount, Some(prior)) else {

@@ -143,7 +143,8 @@ impl GlobalSearch {
         Mode { pose, log_weight, probability: 0.0, fit: None }
     }
 
-    /// Scores every pose of the grid, and returns the best ones that lie apart from each other.
+    /// Scores every pose of the grid, and returns the best ones that lie apart from each other. Fails if the backend's
+    /// device does.
     pub fn best_on_grid(
         &mut self,
         picture: &Prepared,

@@ -228,7 +228,7 @@ pub enum Fault {
         /// Maximum size, bytes.
         limit_bytes: u64,
     },
-    /// No file can hold the sequence in memory.
+    /// The sequence in memory cannot be written as files.
     #[error("the sequence cannot be written: {rule}")]
     Inconsistent {
         /// Rule that the sequence has to fulfil.

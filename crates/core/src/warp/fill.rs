@@ -75,7 +75,7 @@ fn take_unknown(fine: &mut Level, coarse: &Level) {
 }
 
 impl Level {
-    /// Makes a level from rows of weighted sums of colours, and normalises the weights to at most 1.
+    /// Makes a level from rows of weighted sums of colours, scaled so that no weight exceeds 1.
     fn by_rows(width: usize, height: usize, sum_up: impl Fn(usize, &mut [[f32; 4]]) + Sync) -> Self {
         let mut pixels = vec![[0.0_f32; 4]; width * height];
         let rows = pixels.par_chunks_mut(width).enumerate().with_min_len(PIXELS_A_TASK.div_ceil(width));

@@ -143,8 +143,8 @@ pub(crate) fn unhidden(proxy: &ProxyGeometry, from: &Placement, points: &ProxyPo
     /// Fraction of the way to a point beyond which a billboard does not hide it: a point on the billboard is not hidden
     /// by it.
     const ON_SCREEN: f32 = 1.0 - 1e-3;
-    /// Radius of a typical post. Seen obliquely, a round post hides more than the flat one that stands for it, in
-    /// proportion to one over the cosine.
+    /// Radius of a typical post. Seen obliquely, a round post hides more than the flat one that stands for it, by
+    /// an amount that grows with one over the cosine.
     const POST_RADIUS_M: f32 = 0.05;
     /// Less than 1, since pixels and compression spread a post's colour beyond its edge.
     const SHARP_EDGE: f32 = 0.6;
