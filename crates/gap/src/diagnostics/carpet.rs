@@ -6,12 +6,13 @@ use crate::{
     diagnostics::detector::FrameResiduals,
     measurement::quantity::{ColorChannel, Quantity},
     measurement::scalar::Measurement,
+    thresholds::Thresholds,
 };
 
 /// The quantity that tells carpet from what hides it.
 const GREEN: Quantity = Quantity::CarpetLevel(ColorChannel::Green);
-/// Carpet is hidden where it is so many standard deviations off.
-const OUTLYING: f64 = 5.0;
+/// Carpet is hidden where its residual is more than this many standard deviations.
+const HIDDEN_SIGMAS: f64 = Thresholds::DEFAULT.diagnostics.hidden_sigmas;
 
 /// Returns the blocks of carpet of a frame, each with the residual of its green.
 pub(super) fn blocks<'a>(frame: &'a FrameResiduals<'_>) -> impl Iterator<Item = (&'a Measurement, f64)> {
@@ -26,7 +27,7 @@ pub(super) fn sigma(sigmas: &BTreeMap<Quantity, f64>) -> f64 {
 
 /// Whether a block shows something else than carpet.
 pub(super) fn is_hidden(residual: f64, sigma: f64) -> bool {
-    residual.abs() > OUTLYING * sigma
+    residual.abs() > HIDDEN_SIGMAS * sigma
 }
 
 #[cfg(test)]

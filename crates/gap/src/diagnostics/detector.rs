@@ -13,10 +13,11 @@ use crate::{
     measurement::quantity::{Channel, Quantity},
     measurement::scalar::Measurement,
     recording::{Frame, Recording},
+    thresholds::Thresholds,
 };
 
-/// What no effect explains is no chance below this, all that is tested of its kind considered; it has to be large besides.
-pub(crate) const LIKELY_CHANCE: f64 = 0.02;
+/// Largest p-value of a finding, corrected for everything that is tested of its kind.
+pub(crate) const SIGNIFICANCE: f64 = Thresholds::DEFAULT.diagnostics.significance;
 
 /// Finds one kind of thing that no effect of the library explains.
 pub(crate) trait Detector: Sync {

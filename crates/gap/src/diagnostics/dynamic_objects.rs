@@ -2,28 +2,16 @@
 
 use glam::DVec2;
 
-use crate::diagnostics::{
-    carpet,
-    detector::{Detector, FitResiduals, FrameResiduals},
-    finding::Finding,
+use crate::{
+    diagnostics::{
+        carpet,
+        detector::{Detector, FitResiduals, FrameResiduals},
+        finding::Finding,
+    },
+    thresholds::{DynamicObjectThresholds, Thresholds},
 };
 
-/// A foot and the carpet around it are one place within this distance, as are a thing and its sides, metres.
-const NEAR_M: f64 = 0.25;
-/// The place is seen in so many blocks at least: from far away a thing hides a part of one.
-const LEAST_SPOTS: usize = 2;
-/// One of them is this close to it, metres: carpet before a thing, where what is behind was not measured, is not its place.
-const THERE_M: f64 = 0.1;
-/// Pictures closer in time show a walker in the same place, seconds.
-const LATER_S: f64 = 1.0;
-/// The place is seen in this part of the pictures at least: a line beside a thing that stands hides where it stands from most.
-const LEAST_SEEN: f64 = 0.2;
-/// And is plain carpet in this part of those at least.
-const CLEAR: f64 = 0.95;
-/// Feet that are gone at other times, in this part of the pictures at least, are worth a word: one by mistake is not.
-const LEAST_PART: f64 = 0.09;
-/// Places closer than this are one, metres.
-const SAME_M: f64 = 0.01;
+const THRESHOLDS: DynamicObjectThresholds = Thresholds::DEFAULT.diagnostics.dynamic_objects;
 
 /// Finds objects that are not where they were in other pictures.
 pub(crate) struct DynamicObjects;
@@ -54,7 +42,7 @@ fn dynamic_objects(frames: &[FrameResiduals<'_>], sigma: f64) -> Option<Finding>
     let pictures: Vec<Spots> = frames.iter().map(|frame| Spots::new(frame, sigma)).collect();
     let shows_one = |picture: &&Spots| picture.feet().any(|foot| has_left(&pictures, picture.time_s, foot));
     let share = pictures.iter().filter(shows_one).count() as f64 / pictures.len().max(1) as f64;
-    (share > LEAST_PART).then_some(Finding::DynamicObjects { share })
+    (share > THRESHOLDS.least_share).then_some(Finding::DynamicObjects { share })
 }
 
 impl Spots {
@@ -81,23 +69,24 @@ impl Spots {
         let distance = way.length();
         let along = to_place.dot(way) / distance.max(1e-9);
         let beside = to_place.perp_dot(way).abs() / distance.max(1e-9);
-        (0.0..distance - SAME_M).contains(&along) && beside < NEAR_M
+        (0.0..distance - THRESHOLDS.same_m).contains(&along) && beside < THRESHOLDS.near_m
     }
 }
 
 /// Whether other pictures show plain carpet where a thing stood at a time.
 fn has_left(pictures: &[Spots], time_s: f64, foot: DVec2) -> bool {
     let (mut seen, mut clear) = (0_usize, 0_usize);
-    for picture in pictures.iter().filter(|picture| (picture.time_s - time_s).abs() > LATER_S) {
+    for picture in pictures.iter().filter(|picture| (picture.time_s - time_s).abs() > THRESHOLDS.later_s) {
         let around: Vec<&Spot> =
-            picture.spots.iter().filter(|spot| spot.ground.distance(foot) < NEAR_M).collect();
-        let is_there = around.iter().any(|spot| spot.ground.distance(foot) < THERE_M);
-        if is_there && around.len() >= LEAST_SPOTS {
+            picture.spots.iter().filter(|spot| spot.ground.distance(foot) < THRESHOLDS.near_m).collect();
+        let is_there = around.iter().any(|spot| spot.ground.distance(foot) < THRESHOLDS.there_m);
+        if is_there && around.len() >= THRESHOLDS.least_blocks {
             seen += 1;
             clear += usize::from(around.iter().all(|spot| !spot.is_hidden));
         }
     }
-    seen as f64 >= LEAST_SEEN * pictures.len() as f64 && clear as f64 >= CLEAR * seen as f64
+    seen as f64 >= THRESHOLDS.least_seen * pictures.len() as f64
+        && clear as f64 >= THRESHOLDS.least_clear * seen as f64
 }
 
 #[cfg(test)]

@@ -11,15 +11,12 @@ use crate::{
     inference::gain::sum_of,
     inference::hypothesis_test::two_sided,
     measurement::scalar::Measurement,
-    thresholds::Thresholds,
+    thresholds::{FlickerThresholds, Thresholds},
 };
 
 /// Bands into which a picture is cut, along its rows and along its columns.
 const BANDS: usize = 12;
-/// A band has so many blocks of carpet at least.
-const LEAST_BLOCKS: usize = 5;
-/// Bands weaker than this do not matter, natural logarithm of light.
-const MATERIAL: f64 = 0.03;
+const THRESHOLDS: FlickerThresholds = Thresholds::DEFAULT.diagnostics.flicker;
 
 /// Finds bands of brightness along the rows that differ from picture to picture.
 pub(crate) struct Flicker;
@@ -39,7 +36,7 @@ fn flicker(frames: &[FrameResiduals<'_>]) -> Option<Finding> {
     let count = frames.len() as f64;
     let size = (sum.value.max(0.0) / count).sqrt();
     let p_value = two_sided(sum.value / sum.sigma.max(1e-12), count - 1.0);
-    (size > MATERIAL && p_value < Thresholds::DEFAULT.inference.significance)
+    (size > THRESHOLDS.material && p_value < Thresholds::DEFAULT.inference.significance)
         .then_some(Finding::Flicker { size, p_value })
 }
 
@@ -62,7 +59,7 @@ fn band_medians(frame: &FrameResiduals<'_>, place: fn(&Measurement, [u32; 2]) ->
     }
     values
         .iter_mut()
-        .map(|values| (values.len() >= LEAST_BLOCKS).then(|| median(values.iter().copied())))
+        .map(|values| (values.len() >= THRESHOLDS.least_blocks).then(|| median(values.iter().copied())))
         .collect()
 }
 

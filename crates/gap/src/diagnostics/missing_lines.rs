@@ -8,17 +8,10 @@ use crate::{
     diagnostics::detector::{Detector, FitResiduals},
     diagnostics::finding::{FieldLine, Finding},
     measurement::{frame::FrameMeasurements, lines::Line},
+    thresholds::{MissingLineThresholds, Thresholds},
 };
 
-/// A line is missing where less than this part of its pieces is found, as against all lines.
-const MISSING: f64 = 0.4;
-/// What is found farther from where a line should be is another one, pixels.
-const NEAR_PX: f64 = 1.5;
-/// And it was looked for in so many pieces and frames.
-const LEAST_PIECES: f64 = 24.0;
-/// Lines that are seldom found at all are not missed.
-const USUALLY_SEEN: f64 = 0.5;
-const LEAST_FRAMES: usize = 4;
+const THRESHOLDS: MissingLineThresholds = Thresholds::DEFAULT.diagnostics.missing_lines;
 
 /// Finds lines of the field that are not where the model has them.
 pub(crate) struct MissingLines;
@@ -41,10 +34,14 @@ struct Count {
 fn missing_lines(frames: &[&FrameMeasurements], field: &FieldDimensions) -> Vec<Finding> {
     let counts = Counts::of(frames);
     let curves = field.curves();
-    let often = counts.frames.iter().filter(|(_, frames)| **frames >= LEAST_FRAMES).map(|(curve, _)| *curve);
+    let often = counts
+        .frames
+        .iter()
+        .filter(|(_, frames)| **frames >= THRESHOLDS.least_frames)
+        .map(|(curve, _)| *curve);
     often
         .filter_map(|curve| Some((curve, counts.shares(curve)?)))
-        .filter(|(_, [found, usual])| *found < MISSING * usual)
+        .filter(|(_, [found, usual])| *found < THRESHOLDS.most_found * usual)
         .map(|(curve, [found_share, usual_share])| Finding::MissingLine {
             line: field_line(&curves[curve]),
             found_share,
@@ -75,7 +72,8 @@ impl Counts {
         for piece in in_sight() {
             self.pieces.entry((piece.curve, width(piece.half_width_px))).or_default().expected += 1.0;
         }
-        let is_at_its_place = |line: &&Line| line.is_expected && line.profile.offset_px.abs() < NEAR_PX;
+        let is_at_its_place =
+            |line: &&Line| line.is_expected && line.profile.offset_px.abs() < THRESHOLDS.near_px;
         for line in frame.lines.iter().filter(is_at_its_place) {
             self.pieces.entry((line.curve, width(line.half_width_px))).or_default().found += 1.0;
         }
@@ -93,13 +91,14 @@ impl Counts {
                 found: sum.found + count.found,
                 expected: sum.expected + count.expected,
             });
-            if others.expected >= LEAST_PIECES {
+            if others.expected >= THRESHOLDS.least_pieces {
                 own.found += count.found;
                 own.expected += count.expected;
                 usual += count.expected * others.found / others.expected;
             }
         }
-        let enough = own.expected >= LEAST_PIECES && usual >= USUALLY_SEEN * own.expected;
+        let enough =
+            own.expected >= THRESHOLDS.least_pieces && usual >= THRESHOLDS.least_usually_found * own.expected;
         enough.then(|| [own.found / own.expected, usual / own.expected])
     }
 }
@@ -194,6 +193,6 @@ mod tests {
 
     #[test]
     fn a_few_pictures_are_no_proof() {
-        assert_eq!(missing_of(&look([0, 8, 7], false), LEAST_FRAMES - 1), []);
+        assert_eq!(missing_of(&look([0, 8, 7], false), THRESHOLDS.least_frames - 1), []);
     }
 }

@@ -4,7 +4,7 @@
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::{
-    diagnostics::detector::{Detector, FitResiduals, LIKELY_CHANCE},
+    diagnostics::detector::{Detector, FitResiduals, SIGNIFICANCE},
     diagnostics::finding::{Finding, NominalValue},
     inference::model_error::ModelError,
     linear_model::nuisance::Nuisance,
@@ -44,7 +44,7 @@ fn of_channel(channel: Channel, nuisances: &[Nuisance], fitted: &[f64], off: f64
     let p_value = ChiSquared::new(nominal.len().max(1) as f64).ok()?.sf(squares);
     let (farthest, fitted) =
         nominal.into_iter().max_by(|a, b| normalized(a).abs().total_cmp(&normalized(b).abs()))?;
-    (p_value < LIKELY_CHANCE).then(|| Finding::NominalValue {
+    (p_value < SIGNIFICANCE).then(|| Finding::NominalValue {
         value: farthest.value,
         off_by: farthest.off_by(fitted),
         p_value,
@@ -119,7 +119,7 @@ mod tests {
             panic!()
         };
         assert_eq!(value, red);
-        assert!((off_by - 0.35_f64.exp_m1()).abs() < 1e-9 && p_value < LIKELY_CHANCE);
+        assert!((off_by - 0.35_f64.exp_m1()).abs() < 1e-9 && p_value < SIGNIFICANCE);
     }
 
     #[test]

@@ -1,13 +1,16 @@
 //! Objects in front of the carpet that the model does not have.
 
-use crate::diagnostics::{
-    carpet,
-    detector::{Detector, FitResiduals, FrameResiduals},
-    finding::Finding,
+use crate::{
+    diagnostics::{
+        carpet,
+        detector::{Detector, FitResiduals, FrameResiduals},
+        finding::Finding,
+    },
+    thresholds::Thresholds,
 };
 
-/// More of the carpet than this hidden by other things is worth a word.
-const LEAST_SHARE: f64 = 0.04;
+/// Smallest share of the carpet that is reported as hidden.
+const LEAST_SHARE: f64 = Thresholds::DEFAULT.diagnostics.least_hidden_share;
 
 /// Finds objects that hide the carpet.
 pub(crate) struct Occluders;

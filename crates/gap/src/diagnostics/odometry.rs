@@ -12,18 +12,10 @@ use crate::{
     linear_model::odometry_steps::around,
     measurement::quantity::Quantity,
     recording::{Frame, Recording},
+    thresholds::{OdometryThresholds, Thresholds},
 };
 
-/// Parts of the recording that are judged by the others.
-const FOLDS: usize = 4;
-/// What is foretold gains so many standard deviations: more than an effect needs to be named.
-const LEAST_SCORE: f64 = 3.5;
-/// And so much, in log-likelihood.
-const LEAST_GAIN: f64 = 8.0;
-/// What is foretold of the odometry is at least this part of what is not, root mean square.
-const LEAST_PART: f64 = 0.5;
-/// And this many times what the model may be off by beside what it explains.
-const BEYOND: f64 = 2.0;
+const THRESHOLDS: OdometryThresholds = Thresholds::DEFAULT.diagnostics.odometry;
 /// What residuals may follow, in the order of [`movements`].
 const FOLLOWED: [Movement; 3] = [Movement::Ahead, Movement::Turn, Movement::Time];
 /// Components of a step.
@@ -61,7 +53,8 @@ fn of_component(
     };
     let values: Vec<Option<f64>> = fit.frames.iter().map(value).collect();
     let off = fit.model_error.off(quantity) / sigma;
-    let (follows, rms) = most_followed(steps, &values).filter(|(_, rms)| *rms > BEYOND * off)?;
+    let (follows, rms) =
+        most_followed(steps, &values).filter(|(_, rms)| *rms > THRESHOLDS.least_model_errors * off)?;
     Some(Finding::Odometry { component, follows, size: rms * sigma })
 }
 
@@ -82,7 +75,7 @@ fn most_followed(steps: &[Option<[f64; 3]>], values: &[Option<f64>]) -> Option<(
             Vec::from_iter(step.zip(*value).map(|(step, value)| (step[axis], value)))
         };
         let follows = Follows::of(&steps.iter().zip(values).map(pair).collect::<Vec<_>>())?;
-        (follows.rms > LEAST_PART * follows.left).then_some((follows.rms, followed))
+        (follows.rms > THRESHOLDS.least_ratio * follows.left).then_some((follows.rms, followed))
     });
     let (rms, followed) = follows.max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some((followed, rms))
@@ -107,7 +100,7 @@ impl Follows {
         };
         let found = Self { rms: rms(&|(to, _)| to * slope), left: rms(&|(to, value)| value - to * slope) };
         let count = frames.len();
-        let fold = |frame: usize| stretch(frame, count, FOLDS);
+        let fold = |frame: usize| stretch(frame, count, THRESHOLDS.folds);
         let gain = |frame: usize| {
             let others = (0..count).filter(|&other| fold(other) != fold(frame));
             let slope = self::slope(others.map(|other| &frames[other]));
@@ -119,7 +112,7 @@ impl Follows {
             gains.sum::<f64>() / found.left.powi(2).max(1e-9)
         };
         let gain = sum_of(&(0..count).map(gain).collect::<Vec<f64>>());
-        (gain.value > LEAST_GAIN && gain.score() > LEAST_SCORE).then_some(found)
+        (gain.value > THRESHOLDS.least_gain && gain.score() > THRESHOLDS.least_score).then_some(found)
     }
 }
 

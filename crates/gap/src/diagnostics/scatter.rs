@@ -9,10 +9,11 @@ use crate::{
     inference::model_error::ModelError,
     measurement::quantity::Channel,
     recording::ReferenceSource,
+    thresholds::Thresholds,
 };
 
-/// What is left is this many times as large as its floor where something is at work in it.
-const LEAST_RATIO: f64 = 1.8;
+/// Smallest ratio of the geometry's residuals to their noise floor that is reported.
+const LEAST_RATIO: f64 = Thresholds::DEFAULT.diagnostics.least_scatter_ratio;
 
 /// Finds residuals of geometry that are far above the noise floor.
 pub(crate) struct Scatter;

@@ -108,7 +108,7 @@ pub(crate) fn gaps(
 }
 
 /// Relative change of a gap below which it counts as unchanged.
-const MOVED: f64 = 0.02;
+const MOVED: f64 = Thresholds::DEFAULT.inference.least_gap_change;
 
 /// Sums of squares of a channel's residuals.
 #[derive(Debug, Clone, Copy, Default)]

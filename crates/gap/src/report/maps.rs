@@ -13,6 +13,7 @@ use crate::{
     measurement::scalar::Measurement,
     recording::Recording,
     report::data::{Course, Map, Maps},
+    thresholds::Thresholds,
 };
 
 /// Number of cells of the picture's map along x and y.
@@ -20,7 +21,7 @@ const PICTURE: [usize; 2] = [16, 12];
 /// Side length of a cell of the field's map, metres.
 const FIELD_M: f64 = 0.5;
 /// Least number of measurements in a cell for a median.
-const LEAST_ROWS: f64 = 5.0;
+const LEAST_ROWS: f64 = Thresholds::DEFAULT.report.least_map_measurements;
 
 /// Returns the maps of every channel that was measured.
 pub(crate) fn maps(

@@ -65,6 +65,9 @@ pub(crate) struct InferenceThresholds {
     /// The same of a quantity of the odometry. Chosen.
     pub(crate) odometry_rows: f64,
 
+    /// A gap has changed where it differs by more than this part of what it was: measuring the lines anew changes it by less.
+    /// Chosen.
+    pub(crate) least_gap_change: f64,
     /// Part of recordings in which an effect at its detection limit is found. Chosen.
     pub(crate) power: f64,
     /// Part of what a model explains that its residuals may be off by: discs are no Gaussians, clipped colours no gains. Set
@@ -101,6 +104,7 @@ impl InferenceThresholds {
         compared_residual_sigmas: 5.0,
         picture_rows: 3000.0,
         odometry_rows: 60.0,
+        least_gap_change: 0.02,
         power: 0.9,
         model_error: 0.04,
         outlying_sigmas: 5.0,

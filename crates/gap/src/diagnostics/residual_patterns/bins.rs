@@ -16,18 +16,10 @@ use crate::{
     inference::hypothesis_test::two_sided,
     inference::split::stretch,
     measurement::quantity::{Channel, Quantity},
+    thresholds::{PatternThresholds, Thresholds},
 };
 
-/// Parts of the recording that are judged by the others.
-const FOLDS: usize = 4;
-/// A residual counts at most this many standard deviations.
-const CLIP: f64 = 4.0;
-/// Weight of the assumption that there is no pattern, in rows.
-const SHRINK: f64 = 20.0;
-/// A cell is seen in so many frames at least.
-const LEAST_FRAMES: usize = 6;
-/// Share of the rows, those with the largest means, that tells how large a pattern is where it is strongest.
-const LARGEST_SHARE: f64 = 0.1;
+const THRESHOLDS: PatternThresholds = Thresholds::DEFAULT.diagnostics.patterns;
 
 /// Sums of a bin: information and score of a mean vector. Offsets of lines have two numbers a bin, all else has one.
 #[derive(Debug, Clone, Copy, Default)]
@@ -83,7 +75,7 @@ impl Binned {
     /// Returns the number of cells that are seen often enough to be tested.
     pub(super) fn tested(&self) -> usize {
         let seen = |cell: &&Cell| self.frames.iter().filter(|frame| frame.contains_key(cell)).count();
-        self.all.keys().filter(|cell| seen(cell) >= LEAST_FRAMES).count()
+        self.all.keys().filter(|cell| seen(cell) >= THRESHOLDS.least_frames).count()
     }
 
     /// Returns the cells that are seen often enough, each with how unlikely its mean is chance.
@@ -93,7 +85,7 @@ impl Binned {
 
     /// Returns the size of a cell's mean, in standard deviations.
     pub(super) fn mean(&self, cell: Cell) -> f64 {
-        self.all[&cell].mean(SHRINK).length()
+        self.all[&cell].mean(THRESHOLDS.prior_measurements).length()
     }
 
     /// Returns what frames gain by the means of others.
@@ -104,15 +96,16 @@ impl Binned {
     /// What a frame gains by the means of others.
     fn gain(&self, index: usize) -> f64 {
         let count = self.frames.len();
-        let fold = stretch(index, count, FOLDS);
+        let fold = stretch(index, count, THRESHOLDS.folds);
         let others = self.frames.iter().enumerate().filter(|(other, _)| match self.locus {
             // A time's pattern is judged by the frames next to it, not by other times.
             Locus::Time => other % 2 != index % 2,
-            _ => stretch(*other, count, FOLDS) != fold,
+            _ => stretch(*other, count, THRESHOLDS.folds) != fold,
         });
         let others = together(others.map(|(_, bins)| bins));
         let gain = |(cell, bin): (&Cell, &Bin)| {
-            let mean = others.get(cell).map_or(DVec2::ZERO, |others| others.mean(SHRINK));
+            let mean =
+                others.get(cell).map_or(DVec2::ZERO, |others| others.mean(THRESHOLDS.prior_measurements));
             mean.dot(bin.score) - 0.5 * mean.dot(bin.information * mean)
         };
         self.frames[index].iter().map(gain).sum()
@@ -120,10 +113,13 @@ impl Binned {
 
     /// Returns the root mean square of the tenth of the rows with the largest means, in standard deviations.
     pub(super) fn largest(&self) -> f64 {
-        let mut means: Vec<(f64, f64)> =
-            self.all.values().map(|bin| (bin.mean(SHRINK).length(), bin.rows)).collect();
+        let mut means: Vec<(f64, f64)> = self
+            .all
+            .values()
+            .map(|bin| (bin.mean(THRESHOLDS.prior_measurements).length(), bin.rows))
+            .collect();
         means.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let wanted = LARGEST_SHARE * means.iter().map(|(_, rows)| rows).sum::<f64>();
+        let wanted = THRESHOLDS.largest_share * means.iter().map(|(_, rows)| rows).sum::<f64>();
         let (mut squares, mut rows) = (0.0, 0.0);
         for (mean, count) in means {
             if rows < wanted {
@@ -146,7 +142,7 @@ fn together<'a>(frames: impl Iterator<Item = &'a BTreeMap<Cell, Bin>>) -> BTreeM
 /// How unlikely a bin's mean is chance, by its scatter from frame to frame; the less likely of its two numbers.
 fn p_value(frames: &[BTreeMap<Cell, Bin>], place: Cell) -> Option<f64> {
     let bins: Vec<&Bin> = frames.iter().filter_map(|frame| frame.get(&place)).collect();
-    if bins.len() < LEAST_FRAMES {
+    if bins.len() < THRESHOLDS.least_frames {
         return None;
     }
     let total = bins.iter().fold(Bin::default(), |mut total, bin| {
@@ -180,14 +176,16 @@ fn bins(
         };
         let cell = locus.cell(row, frame, start_s);
         // Other things on the carpet are no pattern of it; what is odd about a line is.
-        if matches!(channel, Channel::Photometry | Channel::Noise) && value.abs() > CLIP * sigma {
+        if matches!(channel, Channel::Photometry | Channel::Noise)
+            && value.abs() > THRESHOLDS.clip_sigmas * sigma
+        {
             continue;
         }
         if channel == Channel::Photometry {
             blocks.entry(cell).or_default().push(value / sigma);
             continue;
         }
-        let residual = (value / sigma).clamp(-CLIP, CLIP);
+        let residual = (value / sigma).clamp(-THRESHOLDS.clip_sigmas, THRESHOLDS.clip_sigmas);
         let direction = match (channel, locus) {
             (Channel::Geometry | Channel::Color, Locus::Picture) => row.normal,
             // A line that is seen late is off to where it came from, whichever way its normal points.

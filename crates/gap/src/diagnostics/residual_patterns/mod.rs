@@ -17,15 +17,15 @@ use self::{
 use reality_sim_core::statistics::median;
 
 use crate::{
-    diagnostics::detector::{Detector, FitResiduals, FrameResiduals, LIKELY_CHANCE},
+    diagnostics::detector::{Detector, FitResiduals, FrameResiduals, SIGNIFICANCE},
     diagnostics::finding::Finding,
     inference::gain::Gain,
     inference::model_error::ModelError,
     measurement::quantity::{Channel, Quantity},
+    thresholds::{PatternThresholds, Thresholds},
 };
 
-/// A pattern is significant where its gain on unseen frames is this many standard deviations above zero.
-const LEAST_SCORE: f64 = 3.2;
+const THRESHOLDS: PatternThresholds = Thresholds::DEFAULT.diagnostics.patterns;
 
 /// Finds patterns of residuals.
 pub(crate) struct ResidualPatterns;
@@ -62,7 +62,7 @@ impl Pattern {
         // Of the cells that are no chance the one with the largest mean; where all may be chance, the least likely.
         let cells = binned.p_values().map(|(cell, p_value)| {
             let p_value = (tested * p_value).min(1.0);
-            let rank = if p_value < LIKELY_CHANCE { 1.0 + binned.mean(cell) } else { 1.0 - p_value };
+            let rank = if p_value < SIGNIFICANCE { 1.0 + binned.mean(cell) } else { 1.0 - p_value };
             (rank, p_value, cell)
         });
         let (_, p_value, strongest) = cells.max_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -79,17 +79,17 @@ impl Pattern {
     }
 
     fn is_all_over(&self) -> bool {
-        self.gain.score() > LEAST_SCORE && self.size > self.material
+        self.gain.score() > THRESHOLDS.least_score && self.size > self.material
     }
 
     fn is_significant(&self) -> bool {
-        let in_one_cell = self.p_value < LIKELY_CHANCE && self.strongest_size > self.material;
+        let in_one_cell = self.p_value < SIGNIFICANCE && self.strongest_size > self.material;
         self.is_all_over() || in_one_cell
     }
 
     /// The larger of its size all over and in one cell, as far as each is significant.
     fn reported_size(&self) -> f64 {
-        if self.p_value < LIKELY_CHANCE {
+        if self.p_value < SIGNIFICANCE {
             self.strongest_size.max(if self.is_all_over() { self.size } else { 0.0 })
         } else {
             self.size
@@ -110,13 +110,13 @@ impl Pattern {
 /// the blur.
 fn material(channel: Channel, blur_px2: f64) -> f64 {
     match channel {
-        Channel::Geometry => 0.12,
-        Channel::Photometry => 0.06,
-        // A line's profile is not quite the one that is fitted: the error grows with the blur.
-        Channel::Sharpness => 0.08_f64.max(0.06 * blur_px2),
-        // Centres of mass of blurred lines scatter with the flanks.
-        Channel::Color => 0.08 + 0.04 * blur_px2,
-        Channel::Noise => 0.6,
+        Channel::Geometry => THRESHOLDS.material_geometry_px,
+        Channel::Photometry => THRESHOLDS.material_photometry,
+        Channel::Sharpness => {
+            THRESHOLDS.material_sharpness_px2.max(THRESHOLDS.material_sharpness_ratio * blur_px2)
+        }
+        Channel::Color => THRESHOLDS.material_color_px + THRESHOLDS.material_color_px_per_px2 * blur_px2,
+        Channel::Noise => THRESHOLDS.material_noise,
         Channel::Motion => f64::INFINITY,
     }
 }

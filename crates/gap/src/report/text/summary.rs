@@ -13,6 +13,7 @@ use crate::{
     diagnostics::finding::Finding,
     measurement::quantity::Channel,
     report::data::{EffectReport, Estimate, Gap, NotFoundReport, Report, Unobservable, Verdict},
+    thresholds::Thresholds,
 };
 
 /// Number of detection limits named if nothing was found.
@@ -36,9 +37,9 @@ pub fn summary(report: &Report) -> String {
 /// Introduction to the effects found if something stays unexplained, which may be part of them.
 const UNSURE: &str = "Effects of the library explain a part of it, not for sure while the rest is unknown:";
 /// Number of standard deviations from which on a refitted size counts as changed.
-const MOVED: f64 = 3.0;
+const MOVED: f64 = Thresholds::DEFAULT.report.changed_sigmas;
 /// P-value below which an effect of the given model counts as visible. It also counts if it closes a part of the gap.
-const SHOWS: f64 = 0.05;
+const SHOWS: f64 = Thresholds::DEFAULT.report.shown_p_value;
 
 /// Returns a sentence on an effect of the given model that these frames do not show, or show in another size.
 fn refitted(report: &EffectReport) -> Option<String> {
