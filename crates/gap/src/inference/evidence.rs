@@ -10,7 +10,7 @@ use crate::{
     linear_model::column::ColumnIndex,
     linear_model::normal_equations::NormalEquations,
     linear_model::reduced_equations::{Fit, ReducedEquations, UNSEEN},
-    linear_model::system::{LinearSystem, PRIOR},
+    linear_model::{normal_equations::PRIOR, system::LinearSystem},
     thresholds::Thresholds,
 };
 

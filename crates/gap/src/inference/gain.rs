@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use crate::{
     inference::cluster_covariance::{self, LAG},
-    linear_model::system::PRIOR,
+    linear_model::normal_equations::PRIOR,
 };
 
 /// Gain in log-likelihood on frames that the fit has not seen.

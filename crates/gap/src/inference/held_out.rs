@@ -8,7 +8,9 @@ use reality_sim_sensor::Model;
 use crate::{
     inference::selected_model::SelectedModel,
     linear_model::linearization::{MeasureError, linearise},
-    linear_model::system::{FittedResiduals, LinearizedFrame, weigh},
+    linear_model::{
+        fitted_residuals::FittedResiduals, linearized_frame::LinearizedFrame, robust_weights::weigh,
+    },
     measurement::quantity::{Channel, Quantity},
     recording::Recording,
     thresholds::Thresholds,

@@ -10,7 +10,7 @@ use crate::{
     linear_model::linearization::{MeasureError, linearise, measure_frames},
     linear_model::nuisance::{Nuisance, tolerances},
     linear_model::parameters::FittedParameter,
-    linear_model::system::{LinearSystem, LinearizedFrame},
+    linear_model::{linearized_frame::LinearizedFrame, system::LinearSystem},
     measurement::frame::FrameMeasurements,
     measurement::quantity::Channel,
     recording::Recording,

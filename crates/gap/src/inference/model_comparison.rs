@@ -9,7 +9,7 @@ use crate::{
     inference::split::HeldOutSplit,
     linear_model::parameters::FittedParameter,
     linear_model::reduced_equations::ReducedEquations,
-    linear_model::system::{FittedResiduals, INDEPENDENT, LinearSystem},
+    linear_model::{fitted_residuals::FittedResiduals, robust_weights::INDEPENDENT, system::LinearSystem},
     measurement::quantity::Quantity,
     thresholds::{InferenceThresholds, Thresholds},
 };

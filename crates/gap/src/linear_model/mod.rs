@@ -2,10 +2,10 @@
 
 mod assembly;
 pub(crate) mod column;
-mod fitted_residuals;
+pub(crate) mod fitted_residuals;
 pub(crate) mod initial_values;
 pub(crate) mod linearization;
-mod linearized_frame;
+pub(crate) mod linearized_frame;
 pub(crate) mod normal_equations;
 pub(crate) mod nuisance;
 pub(crate) mod odometry_steps;
@@ -16,7 +16,7 @@ pub(crate) mod pose_gradient;
 mod pose_projection;
 pub(crate) mod prediction;
 pub(crate) mod reduced_equations;
-mod robust_weights;
+pub(crate) mod robust_weights;
 mod rounding;
 pub(crate) mod system;
 #[cfg(test)]

@@ -12,19 +12,14 @@ use nalgebra::{DMatrix, DVector};
 use crate::{
     linear_model::{
         assembly::{by_cell, by_frame, by_view},
-        normal_equations::NormalEquations,
+        fitted_residuals::FittedResiduals,
+        linearized_frame::LinearizedFrame,
+        normal_equations::{NormalEquations, PRIOR},
         pose_error::pose_sigmas,
-        robust_weights::{all_of, first_residuals, sigmas_by_quantity},
+        robust_weights::{all_of, first_residuals, sigmas_by_quantity, weigh},
     },
     measurement::quantity::Quantity,
     recording::ReferenceKind,
-};
-
-pub(crate) use crate::linear_model::{
-    fitted_residuals::FittedResiduals,
-    linearized_frame::LinearizedFrame,
-    normal_equations::PRIOR,
-    robust_weights::{INDEPENDENT, weigh},
 };
 
 /// Iterations of reweighted least squares: weights, standard deviations and poses' errors in turn.
@@ -113,7 +108,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        linear_model::column::ColumnIndex,
+        linear_model::{column::ColumnIndex, robust_weights::INDEPENDENT},
         testing::{Noise, measurement},
     };
 

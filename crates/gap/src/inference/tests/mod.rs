@@ -9,9 +9,8 @@ use reality_sim_sensor::{EffectIndex, Model};
 
 use crate::{
     linear_model::{
-        column::ColumnIndex,
-        parameters::FittedParameter,
-        system::{LinearSystem, LinearizedFrame},
+        column::ColumnIndex, linearized_frame::LinearizedFrame, parameters::FittedParameter,
+        system::LinearSystem,
     },
     measurement::{quantity::Quantity, scalar::Measurement},
     recording::ReferenceKind,

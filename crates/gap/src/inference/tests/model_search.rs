@@ -9,7 +9,7 @@ use crate::{
         model_search::ModelSearch,
         split::HeldOutSplit,
     },
-    linear_model::{linearization::MeasureError, system::LinearizedFrame},
+    linear_model::{linearization::MeasureError, linearized_frame::LinearizedFrame},
 };
 
 impl Linearize for World {

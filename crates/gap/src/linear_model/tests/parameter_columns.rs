@@ -11,8 +11,8 @@ use crate::{
     linear_model::{
         initial_values::starting_values,
         linearization::{linearise, measure_frames},
+        linearized_frame::LinearizedFrame,
         parameters::{FittedParameter, columns},
-        system::LinearizedFrame,
     },
     measurement::{
         frame::FrameMeasurements,
