@@ -20,7 +20,7 @@ use reality_sim::{
     search::{GlobalSearch, SearchConfig, SearchGrid},
 };
 
-use crate::{scene::Scene, scoring::MODELS, warp};
+use crate::{scene::Scene, warp};
 
 const SIGMA: PlanarSigma = PlanarSigma { position_m: 0.03, yaw_rad: 0.03 };
 /// Numbers of particles scored at once by one iteration of the filter.
@@ -55,8 +55,8 @@ fn bench_on(criterion: &mut Criterion, scene: &Scene, context: &Arc<GpuContext>)
 /// the field is excluded: the CPU finds it in both cases.
 fn whole_frames(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dyn Backend)]) {
     let walk = &scene.walk;
-    for (name, kind) in MODELS {
-        let mut group = criterion.benchmark_group(format!("filter/{name}"));
+    for kind in ObservationKind::ALL {
+        let mut group = criterion.benchmark_group(format!("filter/{kind}"));
         group.sampling_mode(SamplingMode::Flat);
         for (device, backend) in backends {
             let config = LocalizerConfig::new(kind);
@@ -83,7 +83,7 @@ fn print_stages(scene: &Scene, context: &Arc<GpuContext>) {
 
     const FRAMES: usize = 8;
     let walk = &scene.walk;
-    for (name, kind) in MODELS {
+    for kind in ObservationKind::ALL {
         let config = LocalizerConfig::new(kind);
         let filter = GpuFilter::new(
             context.clone(),
@@ -101,7 +101,7 @@ fn print_stages(scene: &Scene, context: &Arc<GpuContext>) {
             filter.predict(None).expect("a device that works");
             let timed = match filter.timed_update(scene.mount(), SIGMA) {
                 Ok(timed) => timed,
-                Err(error) => return println!("filter/{name}: stages: absent: {error}"),
+                Err(error) => return println!("filter/{kind}: stages: absent: {error}"),
             };
             for (stage, seconds) in timed.into_iter().filter(|_| frame > 0) {
                 let milliseconds = 1e3 * seconds / FRAMES as f64;
@@ -114,7 +114,7 @@ fn print_stages(scene: &Scene, context: &Arc<GpuContext>) {
         let total: f64 = stages.iter().map(|(_, milliseconds)| milliseconds).sum();
         let lines: Vec<String> =
             stages.iter().map(|(stage, milliseconds)| format!("{stage} {milliseconds:.3}")).collect();
-        println!("filter/{name}: stages, ms a frame: {}; together {total:.3}", lines.join(", "));
+        println!("filter/{kind}: stages, ms a frame: {}; together {total:.3}", lines.join(", "));
     }
 }
 

@@ -20,13 +20,10 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let stream = Stream::new(0, Purpose::Resample, 0, 0);
     let mut group = criterion.benchmark_group("resampling");
     group.throughput(Throughput::Elements(PARTICLES as u64));
-    for (name, scheme) in [
-        ("residual", Resampling::Residual),
-        ("systematic", Resampling::Systematic),
-        ("stratified", Resampling::Stratified),
-        ("multinomial", Resampling::Multinomial),
-    ] {
-        group.bench_function(name, |bencher| bencher.iter(|| scheme.resample(&weights, PARTICLES, stream)));
+    for scheme in Resampling::ALL {
+        group.bench_function(scheme.name(), |bencher| {
+            bencher.iter(|| scheme.resample(&weights, PARTICLES, stream));
+        });
     }
     group.finish();
 }

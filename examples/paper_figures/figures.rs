@@ -12,11 +12,6 @@ use crate::{
 };
 
 const PARTICLES: [usize; 10] = [50, 100, 200, 400, 800, 1600, 3000, 10_000, 30_000, 100_000];
-const MODELS: [(ObservationKind, &str); 3] = [
-    (ObservationKind::Gauss, "gauss"),
-    (ObservationKind::Distance, "distance"),
-    (ObservationKind::Contrast, "contrast"),
-];
 
 /// Curves of Fig. 9: model and name. In the last one the particles do all the work: without odometry, a single iteration
 /// leaves them far apart, and there is no search for a lost pose.
@@ -46,15 +41,15 @@ fn table_2(recording: &Recording, seeds: u64, text: &mut String) -> anyhow::Resu
     )?;
     writeln!(text, "| the paper, Gauss-based, Intel i5 2.5 GHz | 18.1 cm | | | 850 ms |")?;
     writeln!(text, "| the paper, distance-based | 18.5 cm | | | 1,760 ms |")?;
-    for (kind, name) in MODELS {
+    for kind in ObservationKind::ALL {
         let paper = as_in_the_paper(kind);
-        table_2_row(recording, seeds, &format!("`{name}`, as in the paper"), paper, Model::Configured, text)?;
+        table_2_row(recording, seeds, &format!("`{kind}`, as in the paper"), paper, Model::Configured, text)?;
         if kind == ObservationKind::Distance {
             let label = "Eq. 1 to the letter, as in the paper";
             table_2_row(recording, seeds, label, paper, Model::NormalSearch, text)?;
         }
         let default = LocalizerConfig::new(kind);
-        table_2_row(recording, seeds, &format!("`{name}`, default"), default, Model::Configured, text)?;
+        table_2_row(recording, seeds, &format!("`{kind}`, default"), default, Model::Configured, text)?;
     }
     Ok(())
 }
@@ -159,10 +154,10 @@ fn plot(
         .draw()?;
     let colors =
         [RGBColor(214, 96, 77), RGBColor(67, 147, 195), RGBColor(27, 120, 55), RGBColor(244, 165, 130)];
-    for ((value, (_, name)), color) in paper.into_iter().zip(MODELS).zip(colors) {
+    for ((value, kind), color) in paper.into_iter().zip(ObservationKind::ALL).zip(colors) {
         chart
             .draw_series([Cross::new((800.0, value), 5, color.stroke_width(2))])?
-            .label(format!("the paper, {name}"))
+            .label(format!("the paper, {kind}"))
             .legend(move |(x, y)| Cross::new((x + 9, y), 5, color.stroke_width(2)));
     }
     for ((points, (_, name)), color) in points.iter().zip(CURVES).zip(colors) {

@@ -8,7 +8,7 @@ use reality_sim::{
     evaluation::{ErrorStatistics, PoseError},
     montage::grid,
     sequence::save_image,
-    synthesis::METHODS,
+    synthesis::MethodKind,
 };
 
 use crate::{IMAGES, synthesizer};
@@ -96,11 +96,11 @@ fn rows(walk: &Sequence, first: usize) -> anyhow::Result<Vec<Row>> {
     let truth =
         left_out.clone().map(|frame| walk.load_image(frame).map(Arc::new)).collect::<Result<_, _>>()?;
     let mut rows = vec![Row { name: "true", pictures: truth }];
-    for method in METHODS {
+    for method in MethodKind::COMPARED {
         let mut pictures = Vec::new();
         for frame in left_out.clone() {
             let Some(pose) = walk.frames[frame].reference_pose else { continue };
-            pictures.push(Arc::new(synthesizer.image_at(pose, method)?.picture));
+            pictures.push(Arc::new(synthesizer.image_at(pose, &method)?.picture));
         }
         rows.push(Row { name: method.name(), pictures });
     }

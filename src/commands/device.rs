@@ -3,26 +3,21 @@
 use std::sync::Arc;
 
 use anyhow::bail;
-use clap::{Args, ValueEnum};
+use clap::Args;
 
-use reality_sim::backend::{Backend, BackendError, CpuBackend};
+use reality_sim::backend::{Backend, BackendError, CpuBackend, DeviceChoice};
+
+use super::choice::one_of;
 
 /// Where to compute.
 #[derive(Debug, Clone, Args)]
 pub struct BackendArgs {
     /// Where to compute: auto takes a graphics card where there is one
-    #[arg(long, value_enum, default_value = "auto")]
-    backend: Choice,
+    #[arg(long, value_parser = one_of::<DeviceChoice>(DeviceChoice::ALL.map(DeviceChoice::name)), default_value_t)]
+    backend: DeviceChoice,
     /// The graphics adapter whose name contains this; `reality-sim doctor` lists them
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Choice {
-    Auto,
-    Cpu,
-    Gpu,
 }
 
 /// Device that was chosen.
@@ -38,7 +33,7 @@ pub struct Device {
 
 impl Device {
     fn processor(reason: Option<String>) -> Self {
-        Self { backend: Arc::new(CpuBackend), name: "cpu", adapter: None, reason }
+        Self { backend: Arc::new(CpuBackend), name: DeviceChoice::Cpu.name(), adapter: None, reason }
     }
 }
 
@@ -46,7 +41,7 @@ impl BackendArgs {
     /// Refuses a graphics adapter for the CPU.
     pub fn check_usage(&self) -> Result<(), String> {
         match (self.backend, &self.adapter) {
-            (Choice::Cpu, Some(_)) => {
+            (DeviceChoice::Cpu, Some(_)) => {
                 Err("--adapter has no effect with --backend cpu: leave one of them out".to_owned())
             }
             _ => Ok(()),
@@ -55,7 +50,7 @@ impl BackendArgs {
 
     /// Returns the processor, for an option that no graphics card supports.
     pub fn processor_only(&self, option: &str) -> anyhow::Result<Device> {
-        if self.backend == Choice::Gpu || self.adapter.is_some() {
+        if self.backend == DeviceChoice::Gpu || self.adapter.is_some() {
             bail!("{option}: is not computed on the graphics card: leave it out, or use --backend cpu");
         }
         Ok(Device::processor(None))
@@ -66,10 +61,10 @@ impl BackendArgs {
     pub fn device(&self) -> anyhow::Result<Device> {
         use reality_sim::gpu::{GpuBackend, GpuContext};
 
-        if self.backend == Choice::Cpu {
+        if self.backend == DeviceChoice::Cpu {
             return Ok(Device::processor(None));
         }
-        let is_asked_for = self.backend == Choice::Gpu || self.adapter.is_some();
+        let is_asked_for = self.backend == DeviceChoice::Gpu || self.adapter.is_some();
         let context = match GpuContext::new(self.adapter.as_deref()) {
             Ok(context) => context,
             Err(error) if is_asked_for => return Err(error.into()),
@@ -81,7 +76,7 @@ impl BackendArgs {
         }
         let adapter = Some(context.adapter().name.clone());
         let backend = Arc::new(GpuBackend::new(Arc::new(context)));
-        Ok(Device { backend, name: "gpu", adapter, reason: None })
+        Ok(Device { backend, name: DeviceChoice::Gpu.name(), adapter, reason: None })
     }
 
     /// Returns the processor: this build supports nothing else.
@@ -106,16 +101,17 @@ pub fn backend_error(error: anyhow::Error) -> BackendError {
 /// Lists the devices that the viewer offers, the default first.
 #[cfg(feature = "viewer")]
 pub fn all() -> Vec<reality_sim_viewer::Device> {
-    let choose = |name: String, backend: Choice, adapter: Option<String>| {
+    let choose = |name: String, backend: DeviceChoice, adapter: Option<String>| {
         let args = BackendArgs { backend, adapter };
         let open = move || args.device().map(|device| device.backend).map_err(backend_error);
         reality_sim_viewer::Device { name, open: Arc::new(open) }
     };
     let mut devices = vec![
-        choose("automatic".to_owned(), Choice::Auto, None),
-        choose("processor".to_owned(), Choice::Cpu, None),
+        choose("automatic".to_owned(), DeviceChoice::Auto, None),
+        choose("processor".to_owned(), DeviceChoice::Cpu, None),
     ];
-    devices.extend(adapter_names().into_iter().map(|name| choose(name.clone(), Choice::Gpu, Some(name))));
+    devices
+        .extend(adapter_names().into_iter().map(|name| choose(name.clone(), DeviceChoice::Gpu, Some(name))));
     devices
 }
 

@@ -2,6 +2,7 @@
 
 mod advice;
 mod build;
+mod choice;
 mod device;
 #[cfg(feature = "gpu")]
 mod doctor;

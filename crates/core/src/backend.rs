@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-pub use crate::backend_error::BackendError;
+pub use crate::{backend_error::BackendError, device_choice::DeviceChoice};
 use crate::{
     camera::Camera,
     field::FieldDimensions,

@@ -49,12 +49,14 @@
 pub mod backend;
 mod backend_error;
 pub mod camera;
+mod device_choice;
 pub mod field;
 pub mod filter;
 mod goal_colors;
 mod isometry;
 pub mod localization;
 pub mod mount;
+pub mod names;
 pub mod observation;
 pub mod pose;
 pub mod preprocess;

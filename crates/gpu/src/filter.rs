@@ -383,16 +383,13 @@ mod tests {
         let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
         let camera = &twins::cameras().unwrap()[0];
         let preprocessor = Preprocessor::new(camera, field.line_width_m);
-        let estimators = [Estimator::Best, Estimator::Mean, Estimator::Cluster];
-        let schemes =
-            [Resampling::Residual, Resampling::Systematic, Resampling::Stratified, Resampling::Multinomial];
         for seed in 0..24_u64 {
             let config = FilterConfig {
                 seed: seed << 31 | seed,
                 particles: [1, 37, 800, 3000][seed as usize % 4],
                 iterations: 1,
-                resampling: schemes[(seed / 4) as usize % 4],
-                estimator: estimators[seed as usize % 3],
+                resampling: Resampling::ALL[(seed / 4) as usize % 4],
+                estimator: Estimator::ALL[seed as usize % 3],
                 mount_sigma: seed.is_multiple_of(2).then(MountPoseSigma::default),
                 ..FilterConfig::default()
             };

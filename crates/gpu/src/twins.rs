@@ -52,7 +52,7 @@ pub fn compare_scores(context: &Arc<GpuContext>, scenes: u64) -> Result<Vec<Scor
     let field = FieldDimensions::preset("humanoid-kidsize-2010").expect("a preset of the core");
     let cameras = cameras().expect("lenses that are valid");
     let mut comparisons = Vec::new();
-    for kind in [ObservationKind::Gauss, ObservationKind::Distance, ObservationKind::Contrast] {
+    for kind in ObservationKind::ALL {
         // A picture of noise has no field border.
         let config = ObservationConfig { mask_border: false, ..ObservationConfig::new(kind) };
         for camera in &cameras {

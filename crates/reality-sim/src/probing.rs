@@ -11,7 +11,7 @@ use crate::{
     preprocess::luma,
     sensor::{RenderError, Renderer},
     synthesis::{
-        METHODS, Method,
+        MethodKind,
         quality::{Mask, psnr_db, ssim},
     },
 };
@@ -83,10 +83,10 @@ pub fn compare_methods(
         Some(Outcome { psnr_db: psnr, psnr_field_db, ssim, milliseconds, covered, picture })
     };
     let mut outcomes = BTreeMap::new();
-    for method in METHODS {
+    for method in MethodKind::COMPARED {
         // The first call decodes the neighbours, the second one is timed.
         let answer =
-            synthesizer.image_at(pose, method).and_then(|_| timed(|| synthesizer.image_at(pose, method)));
+            synthesizer.image_at(pose, &method).and_then(|_| timed(|| synthesizer.image_at(pose, &method)));
         match answer {
             Ok((reconstruction, milliseconds)) => {
                 let covered = Some(reconstruction.covered());
@@ -123,7 +123,7 @@ fn timed<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, f64), E> {
 
 /// Returns the names of the methods, in the order in which they are shown.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    METHODS.into_iter().map(Method::name).chain([SIMULATED])
+    MethodKind::COMPARED.into_iter().map(MethodKind::name).chain([SIMULATED])
 }
 
 impl MethodReport {

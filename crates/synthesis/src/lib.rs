@@ -19,6 +19,8 @@
 //! | [`Blend`] | several pictures, each warped as by `Plane`, weighted pixel by pixel |
 //! | [`Auto`] | the recorded picture if there is one at the pose, else `Blend` |
 //!
+//! [`MethodKind`] lists them by name.
+//!
 //! Pictures are RGB, 8 bits per channel, as a camera records them; units and frames are those of
 //! [`reality_sim_core::pose`].
 //!
@@ -61,8 +63,8 @@ mod cache;
 mod error;
 mod gain;
 mod hall;
+mod kind;
 mod method;
-mod methods;
 mod nearest;
 mod plane;
 mod quadratic;
@@ -76,8 +78,8 @@ pub use self::{
     auto::Auto,
     error::SynthesisError,
     hall::measure_hall,
+    kind::MethodKind,
     method::Method,
-    methods::METHODS,
     nearest::Nearest,
     plane::{Blend, Plane},
     quadratic::Quadratic,

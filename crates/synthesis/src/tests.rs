@@ -48,15 +48,15 @@ fn truth(walk: &Sequence, frame: usize) -> (CameraPose, RgbImage) {
 fn frames_that_were_left_out_look_as_they_were_recorded() {
     let walk = walk();
     let (_folder, synthesizer) = without_some_frames();
-    let field_psnr_db = |frame: usize, method: &dyn Method| {
+    let field_psnr_db = |frame: usize, method: MethodKind| {
         let (pose, truth) = truth(&walk, frame);
         let mask = Mask::carpet(synthesizer.camera(), pose, &walk.field);
-        psnr_db(&synthesizer.image_at(pose, method).unwrap().picture, &truth, Some(&mask)).unwrap()
+        psnr_db(&synthesizer.image_at(pose, &method).unwrap().picture, &truth, Some(&mask)).unwrap()
     };
-    let mean_db = |method: &dyn Method| {
+    let mean_db = |method: MethodKind| {
         LEFT_OUT.map(|frame| field_psnr_db(frame, method)).sum::<f64>() / LEFT_OUT.len() as f64
     };
-    let [nearest, quadratic, plane, blend] = METHODS.map(mean_db);
+    let [nearest, quadratic, plane, blend] = MethodKind::COMPARED.map(mean_db);
     assert!(plane > nearest + 5.0 && plane > quadratic + 2.0, "{plane} {nearest} {quadratic}");
     assert!(blend > nearest + 8.0 && blend > plane, "{blend} {nearest} {plane}");
 }
@@ -114,8 +114,8 @@ fn the_recorded_picture_is_that_of_the_lens_wanted() {
 fn the_maps_of_origin_and_trust_agree_with_what_was_used() {
     let (_folder, synthesizer) = without_some_frames();
     let (pose, _) = truth(&walk(), 25);
-    for method in METHODS {
-        let made = synthesizer.image_at(pose, method).unwrap();
+    for method in MethodKind::COMPARED {
+        let made = synthesizer.image_at(pose, &method).unwrap();
         assert_eq!(made.origins.len(), 640 * 480, "{}", method.name());
         let used: f64 = made.used.iter().map(|used| used.share).sum();
         assert!((used - made.covered()).abs() < 1e-9, "{}", method.name());
@@ -131,9 +131,9 @@ fn a_callers_buffer_gets_the_same_pixels_and_keeps_its_own_after_an_error() {
     let (_folder, synthesizer) = without_some_frames();
     let (pose, _) = truth(&walk(), 25);
     let mut buffer = vec![7; 3 * 640 * 480];
-    for method in METHODS {
-        let made = synthesizer.image_at(pose, method).unwrap();
-        let covered = synthesizer.image_into(pose, method, &mut buffer).unwrap();
+    for method in MethodKind::COMPARED {
+        let made = synthesizer.image_at(pose, &method).unwrap();
+        let covered = synthesizer.image_into(pose, &method, &mut buffer).unwrap();
         assert!(buffer == *made.picture && covered == made.covered(), "{}", method.name());
     }
     let before = buffer.clone();
@@ -149,20 +149,20 @@ fn what_cannot_be_answered_is_refused_and_the_best_effort_is_not() {
     let usual = synthesizer.archive().usual_pose();
     let away = usual.with_planar(Pose2::new(2.9, -1.9, -1.5));
     let outside = usual.with_planar(Pose2::new(40.0, 0.0, 0.0));
-    for method in METHODS {
-        let error = synthesizer.image_at(outside, method).unwrap_err();
+    for method in MethodKind::COMPARED {
+        let error = synthesizer.image_at(outside, &method).unwrap_err();
         assert!(
             matches!(error, SynthesisError::NoNeighbours { reason: NoNeighbours::OutOfReach { .. }, .. }),
             "{error}"
         );
         let nowhere = CameraPose { x_m: f64::NAN, ..usual };
-        let error = synthesizer.image_at(nowhere, method).unwrap_err();
+        let error = synthesizer.image_at(nowhere, &method).unwrap_err();
         assert!(
             matches!(error, SynthesisError::NoNeighbours { reason: NoNeighbours::NotFinite, .. }),
             "{error}"
         );
         for impossible in [CameraPose { height_m: -0.1, ..usual }, CameraPose { x_m: 1e9, ..usual }] {
-            let error = synthesizer.image_at(impossible, method).unwrap_err();
+            let error = synthesizer.image_at(impossible, &method).unwrap_err();
             assert!(matches!(error, SynthesisError::ImpossiblePose { .. }), "{error}");
         }
     }

@@ -1,13 +1,17 @@
 //! Options of `render`, and their interpretation.
 
-use std::path::PathBuf;
+use std::{fmt, path::PathBuf, str::FromStr};
 
 use anyhow::bail;
-use clap::{Args, ValueEnum};
+use clap::{Args, builder::PossibleValue};
 
-use reality_sim::{Archive, CameraPose, Pose2, StampedPose, sequence::read_tum};
+use reality_sim::{
+    Archive, CameraPose, Pose2, StampedPose, names::UnknownName, probing::SIMULATED, sequence::read_tum,
+    synthesis::MethodKind,
+};
 
 use crate::commands::{
+    choice::{described, one_of},
     output::{check_distinct, check_output_picture, create_output_folder},
     picture_at::SynthesisArgs,
 };
@@ -25,8 +29,8 @@ pub struct RenderArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "pose", required_unless_present = "pose")]
     pub path: Option<PathBuf>,
     /// The way to the picture
-    #[arg(long, value_enum, default_value = "auto")]
-    pub method: MethodName,
+    #[arg(long, value_parser = one_of::<PictureMethod>(methods()), default_value_t)]
+    pub method: PictureMethod,
     /// The picture, PNG or JPEG; with --path the folder of the pictures
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
@@ -53,21 +57,42 @@ pub struct RenderArgs {
     pub json: bool,
 }
 
-/// The ways to a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum MethodName {
-    /// The picture recorded at the pose where there is one, else as blend
-    Auto,
-    /// The nearest picture as it is
-    Nearest,
-    /// The paper's Eq. 4: a polynomial of second order from the nearest picture
-    Quadratic,
-    /// One picture, through the ground plane and both lenses
-    Plane,
-    /// Several pictures, mixed pixel by pixel
-    Blend,
-    /// No picture: the model of the field, drawn
+/// A way to a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PictureMethod {
+    /// From recorded pictures.
+    Recorded(MethodKind),
+    /// From the model of the field.
     Simulated,
+}
+
+impl Default for PictureMethod {
+    fn default() -> Self {
+        Self::Recorded(MethodKind::default())
+    }
+}
+
+impl fmt::Display for PictureMethod {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Recorded(kind) => kind.fmt(formatter),
+            Self::Simulated => formatter.pad(SIMULATED),
+        }
+    }
+}
+
+impl FromStr for PictureMethod {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        if name == SIMULATED { Ok(Self::Simulated) } else { name.parse().map(Self::Recorded) }
+    }
+}
+
+/// Every way with its help.
+fn methods() -> impl Iterator<Item = PossibleValue> {
+    let recorded = MethodKind::ALL.into_iter().map(|kind| described(kind.name(), kind.description()));
+    recorded.chain([described(SIMULATED, "No picture: the model of the field, drawn")])
 }
 
 /// Pose whose last three numbers may be left out.
@@ -99,11 +124,11 @@ impl RenderArgs {
     /// Refuses options that contradict each other.
     pub fn check_usage(&self) -> Result<(), String> {
         let wants_origins = self.origins.is_some() || self.trust.is_some();
-        if self.method == MethodName::Simulated && wants_origins {
+        if self.method == PictureMethod::Simulated && wants_origins {
             return Err("--origins, --trust: a simulated picture comes from no recorded one: leave them out"
                 .to_owned());
         }
-        if self.method != MethodName::Simulated && self.model.is_some() {
+        if self.method != PictureMethod::Simulated && self.model.is_some() {
             return Err(
                 "--model: recorded pictures have no model of the camera: add --method simulated".to_owned()
             );

@@ -9,17 +9,17 @@ use reality_sim::{
     probing::SIMULATED,
     sensor::{Model, Renderer, SceneColors, Trajectory},
     sequence::CameraSetup,
-    synthesis::{Auto, Blend, Method, Nearest, Plane, Quadratic},
+    synthesis::MethodKind,
 };
 
-use super::options::MethodName;
+use super::options::PictureMethod;
 
 /// Pictures at different times have different noise.
 const NOISE_SEED: u64 = 0;
 
 /// Source of the pictures.
 pub enum Painter<'a> {
-    Recorded(&'a Synthesizer, &'static dyn Method),
+    Recorded(&'a Synthesizer, MethodKind),
     Simulated(Box<Renderer>),
     /// Simulated camera with effects, moving along its trajectory.
     Modelled(Box<Renderer>, Trajectory),
@@ -57,20 +57,15 @@ impl Work {
 
 impl<'a> Painter<'a> {
     /// Makes a painter for this method; `setup` is the camera whose pictures are made.
-    pub fn new(method: MethodName, synthesizer: &'a Synthesizer, setup: &CameraSetup) -> Self {
+    pub fn new(method: PictureMethod, synthesizer: &'a Synthesizer, setup: &CameraSetup) -> Self {
         let field = synthesizer.archive().field();
-        let recorded: &'static dyn Method = match method {
-            MethodName::Auto => &Auto,
-            MethodName::Nearest => &Nearest,
-            MethodName::Quadratic => &Quadratic,
-            MethodName::Plane => &Plane,
-            MethodName::Blend => &Blend,
-            MethodName::Simulated => {
+        match method {
+            PictureMethod::Recorded(kind) => Self::Recorded(synthesizer, kind),
+            PictureMethod::Simulated => {
                 let renderer = Renderer::new(setup, field, SceneColors::new(setup, field));
-                return Self::Simulated(Box::new(renderer));
+                Self::Simulated(Box::new(renderer))
             }
-        };
-        Self::Recorded(synthesizer, recorded)
+        }
     }
 
     /// Makes a painter for the simulated camera with the effects of a model file, moving along its trajectory.
@@ -97,7 +92,7 @@ impl<'a> Painter<'a> {
     pub fn paint(&self, StampedPose { timestamp_s, pose }: StampedPose) -> anyhow::Result<Painted> {
         let start = Instant::now();
         let work = match self {
-            Self::Recorded(synthesizer, method) => Work::Reconstructed(synthesizer.image_at(pose, *method)?),
+            Self::Recorded(synthesizer, method) => Work::Reconstructed(synthesizer.image_at(pose, method)?),
             Self::Simulated(renderer) => Work::Drawn(renderer.draw(pose)?),
             Self::Modelled(renderer, trajectory) => {
                 Work::Drawn(renderer.draw_at(trajectory, timestamp_s, Some(NOISE_SEED))?)

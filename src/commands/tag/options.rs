@@ -6,7 +6,7 @@ use std::{
 };
 
 use anyhow::bail;
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use reality_sim::{
     FieldDimensions, LocalizerConfig, ObservationKind, Pose2, Sequence,
@@ -15,7 +15,10 @@ use reality_sim::{
     sequence::{read_camera, read_field},
 };
 
-use crate::commands::device::{BackendArgs, Device};
+use crate::commands::{
+    choice::{described, one_of},
+    device::{BackendArgs, Device},
+};
 
 /// Distance beyond which a jump of the odometry to its origin counts as a reset, metres.
 const RESET_JUMP_M: f64 = 0.1;
@@ -26,8 +29,8 @@ pub struct TagArgs {
     /// Folder of the sequence: the one that holds sequence.toml
     pub sequence: PathBuf,
     /// Model that weighs the particles
-    #[arg(long, value_enum, default_value = "contrast")]
-    observation: Observation,
+    #[arg(long, value_parser = one_of::<ObservationKind>(ObservationKind::ALL.map(|entry| described(entry.name(), entry.description()))), default_value_t)]
+    observation: ObservationKind,
     /// Number of particles; with --adaptive the largest number
     #[arg(long, default_value_t = 800, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     particles: u32,
@@ -35,11 +38,11 @@ pub struct TagArgs {
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=100))]
     iterations: u32,
     /// How the particles that survive are chosen
-    #[arg(long, value_enum, default_value = "residual")]
-    resampling: ResamplingScheme,
+    #[arg(long, value_parser = one_of::<Resampling>(Resampling::ALL.map(Resampling::name)), default_value_t)]
+    resampling: Resampling,
     /// How the filter's pose is taken from the particles
-    #[arg(long, value_enum, default_value = "best")]
-    estimator: EstimatorKind,
+    #[arg(long, value_parser = one_of::<Estimator>(Estimator::ALL.map(|entry| described(entry.name(), entry.description()))), default_value_t)]
+    estimator: Estimator,
     /// Adapt the number of particles to their spread (KLD sampling)
     #[arg(long)]
     adaptive: bool,
@@ -96,65 +99,6 @@ pub struct TagArgs {
     pub json: bool,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Observation {
-    /// The paper's Eq. 2: grey values on the projected lines
-    Gauss,
-    /// The paper's Eq. 1: distances from projected to white lines
-    Distance,
-    /// Lines against their flanks, all six degrees of freedom, sub-pixel fit
-    Contrast,
-}
-
-impl From<Observation> for ObservationKind {
-    fn from(observation: Observation) -> Self {
-        match observation {
-            Observation::Gauss => Self::Gauss,
-            Observation::Distance => Self::Distance,
-            Observation::Contrast => Self::Contrast,
-        }
-    }
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum ResamplingScheme {
-    Residual,
-    Systematic,
-    Stratified,
-    Multinomial,
-}
-
-impl From<ResamplingScheme> for Resampling {
-    fn from(scheme: ResamplingScheme) -> Self {
-        match scheme {
-            ResamplingScheme::Residual => Self::Residual,
-            ResamplingScheme::Systematic => Self::Systematic,
-            ResamplingScheme::Stratified => Self::Stratified,
-            ResamplingScheme::Multinomial => Self::Multinomial,
-        }
-    }
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum EstimatorKind {
-    /// The particle with the largest weight, as in the paper
-    Best,
-    /// Weighted mean of all particles
-    Mean,
-    /// Weighted mean of the particles around the best
-    Cluster,
-}
-
-impl From<EstimatorKind> for Estimator {
-    fn from(kind: EstimatorKind) -> Self {
-        match kind {
-            EstimatorKind::Best => Self::Best,
-            EstimatorKind::Mean => Self::Mean,
-            EstimatorKind::Cluster => Self::Cluster,
-        }
-    }
-}
-
 /// Half-open range of frames; a missing bound leaves that side open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FrameRange {
@@ -200,7 +144,7 @@ impl TagArgs {
     pub fn check_usage(&self) -> Result<(), String> {
         self.backend.check_usage()?;
         let (contrast, distance) =
-            (self.observation == Observation::Contrast, self.observation == Observation::Distance);
+            (self.observation == ObservationKind::Contrast, self.observation == ObservationKind::Distance);
         let ignored = [
             ("--alpha", self.alpha.is_some() && contrast),
             ("--no-border-mask", self.no_border_mask && contrast),
@@ -224,15 +168,15 @@ impl TagArgs {
 
     /// Returns the settings of the filter.
     pub fn config(&self) -> LocalizerConfig {
-        let mut config = LocalizerConfig::new(self.observation.into());
+        let mut config = LocalizerConfig::new(self.observation);
         let observation = &mut config.observation;
         observation.blur_sigma_px = self.blur.unwrap_or(observation.blur_sigma_px);
         observation.alpha = self.alpha.unwrap_or(observation.alpha);
         observation.mask_border = !self.no_border_mask;
         config.filter.particles = self.particles as usize;
         config.filter.iterations = self.iterations;
-        config.filter.resampling = self.resampling.into();
-        config.filter.estimator = self.estimator.into();
+        config.filter.resampling = self.resampling;
+        config.filter.estimator = self.estimator;
         config.filter.seed = self.seed;
         config.filter.adaptive = self.adaptive.then(KldConfig::default);
         config.uses_odometry = !self.no_odometry;

@@ -139,14 +139,12 @@ impl Report {
 
     /// Formats the report for people.
     pub fn text(&self, name: &str) -> String {
-        let observation = match self.observation {
-            ObservationKind::Gauss => "gauss",
-            ObservationKind::Distance => "distance",
-            ObservationKind::Contrast => "contrast",
-        };
         let mut lines = vec![
             ("sequence", format!("{name}, {} frames", self.frames)),
-            ("model", format!("{observation}, {} particles, {} iterations", self.particles, self.iterations)),
+            (
+                "model",
+                format!("{}, {} particles, {} iterations", self.observation, self.particles, self.iterations),
+            ),
             ("backend", self.backend_text()),
             ("time", format!("{:.1} ms a frame (median)", 1e3 * self.seconds_per_frame)),
             ("sure", format!("{} frames; {} searched", self.sure_frames, self.searched_frames)),

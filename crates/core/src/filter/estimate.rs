@@ -1,8 +1,13 @@
 //! Estimates of one pose from many particles.
 
+use std::{fmt, str::FromStr};
+
 use serde::{Deserialize, Serialize};
 
-use crate::pose::CameraPose;
+use crate::{
+    names::{UnknownName, by_name},
+    pose::CameraPose,
+};
 
 /// How the pose is estimated from the particles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -15,6 +20,43 @@ pub enum Estimator {
     Mean,
     /// Weighted mean of the particles around the best one.
     Cluster,
+}
+
+impl Estimator {
+    /// All, in the order in which they are listed.
+    pub const ALL: [Self; 3] = [Self::Best, Self::Mean, Self::Cluster];
+
+    /// Its name in options and files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Best => "best",
+            Self::Mean => "mean",
+            Self::Cluster => "cluster",
+        }
+    }
+
+    /// What it is, in a line.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Best => "The particle with the largest weight, as in the paper",
+            Self::Mean => "Weighted mean of all particles",
+            Self::Cluster => "Weighted mean of the particles around the best",
+        }
+    }
+}
+
+impl fmt::Display for Estimator {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.name())
+    }
+}
+
+impl FromStr for Estimator {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        by_name("estimator", &Self::ALL, Self::name, name)
+    }
 }
 
 /// Radius around the best particle within which particles form its cluster, metres.

@@ -2,9 +2,12 @@
 //! copies is its weight times the total number of survivors. Douc, Cappé and Moulines, "Comparison of resampling schemes for
 //! particle filtering", 2005.
 
+use std::{fmt, str::FromStr};
+
 use serde::{Deserialize, Serialize};
 
 use super::rng::Stream;
+use crate::names::{UnknownName, by_name};
 
 /// Resampling scheme.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -20,6 +23,35 @@ pub enum Resampling {
     Stratified,
     /// n independent draws.
     Multinomial,
+}
+
+impl Resampling {
+    /// All, in the order in which they are listed.
+    pub const ALL: [Self; 4] = [Self::Residual, Self::Systematic, Self::Stratified, Self::Multinomial];
+
+    /// Its name in options and files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Residual => "residual",
+            Self::Systematic => "systematic",
+            Self::Stratified => "stratified",
+            Self::Multinomial => "multinomial",
+        }
+    }
+}
+
+impl fmt::Display for Resampling {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.name())
+    }
+}
+
+impl FromStr for Resampling {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        by_name("resampling scheme", &Self::ALL, Self::name, name)
+    }
 }
 
 impl Resampling {
@@ -85,9 +117,6 @@ mod tests {
 
     use super::{super::rng::Purpose, *};
 
-    const ALL: [Resampling; 4] =
-        [Resampling::Residual, Resampling::Systematic, Resampling::Stratified, Resampling::Multinomial];
-
     fn copies(chosen: &[usize], particles: usize) -> Vec<usize> {
         let mut copies = vec![0; particles];
         chosen.iter().for_each(|&index| copies[index] += 1);
@@ -104,7 +133,7 @@ mod tests {
             prop_assume!(raw.iter().sum::<f64>() > 0.0);
             let sum: f64 = raw.iter().sum();
             let weights: Vec<f64> = raw.iter().map(|w| w / sum).collect();
-            for scheme in ALL {
+            for scheme in Resampling::ALL {
                 let chosen = scheme.resample(&weights, count, Stream::new(seed, Purpose::Resample, 0, 0));
                 prop_assert_eq!(chosen.len(), count);
                 prop_assert!(chosen.iter().all(|&index| weights[index] > 0.0), "{:?} chose a dead particle", scheme);
@@ -133,7 +162,7 @@ mod tests {
     fn every_scheme_is_unbiased() {
         let weights = [0.5, 0.03, 0.27, 0.0, 0.2];
         let (count, runs) = (7, 20_000);
-        for scheme in ALL {
+        for scheme in Resampling::ALL {
             let mut total = [0_usize; 5];
             for seed in 0..runs {
                 let chosen = scheme.resample(&weights, count, Stream::new(seed, Purpose::Resample, 0, 0));

@@ -1,8 +1,13 @@
 //! Settings of the observation models.
 
+use std::{fmt, str::FromStr};
+
 use serde::{Deserialize, Serialize};
 
-use crate::field::FieldDimensions;
+use crate::{
+    field::FieldDimensions,
+    names::{UnknownName, by_name},
+};
 
 /// Observation model that weighs the particles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -15,6 +20,43 @@ pub enum ObservationKind {
     /// Contrast of the projected lines against the carpet on both sides.
     #[default]
     Contrast,
+}
+
+impl ObservationKind {
+    /// All, in the order in which they are listed.
+    pub const ALL: [Self; 3] = [Self::Gauss, Self::Distance, Self::Contrast];
+
+    /// Its name in options and files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gauss => "gauss",
+            Self::Distance => "distance",
+            Self::Contrast => "contrast",
+        }
+    }
+
+    /// What it is, in a line.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Gauss => "The paper's Eq. 2: grey values on the projected lines",
+            Self::Distance => "The paper's Eq. 1: distances from projected to white lines",
+            Self::Contrast => "Lines against their flanks, all six degrees of freedom, sub-pixel fit",
+        }
+    }
+}
+
+impl fmt::Display for ObservationKind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.name())
+    }
+}
+
+impl FromStr for ObservationKind {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        by_name("observation model", &Self::ALL, Self::name, name)
+    }
 }
 
 /// Settings of the observation models. The same defaults serve all cameras and fields; `docs/paper.md` has the

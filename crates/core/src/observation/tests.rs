@@ -129,7 +129,7 @@ fn the_true_pose_scores_best() {
         let mount = MountPose::of(pose);
         let picture = test_scene::render(&camera, pose, &field);
         let prepared = Preprocessor::new(&camera, field.line_width_m).prepare(picture, mount);
-        for kind in [ObservationKind::Gauss, ObservationKind::Distance, ObservationKind::Contrast] {
+        for kind in ObservationKind::ALL {
             let mut scorer = CpuScorer::new(&camera, &field, ObservationConfig::new(kind));
             scorer.load(&prepared).unwrap();
             let moved = |x: f64, y: f64, yaw: f64| CameraPose {
@@ -173,7 +173,7 @@ fn contrast_does_not_depend_on_the_light() {
 #[test]
 fn poses_without_sense_have_a_weight_all_the_same() {
     let (camera, field) = (test_scene::fisheye(), test_scene::field());
-    for kind in [ObservationKind::Gauss, ObservationKind::Distance, ObservationKind::Contrast] {
+    for kind in ObservationKind::ALL {
         let scorer = CpuScorer::new(&camera, &field, ObservationConfig::new(kind));
         let nowhere = CameraPose { x_m: f64::NAN, ..Default::default() };
         let far = CameraPose { x_m: 1e30, height_m: -3.0, ..Default::default() };

@@ -1,6 +1,6 @@
 //! Kinds of pictures at a pose, and their views.
 
-use reality_sim_synthesis::{Auto, Blend, Method, Nearest, Plane, Quadratic};
+use reality_sim_synthesis::MethodKind;
 use serde::{Deserialize, Serialize};
 
 /// Source of the picture at a pose.
@@ -23,43 +23,47 @@ impl PictureKind {
 
     /// Returns the name.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Simulated => "simulated",
-            Self::Truth => "true picture",
-            _ => self.method().map_or("", Method::name),
+        match self.made_by() {
+            MadeBy::Method(method) => method.name(),
+            MadeBy::Renderer => "simulated",
+            MadeBy::Camera => "true picture",
         }
     }
 
     /// Returns a description in one sentence.
     pub fn meaning(self) -> &'static str {
-        match self {
-            Self::Auto => {
-                "The recorded picture where there is one at the pose, else a blend of its neighbours"
-            }
-            Self::Nearest => "The nearest recorded picture, as it is",
-            Self::Quadratic => {
-                "The nearest recorded picture, bent by a polynomial of second order: the paper's way"
-            }
-            Self::Plane => "One recorded picture, seen anew through the ground plane and the lens",
-            Self::Blend => "Several recorded pictures, seen anew and mixed pixel by pixel",
-            Self::Simulated => "Drawn from the model of the field: no recorded picture is in it",
-            Self::Truth => {
+        match self.made_by() {
+            MadeBy::Method(method) => method.description(),
+            MadeBy::Renderer => "Drawn from the model of the field: no recorded picture is in it",
+            MadeBy::Camera => {
                 "The picture that was really taken here, where one was held back or a recording is compared with"
             }
         }
     }
 
-    /// Returns the synthesis method, for kinds made from recorded pictures.
-    pub fn method(self) -> Option<&'static dyn Method> {
+    /// What makes it.
+    pub fn made_by(self) -> MadeBy {
         match self {
-            Self::Auto => Some(&Auto),
-            Self::Nearest => Some(&Nearest),
-            Self::Quadratic => Some(&Quadratic),
-            Self::Plane => Some(&Plane),
-            Self::Blend => Some(&Blend),
-            Self::Simulated | Self::Truth => None,
+            Self::Auto => MadeBy::Method(MethodKind::Auto),
+            Self::Nearest => MadeBy::Method(MethodKind::Nearest),
+            Self::Quadratic => MadeBy::Method(MethodKind::Quadratic),
+            Self::Plane => MadeBy::Method(MethodKind::Plane),
+            Self::Blend => MadeBy::Method(MethodKind::Blend),
+            Self::Simulated => MadeBy::Renderer,
+            Self::Truth => MadeBy::Camera,
         }
     }
+}
+
+/// What makes a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MadeBy {
+    /// A method, from recorded pictures.
+    Method(MethodKind),
+    /// What draws the model of the field.
+    Renderer,
+    /// The camera that stood there.
+    Camera,
 }
 
 /// Aspect of a picture to show.

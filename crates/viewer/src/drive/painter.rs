@@ -23,7 +23,7 @@ use reality_sim_synthesis::{
 
 use super::{
     edges::{Edges, Region, edges},
-    kind::{PictureKind, Shown, View},
+    kind::{MadeBy, PictureKind, Shown, View},
     source::{NearProbe, Probes, Source},
 };
 use crate::{
@@ -330,15 +330,15 @@ impl Studio {
 
     fn make(&mut self, kind: PictureKind, wish: &Wish, probe: Option<NearProbe>) -> Result<Made, String> {
         let start = Instant::now();
-        let mut made = match (kind, kind.method()) {
-            (_, Some(method)) => {
+        let mut made = match kind.made_by() {
+            MadeBy::Method(method) => {
                 let synthesizer = if wish.is_best_effort { &self.best_effort } else { &self.strict };
                 let reconstruction =
-                    synthesizer.image_at(wish.pose, method).map_err(|error| error.to_string())?;
+                    synthesizer.image_at(wish.pose, &method).map_err(|error| error.to_string())?;
                 Made::of(reconstruction)
             }
-            (PictureKind::Truth, None) => self.true_picture(wish, probe)?,
-            (_, None) => {
+            MadeBy::Camera => self.true_picture(wish, probe)?,
+            MadeBy::Renderer => {
                 let picture = self.renderer.draw(wish.pose).map_err(|error| error.to_string())?;
                 let facts = Facts { method: kind.name(), ..Facts::default() };
                 Made { picture, reconstruction: None, facts }

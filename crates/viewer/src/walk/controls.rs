@@ -9,27 +9,6 @@ use crate::{
     device::{Device, list_ui},
 };
 
-const MODELS: [(ObservationKind, &str, &str); 3] = [
-    (
-        ObservationKind::Contrast,
-        "contrast",
-        "Lines against their flanks, then a sub-pixel fit of all six degrees of freedom",
-    ),
-    (ObservationKind::Gauss, "gauss", "The paper's Eq. 2: blurred grey values along the projected lines"),
-    (
-        ObservationKind::Distance,
-        "distance",
-        "The paper's Eq. 1: distances from projected lines to white ones",
-    ),
-];
-
-const SCHEMES: [(Resampling, &str); 4] = [
-    (Resampling::Residual, "residual"),
-    (Resampling::Systematic, "systematic"),
-    (Resampling::Stratified, "stratified"),
-    (Resampling::Multinomial, "multinomial"),
-];
-
 /// Shows the filter's settings.
 pub fn filter(ui: &mut Ui, settings: &mut FilterSettings, devices: &[Device]) {
     ui.strong("Filter");
@@ -65,12 +44,11 @@ fn row(ui: &mut Ui, name: &str, explanation: &str, widget: impl FnOnce(&mut Ui) 
 
 fn model(ui: &mut Ui, settings: &mut FilterSettings) {
     let kind = settings.observation.kind;
-    let name = MODELS.iter().find(|(other, ..)| *other == kind).map_or("", |(_, name, _)| name);
     let mut chosen = kind;
     row(ui, "Model", "What a pose is weighed by", |ui| {
-        let combo = ComboBox::from_id_salt("model").selected_text(name).show_ui(ui, |ui| {
-            for (kind, name, explanation) in MODELS {
-                ui.selectable_value(&mut chosen, kind, name).on_hover_text(explanation);
+        let combo = ComboBox::from_id_salt("model").selected_text(kind.name()).show_ui(ui, |ui| {
+            for kind in ObservationKind::ALL {
+                ui.selectable_value(&mut chosen, kind, kind.name()).on_hover_text(kind.description());
             }
         });
         combo.response
@@ -105,13 +83,15 @@ fn observation(ui: &mut Ui, settings: &mut FilterSettings) {
 }
 
 fn resampling(ui: &mut Ui, settings: &mut FilterSettings) {
-    let name = SCHEMES.iter().find(|(scheme, _)| *scheme == settings.resampling).map_or("", |(_, name)| name);
     row(ui, "Resampling", "How survivors are chosen", |ui| {
-        let combo = ComboBox::from_id_salt("resampling").selected_text(name).show_ui(ui, |ui| {
-            for (scheme, name) in SCHEMES {
-                ui.selectable_value(&mut settings.resampling, scheme, name);
-            }
-        });
+        let combo = ComboBox::from_id_salt("resampling").selected_text(settings.resampling.name()).show_ui(
+            ui,
+            |ui| {
+                for scheme in Resampling::ALL {
+                    ui.selectable_value(&mut settings.resampling, scheme, scheme.name());
+                }
+            },
+        );
         combo.response
     });
 }
