@@ -6,6 +6,7 @@ use reality_sim::{
     LocalizationError, SynthesisError,
     backend::BackendError,
     db::{DbError, DbFault, index::NoNeighbours},
+    gap::RecordingError,
     pipeline::PipelineError,
 };
 #[cfg(feature = "viewer")]
@@ -19,6 +20,9 @@ pub fn advice(error: &anyhow::Error) -> Option<&'static str> {
         }
         if let Some(error) = cause.downcast_ref() {
             return of_pipeline(error);
+        }
+        if let Some(RecordingError::TooFewFrames { .. }) = cause.downcast_ref() {
+            return Some("`--frames`, `--poses`");
         }
         if let Some(LocalizationError::Backend(error)) = cause.downcast_ref() {
             return of_backend(error);

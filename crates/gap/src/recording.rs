@@ -21,10 +21,11 @@ pub(crate) const LEAST_VIEWS: usize = THRESHOLDS.least_views;
 
 /// Reason why a recording cannot be compared with a model.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RecordingError {
     /// Too few frames with a reference pose.
     #[error(
-        "{name}: only {found} of the {frames} frames chosen have a reference pose, the comparison needs at least {LEAST_FRAMES}: record more, choose more with --frames, or give poses with --poses"
+        "{name}: only {found} of the {frames} frames chosen have a reference pose, the comparison needs at least {LEAST_FRAMES}: choose more frames, give more poses, or record more"
     )]
     TooFewFrames {
         /// Name of the recording.
@@ -47,7 +48,7 @@ pub enum RecordingError {
         to: usize,
     },
     /// The reference poses do not form a trajectory.
-    #[error("{name}: the reference poses are no way of a camera")]
+    #[error("{name}: the reference poses do not form a camera's trajectory: check their times and places")]
     Trajectory {
         /// Name of the recording.
         name: String,

@@ -28,6 +28,7 @@ use crate::{
 
 /// Why a recording cannot be measured.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeasureError {
     /// The recording.
     #[error(transparent)]

@@ -25,6 +25,7 @@ pub struct Pictures {
 
 /// Reason why the pictures cannot be made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PicturesError {
     /// The recorded picture cannot be read.
     #[error(transparent)]
