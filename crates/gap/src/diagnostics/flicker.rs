@@ -14,9 +14,8 @@ use crate::{
     thresholds::{FlickerThresholds, Thresholds},
 };
 
-/// Bands into which a picture is cut, along its rows and along its columns.
-const BANDS: usize = 12;
 const THRESHOLDS: FlickerThresholds = Thresholds::DEFAULT.diagnostics.flicker;
+const BANDS: usize = THRESHOLDS.bands;
 
 /// Finds bands of brightness along the rows that differ from picture to picture.
 pub(crate) struct Flicker;

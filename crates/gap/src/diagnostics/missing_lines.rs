@@ -103,9 +103,9 @@ impl Counts {
     }
 }
 
-/// Lines as wide as each other within a third of a pixel.
+/// Returns the bin of a line's width.
 fn width(half_width_px: f64) -> usize {
-    (1.5 * half_width_px).min(20.0) as usize
+    (THRESHOLDS.width_bins_per_px * half_width_px).min(THRESHOLDS.widest_bin) as usize
 }
 
 fn field_line(curve: &Curve) -> FieldLine {

@@ -20,10 +20,10 @@ use crate::{
     },
     measurement::quantity::Quantity,
     recording::ReferenceKind,
+    thresholds::Thresholds,
 };
 
-/// Iterations of reweighted least squares: weights, standard deviations and poses' errors in turn.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = Thresholds::DEFAULT.linear_model.reweighting_rounds;
 
 /// Normal equations of a recording.
 #[derive(Debug, Clone)]

@@ -72,7 +72,7 @@ impl Spectrum {
 
 /// Side of a block of carpet, pixels: half as large in small pictures.
 fn block_side(picture: &RgbImage) -> u32 {
-    if picture.width() >= 480 { 2 * BLOCK as u32 } else { BLOCK as u32 }
+    if picture.width() >= THRESHOLDS.large_blocks_from_width_px { 2 * BLOCK as u32 } else { BLOCK as u32 }
 }
 
 /// Measures every block of the picture that shows nothing but plain carpet.

@@ -10,7 +10,7 @@ use statrs::function::erf::erf;
 use crate::thresholds::{LineThresholds, Thresholds};
 
 const THRESHOLDS: LineThresholds = Thresholds::DEFAULT.measurement.line;
-/// Half the width of a Gaussian at half its height, in standard deviations.
+/// Half the width of a Gaussian at half its height, in standard deviations: √(2 ln 2).
 const HALF_HEIGHT: f64 = 1.177;
 
 /// A piece of line that the coarse search found.

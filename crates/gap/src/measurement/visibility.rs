@@ -69,7 +69,8 @@ impl<'a> Surroundings<'a> {
         let center = at(middle)?;
         // No line is nearer than the square's farthest corner.
         let blur_px = self.view.chain.psf_variance_px2(middle).sqrt();
-        let reach_px = 0.5 * f64::from(side) + 2.0 + 2.0 * blur_px;
+        let reach_px =
+            0.5 * f64::from(side) + THRESHOLDS.block_margin_px + THRESHOLDS.block_margin_sigmas * blur_px;
         let mut radius_m: f64 = 0.0;
         for offset in
             [DVec2::new(-1.0, -1.0), DVec2::new(1.0, -1.0), DVec2::new(-1.0, 1.0), DVec2::new(1.0, 1.0)]

@@ -13,15 +13,10 @@ use crate::{
     measurement::scalar::Measurement,
     recording::Recording,
     report::data::{Course, Map, Maps},
-    thresholds::Thresholds,
+    thresholds::{ReportThresholds, Thresholds},
 };
 
-/// Number of cells of the picture's map along x and y.
-const PICTURE: [usize; 2] = [16, 12];
-/// Side length of a cell of the field's map, metres.
-const FIELD_M: f64 = 0.5;
-/// Least number of measurements in a cell for a median.
-const LEAST_ROWS: f64 = Thresholds::DEFAULT.report.least_map_measurements;
+const THRESHOLDS: ReportThresholds = Thresholds::DEFAULT.report;
 
 /// Returns the maps of every channel that was measured.
 pub(crate) fn maps(
@@ -33,7 +28,7 @@ pub(crate) fn maps(
     let camera = &recording.sequence.setup.camera;
     let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
     let half = recording.sequence.field.carpet_half_extent_m();
-    let cells = (2.0 * half / FIELD_M).ceil();
+    let cells = (2.0 * half / THRESHOLDS.map_field_cell_m).ceil();
     let field_rows = [cells.x as usize, cells.y as usize];
     let mut maps = BTreeMap::new();
     for channel in Channel::ALL {
@@ -62,7 +57,7 @@ pub(crate) fn maps(
         maps.insert(
             channel,
             Maps {
-                picture: map(PICTURE, extent, &in_picture),
+                picture: map(THRESHOLDS.map_picture_grid, extent, &in_picture),
                 field: map(field_rows, field_extent, &on_field),
                 time: course(recording, found, &before, &after),
             },
@@ -99,8 +94,9 @@ fn means(
         }
     }
     // Medians are robust against a robot in the way.
-    let median =
-        |values: &mut Vec<f64>| (values.len() as f64 >= LEAST_ROWS).then(|| median(values.iter().copied()));
+    let median = |values: &mut Vec<f64>| {
+        (values.len() >= THRESHOLDS.least_map_measurements).then(|| median(values.iter().copied()))
+    };
     values.iter_mut().map(median).collect()
 }
 

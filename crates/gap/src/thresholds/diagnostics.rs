@@ -46,6 +46,8 @@ pub(crate) struct DynamicObjectThresholds {
 /// When bands of brightness are reported.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FlickerThresholds {
+    /// Bands into which a picture is cut, along its rows and along its columns. Chosen.
+    pub(crate) bands: usize,
     /// Fewest blocks of carpet in a band. Chosen.
     pub(crate) least_blocks: usize,
     /// Material size of bands, root mean square, natural logarithm of light. Chosen.
@@ -55,6 +57,10 @@ pub(crate) struct FlickerThresholds {
 /// When a line of the field is reported as missing.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MissingLineThresholds {
+    /// Lines are compared with others of their width: bins of the half width, for each pixel. Chosen.
+    pub(crate) width_bins_per_px: f64,
+    /// Bin of all lines that are wider than those of the bins before it. Chosen.
+    pub(crate) widest_bin: f64,
     /// A line is missing where less than this part of its pieces is found, relative to other lines of the same width. Chosen.
     pub(crate) most_found: f64,
     /// A piece found farther than this from its predicted place belongs to another line, pixels. Chosen.
@@ -86,6 +92,14 @@ pub(crate) struct OdometryThresholds {
 /// When residuals keep a pattern. Material sizes are in the unit of their channel.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PatternThresholds {
+    /// Columns and rows of the grid of the picture. Chosen.
+    pub(crate) picture_grid: [usize; 2],
+    /// Side of a cell of the field, metres. Chosen.
+    pub(crate) field_cell_m: f64,
+    /// Length of an interval of time, seconds. Chosen.
+    pub(crate) time_cell_s: f64,
+    /// Width of a cell of speed, square roots of the picture's widths a second: narrow cells where the picture is slow. Chosen.
+    pub(crate) speed_cell: f64,
     /// Folds of the cross-validation. Chosen.
     pub(crate) folds: usize,
     /// Largest residual that counts as it is, standard deviations: larger ones are clipped, or left out as other things on
@@ -133,8 +147,10 @@ impl DiagnosticThresholds {
             least_clear: 0.95,
             least_share: 0.09,
         },
-        flicker: FlickerThresholds { least_blocks: 5, material: 0.03 },
+        flicker: FlickerThresholds { bands: 12, least_blocks: 5, material: 0.03 },
         missing_lines: MissingLineThresholds {
+            width_bins_per_px: 1.5,
+            widest_bin: 20.0,
             most_found: 0.4,
             near_px: 1.5,
             least_pieces: 24.0,
@@ -149,6 +165,10 @@ impl DiagnosticThresholds {
             least_model_errors: 2.0,
         },
         patterns: PatternThresholds {
+            picture_grid: [8, 6],
+            field_cell_m: 1.0,
+            time_cell_s: 1.0,
+            speed_cell: 0.2,
             folds: 4,
             clip_sigmas: 4.0,
             prior_measurements: 20.0,

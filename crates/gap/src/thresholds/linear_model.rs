@@ -5,6 +5,9 @@
 pub(crate) struct LinearModelThresholds {
     pub(crate) nuisance: NuisanceThresholds,
     pub(crate) pose_error: PoseErrorThresholds,
+    /// Rounds of reweighted least squares, each of which finds weights, standard deviations of the residuals and of the poses'
+    /// errors in turn. Chosen.
+    pub(crate) reweighting_rounds: usize,
     /// Cut-off of Tukey's biweight, standard deviations: residuals beyond it have no weight (Huber and Ronchetti 2009,
     /// section 4.8). Chosen: a little above the 4.685 of 95 % efficiency.
     pub(crate) tukey_sigmas: f64,
@@ -81,6 +84,7 @@ impl LinearModelThresholds {
             least: [2e-4, 5e-4],
             free: [0.1, 0.3, 0.3],
         },
+        reweighting_rounds: 4,
         tukey_sigmas: 5.0,
         independent_share: 0.15,
         most_prior_share: 0.1,

@@ -38,8 +38,22 @@ pub(crate) struct LineThresholds {
 pub(crate) struct ProfileThresholds {
     /// Half the length of the piece of line, pixels. Chosen.
     pub(crate) half_length_px: f64,
+    /// Where the blurred side of the line ends, in standard deviations of the predicted blur. Chosen: 99 % of an edge's rise is
+    /// within it.
+    pub(crate) flank_sigmas: f64,
     /// Flank that is taken beyond the blurred side of the line, pixels. Chosen.
     pub(crate) flank_px: f64,
+    /// Largest distance of the fitted middle from the searched one, beyond half the line's width, pixels. Chosen.
+    pub(crate) most_shift_px: f64,
+    /// Fewest degrees of freedom of a fit: pixels less the five parameters. Chosen.
+    pub(crate) least_degrees_of_freedom: usize,
+    /// Half the window of the centroids beyond the line's side: standard deviations of the blur, that of the stored chroma
+    /// included. Chosen: 98 % of an edge's rise is within it.
+    pub(crate) color_window_sigmas: f64,
+    /// And pixels beside that. Chosen.
+    pub(crate) color_window_margin_px: f64,
+    /// Fewest pixels of either flank. Chosen.
+    pub(crate) least_flank_pixels: f64,
     /// Smallest flank that is left for the colour channels, pixels. Chosen.
     pub(crate) least_color_flank_px: f64,
     /// Standard deviation of the blur where chroma is stored at half the resolution, averaged in pairs and interpolated,
@@ -52,6 +66,15 @@ pub(crate) struct ProfileThresholds {
     pub(crate) variance_px2: [f64; 2],
     /// Smallest contrast of a fitted line to its flanks, encoded values (0–1). Chosen.
     pub(crate) least_contrast: f64,
+    /// Distance of the line's inner part, whose colour is measured, from the line's side: standard deviations of the blur.
+    /// Chosen: at two, an edge has risen to 98 %.
+    pub(crate) inner_margin_sigmas: f64,
+    /// And pixels beside that. Chosen.
+    pub(crate) inner_margin_px: f64,
+    /// Smallest half width of that inner part, pixels. Chosen.
+    pub(crate) least_inner_half_width_px: f64,
+    /// Fewest pixels of that inner part. Chosen.
+    pub(crate) least_inner_pixels: f64,
     /// Largest residual of a fit, root mean square, as a part of the line's contrast. Chosen.
     pub(crate) most_residual: f64,
 }
@@ -59,6 +82,8 @@ pub(crate) struct ProfileThresholds {
 /// Which pixels show carpet, and in which coefficients its noise is measured.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CarpetThresholds {
+    /// Width of pictures from which on blocks of carpet have 16 × 16 pixels, and not 8 × 8, pixels. Chosen.
+    pub(crate) large_blocks_from_width_px: u32,
     /// Lowest and highest frequency in which noise is measured, as the sum of the coefficient's row and column: lower ones
     /// hold the carpet's texture, and of higher ones a JPEG file keeps little. Chosen.
     pub(crate) noise_frequencies: [usize; 2],
@@ -75,6 +100,11 @@ pub(crate) struct CarpetThresholds {
 /// How far from other things lines and carpet are measured.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct VisibilityThresholds {
+    /// What belongs to a block of carpet beyond its outermost pixels: standard deviations of the blur. Chosen: a line blurred
+    /// by as much has 2 % of its contrast there.
+    pub(crate) block_margin_sigmas: f64,
+    /// And pixels beside that. Chosen.
+    pub(crate) block_margin_px: f64,
     /// Distance of a block of carpet from lines and from the carpet's edge beside what the blur takes, metres. Chosen.
     pub(crate) carpet_margin_m: f64,
     /// The same from goal posts, metres. Chosen.
@@ -103,15 +133,26 @@ impl MeasurementThresholds {
         },
         profile: ProfileThresholds {
             half_length_px: 2.5,
+            flank_sigmas: 2.5,
             flank_px: 4.0,
+            most_shift_px: 2.0,
+            least_degrees_of_freedom: 11,
+            color_window_sigmas: 2.0,
+            color_window_margin_px: 1.0,
+            least_flank_pixels: 3.0,
             least_color_flank_px: 1.5,
             chroma_sigma_px: 0.9,
             least_color_contrast: 0.3,
             variance_px2: [0.02, 60.0],
             least_contrast: 0.02,
+            inner_margin_sigmas: 2.0,
+            inner_margin_px: 1.5,
+            least_inner_half_width_px: 0.8,
+            least_inner_pixels: 6.0,
             most_residual: 0.2,
         },
         carpet: CarpetThresholds {
+            large_blocks_from_width_px: 480,
             noise_frequencies: [3, 6],
             most_quantization_step: 12.0,
             same_hue_factor: 1.3,
@@ -119,6 +160,8 @@ impl MeasurementThresholds {
             averaged_half_side_px: 1,
         },
         visibility: VisibilityThresholds {
+            block_margin_sigmas: 2.0,
+            block_margin_px: 2.0,
             carpet_margin_m: 0.03,
             post_margin_m: 0.05,
             mark_m: 0.15,

@@ -8,11 +8,30 @@ pub(crate) struct ReportThresholds {
     pub(crate) changed_sigmas: f64,
     /// Largest p-value of an effect that the frames show; one that closes a part of the gap is shown, too. Chosen.
     pub(crate) shown_p_value: f64,
+    /// Smallest distance of a channel's gap to its noise floor of which it is told how much is closed, as a part of the floor.
+    /// Chosen.
+    pub(crate) least_open_gap: f64,
+    /// Smallest part of that distance that is told. Chosen.
+    pub(crate) least_closed_part: f64,
+    /// Largest residual that counts as it is where the frame to show is chosen, standard deviations. Chosen.
+    pub(crate) most_shown_sigmas: f64,
+    /// Columns and rows of the map of the picture. Chosen.
+    pub(crate) map_picture_grid: [usize; 2],
+    /// Side of a cell of the map of the field, metres. Chosen.
+    pub(crate) map_field_cell_m: f64,
     /// Fewest measurements in a cell of a map that has a value. Chosen.
-    pub(crate) least_map_measurements: f64,
+    pub(crate) least_map_measurements: usize,
 }
 
 impl ReportThresholds {
-    pub(super) const DEFAULT: Self =
-        Self { changed_sigmas: 3.0, shown_p_value: 0.05, least_map_measurements: 5.0 };
+    pub(super) const DEFAULT: Self = Self {
+        changed_sigmas: 3.0,
+        shown_p_value: 0.05,
+        least_open_gap: 0.1,
+        least_closed_part: 0.1,
+        most_shown_sigmas: 10.0,
+        map_picture_grid: [16, 12],
+        map_field_cell_m: 0.5,
+        least_map_measurements: 5,
+    };
 }

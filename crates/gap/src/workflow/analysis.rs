@@ -24,9 +24,12 @@ use crate::{
     report::analysis::Analysis,
     report::data::{EffectReport, Estimate, Gap, Limit, NotFoundReport, PosesReport, Report, Unobservable},
     report::maps::maps,
+    thresholds::{ReportThresholds, Thresholds},
     workflow::selection::{Options, as_given, find},
     workflow::verdict::verdict,
 };
+
+const THRESHOLDS: ReportThresholds = Thresholds::DEFAULT.report;
 
 /// Runs the whole workflow: finds the effects that a model lacks, adds them, and evaluates the result on held-out frames.
 /// `progress` is called at every stage.
@@ -102,10 +105,10 @@ fn without(model: &Model, effect: EffectIndex) -> Model {
 fn closed(gaps: &BTreeMap<Channel, ChannelGap>) -> BTreeMap<Channel, f64> {
     let part = |gap: &ChannelGap| {
         let open = gap.before - gap.floor;
-        (open > 0.1 * gap.floor).then(|| (gap.before - gap.after) / open)
+        (open > THRESHOLDS.least_open_gap * gap.floor).then(|| (gap.before - gap.after) / open)
     };
     let parts = gaps.iter().filter_map(|(channel, gap)| Some((*channel, part(gap)?)));
-    parts.filter(|(_, part)| *part > 0.1).collect()
+    parts.filter(|(_, part)| *part > THRESHOLDS.least_closed_part).collect()
 }
 
 /// Combines all channels, each in units of its noise floor.
@@ -283,11 +286,12 @@ fn frame_residuals<'a>(
 
 /// Returns the held-out frame with the largest gap before the selection.
 fn shown_frame(recording: &Recording<'_>, found: &SelectedModel, before: &HeldOutResiduals) -> usize {
+    let most = THRESHOLDS.most_shown_sigmas * THRESHOLDS.most_shown_sigmas;
     let size = |frame: usize| -> f64 {
         let rows = found.measured.frames[frame].measurements.iter().zip(&before.residuals[frame]);
         let squares = rows.filter_map(|(row, residual)| {
             let sigma = found.measured.system.sigmas.get(&row.quantity)?;
-            residual.is_finite().then(|| (residual / sigma).powi(2).min(100.0))
+            residual.is_finite().then(|| (residual / sigma).powi(2).min(most))
         });
         squares.sum()
     };

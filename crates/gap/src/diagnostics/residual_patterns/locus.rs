@@ -3,18 +3,17 @@
 use glam::DVec2;
 
 use crate::{
-    diagnostics::detector::FrameResiduals, diagnostics::finding::PatternCell,
+    diagnostics::detector::FrameResiduals,
+    diagnostics::finding::PatternCell,
     measurement::scalar::Measurement,
+    thresholds::{PatternThresholds, Thresholds},
 };
 
-/// Columns and rows of the picture's grid.
-const GRID: [usize; 2] = [8, 6];
-/// Side of a cell of the field, metres.
-const FIELD_CELL_M: f64 = 1.0;
-/// Length of an interval of time, seconds.
-const TIME_CELL_S: f64 = 1.0;
-/// Cells of speed, of the root of the picture's widths a second: narrow ones where it is slow.
-const SPEED_CELL: f64 = 0.2;
+const THRESHOLDS: PatternThresholds = Thresholds::DEFAULT.diagnostics.patterns;
+const GRID: [usize; 2] = THRESHOLDS.picture_grid;
+const FIELD_CELL_M: f64 = THRESHOLDS.field_cell_m;
+const TIME_CELL_S: f64 = THRESHOLDS.time_cell_s;
+const SPEED_CELL: f64 = THRESHOLDS.speed_cell;
 
 /// A cell, by its indices along the one or two axes of a locus.
 pub(super) type Cell = (i32, i32);

@@ -4,12 +4,11 @@ use nalgebra::{SMatrix, SVector};
 use statrs::function::erf::erf;
 
 use super::samples::{LinePiece, Sample};
-use crate::thresholds::Thresholds;
+use crate::thresholds::{ProfileThresholds, Thresholds};
 
 /// Most iterations of the Levenberg–Marquardt method.
 const MAX_STEPS: usize = 12;
-/// Smallest and largest variance of the blur, pixels squared.
-const VARIANCE_PX2: [f64; 2] = Thresholds::DEFAULT.measurement.profile.variance_px2;
+const THRESHOLDS: ProfileThresholds = Thresholds::DEFAULT.measurement.profile;
 
 /// Parameters of the bar: middle, variance of the blur, and the linear levels of the line and of the flanks before and
 /// after it.
@@ -37,7 +36,7 @@ pub(super) fn fit_bar(samples: &[Sample], gamma: f64, piece: &LinePiece, found_p
         }
         let step = damped.cholesky()?.solve(&equations.gradient);
         let mut next = values + step;
-        next[1] = next[1].clamp(VARIANCE_PX2[0], VARIANCE_PX2[1]);
+        next[1] = next[1].clamp(THRESHOLDS.variance_px2[0], THRESHOLDS.variance_px2[1]);
         for level in next.iter_mut().skip(2) {
             *level = level.max(1e-5);
         }
@@ -56,10 +55,12 @@ pub(super) fn fit_bar(samples: &[Sample], gamma: f64, piece: &LinePiece, found_p
             }
         }
     }
-    let degrees = samples.len().checked_sub(5).filter(|&degrees| degrees > 10)? as f64;
+    let degrees =
+        samples.len().checked_sub(5).filter(|&degrees| degrees >= THRESHOLDS.least_degrees_of_freedom)?
+            as f64;
     let covariance = equations.normal.try_inverse()? * (equations.squares / degrees);
-    let inside = VARIANCE_PX2.iter().all(|edge| (values[1] - edge).abs() > 1e-6);
-    let near = (values[0] - found_px).abs() < piece.half_width_px + 2.0;
+    let inside = THRESHOLDS.variance_px2.iter().all(|edge| (values[1] - edge).abs() > 1e-6);
+    let near = (values[0] - found_px).abs() < piece.half_width_px + THRESHOLDS.most_shift_px;
     (inside && near).then(|| Bar {
         values,
         sigma: covariance.diagonal().map(|variance| variance.max(0.0).sqrt()),
@@ -67,7 +68,8 @@ pub(super) fn fit_bar(samples: &[Sample], gamma: f64, piece: &LinePiece, found_p
     })
 }
 
-/// Initial values: levels are means over the samples well inside and well outside the line.
+/// Initial values: levels are means over the samples well inside and well outside the line. Where the line is divided for that
+/// only changes where the fit begins.
 fn start(samples: &[Sample], gamma: f64, piece: &LinePiece, found_px: f64) -> Option<Values> {
     let mut sums = [(0.0, 0.0); 3];
     let blur = piece.variance_px2.sqrt();

@@ -18,7 +18,9 @@ pub(super) fn colors(
 ) -> Option<(Option<[f64; 2]>, [f64; 3])> {
     let reach =
         |side: f64| samples.iter().map(|sample| side * (sample.across_px - center)).fold(0.0, f64::max);
-    let inner = half_width_px + 2.0 * sharp_px.hypot(THRESHOLDS.chroma_sigma_px) + 1.0;
+    let inner = half_width_px
+        + THRESHOLDS.color_window_sigmas * sharp_px.hypot(THRESHOLDS.chroma_sigma_px)
+        + THRESHOLDS.color_window_margin_px;
     let inner = inner.min(reach(1.0).min(reach(-1.0)) - THRESHOLDS.least_color_flank_px);
     let mut flank = [[0.0; 5]; 2];
     for sample in samples {
@@ -29,7 +31,7 @@ pub(super) fn colors(
             sums[4] += 1.0;
         }
     }
-    if flank.iter().any(|sums| sums[4] < 3.0) {
+    if flank.iter().any(|sums| sums[4] < THRESHOLDS.least_flank_pixels) {
         return None;
     }
     let level = flank.map(|sums| [0, 1, 2, 3].map(|channel| sums[channel] / sums[4]));
@@ -69,7 +71,7 @@ fn add(sums: &mut [f64; 5], values: &[f64; 4], weight: f64) {
 
 /// Mean encoded values within some distance of the middle; `None` where too few pixels are.
 pub(super) fn inner_level(samples: &[Sample], center: f64, within_px: f64) -> Option<[f64; 3]> {
-    (within_px > 0.8).then_some(())?;
+    (within_px > THRESHOLDS.least_inner_half_width_px).then_some(())?;
     let inside = samples.iter().filter(|sample| (sample.across_px - center).abs() < within_px);
     let (mut sum, mut count) = ([0.0; 3], 0.0);
     for sample in inside {
@@ -78,5 +80,5 @@ pub(super) fn inner_level(samples: &[Sample], center: f64, within_px: f64) -> Op
         }
         count += 1.0;
     }
-    (count >= 6.0).then(|| sum.map(|sum| sum / count))
+    (count >= THRESHOLDS.least_inner_pixels).then(|| sum.map(|sum| sum / count))
 }

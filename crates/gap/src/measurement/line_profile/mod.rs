@@ -54,6 +54,8 @@ pub(crate) fn fit(picture: &RgbImage, gamma: f64, piece: &LinePiece, found_px: f
         .then_some(())?;
     let sharp_px = bar.values[1].sqrt();
     let (color_offset_px, contrast_share) = colors(&samples, center, piece.half_width_px, sharp_px)?;
+    let inner_px =
+        piece.half_width_px - THRESHOLDS.inner_margin_sigmas * sharp_px - THRESHOLDS.inner_margin_px;
     Some(Profile {
         offset_px: center,
         offset_sigma_px: bar.sigma[0],
@@ -61,6 +63,6 @@ pub(crate) fn fit(picture: &RgbImage, gamma: f64, piece: &LinePiece, found_px: f
         variance_sigma_px2: bar.sigma[1],
         color_offset_px,
         contrast_share,
-        level: inner_level(&samples, center, piece.half_width_px - 2.0 * sharp_px - 1.5),
+        level: inner_level(&samples, center, inner_px),
     })
 }

@@ -35,7 +35,8 @@ pub(super) struct Sample {
 
 /// Returns the piece's pixels around `found_px` along the normal; `None` where some are outside the picture.
 pub(super) fn samples(picture: &RgbImage, piece: &LinePiece, found_px: f64) -> Option<Vec<Sample>> {
-    let reach = piece.half_width_px + 2.5 * piece.variance_px2.sqrt() + THRESHOLDS.flank_px;
+    let reach =
+        piece.half_width_px + THRESHOLDS.flank_sigmas * piece.variance_px2.sqrt() + THRESHOLDS.flank_px;
     let middle = piece.pixel + found_px * piece.normal;
     let along = piece.normal.perp();
     let extent = reach * piece.normal.abs() + THRESHOLDS.half_length_px * along.abs();
