@@ -4,7 +4,6 @@
 //!
 //! On one processor the same seed gives the same bits. Other processors round differently (fused multiplications), which a
 //! particle filter's resampling amplifies to less than a millimetre: hence the tolerances.
-//! particle filter's resampling amplifies to less than a millimetre: hence the tolerances.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 

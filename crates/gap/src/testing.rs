@@ -56,6 +56,28 @@ pub(crate) fn carpet_measurement(pixel: DVec2, ground: DVec2) -> Measurement {
     }
 }
 
+/// Returns the normal equations of 45 frames with 20 measurements each of two columns, whose true values are `truth`. The
+/// measurements have unit noise, and those of a frame also share an error of standard deviation `shared`.
+pub(crate) fn two_column_frames(
+    seed: u64,
+    truth: [f64; 2],
+    shared: f64,
+) -> Vec<(DMatrix<f64>, DVector<f64>)> {
+    let mut noise = Noise(seed);
+    let mut frame = || {
+        let common = shared * noise.next();
+        let (mut a, mut g) = (DMatrix::zeros(2, 2), DVector::zeros(2));
+        for _ in 0..20 {
+            let row = DVector::from_vec(vec![1.0 + 0.3 * noise.next(), noise.next()]);
+            let residual = row.dot(&DVector::from_vec(truth.to_vec())) + common + noise.next();
+            a.ger(1.0, &row, &row, 1.0);
+            g += residual * row;
+        }
+        (a, g)
+    };
+    (0..45).map(|_| frame()).collect()
+}
+
 /// Returns a linear system of frames with these normal equations. Each frame is a view and a cell of the field of its own.
 pub(crate) fn system_of(frames: Vec<(DMatrix<f64>, DVector<f64>)>) -> LinearSystem {
     let size = frames[0].1.len();
@@ -96,7 +118,7 @@ pub(crate) fn report() -> Report {
     Report {
         recording: "hall".to_owned(),
         frames: 120,
-        judged_frames: 30,
+        held_out_frames: 30,
         left_out: Vec::new(),
         verdict: Verdict::None,
         effects: Vec::new(),

@@ -1,11 +1,9 @@
 //! Cross-validation over the training frames: each part of the recording in turn is left out and compared with a fit to all
 //! others.
 
-use nalgebra::DVector;
-
 use crate::{
-    inference::split::stretch, linear_model::column::ColumnIndex,
-    linear_model::reduced_equations::ReducedEquations, linear_model::system::LinearSystem,
+    inference::{evidence::Evidence, gain::HeldOutGains, split::stretch},
+    linear_model::{column::ColumnIndex, reduced_equations::ReducedEquations},
     thresholds::Thresholds,
 };
 
@@ -38,8 +36,9 @@ pub(crate) struct CrossValidation {
 }
 
 impl CrossValidation {
-    /// Divides a system into folds. `parameters` is the number of columns of fitted parameters.
-    pub(crate) fn new(system: &LinearSystem, parameters: usize) -> Self {
+    /// Divides the frames of a system into folds.
+    pub(crate) fn new(evidence: &Evidence<'_>) -> Self {
+        let (system, parameters) = (evidence.system, evidence.base.len());
         let count = system.frames.len();
         let folds = FOLDS.min(count).max(1);
         let fold = |is_left_out: &dyn Fn(usize) -> bool| -> Fold {
@@ -54,46 +53,51 @@ impl CrossValidation {
         Self { stretches, runs }
     }
 
-    /// Returns, frame by frame, the gain of freeing a set of columns over the present model. `base` is the present model in
-    /// the columns' coordinates. The `shared` columns are also free in the set that this one is compared with. Where the
-    /// other frames do not constrain a shared column, it keeps the model's value: otherwise a line that is seen only in the
-    /// frames left out would drown the difference between the two sets.
+    /// Returns the gains of freeing a set of columns over the present model, each frame's from a fit to the frames outside its
+    /// fold. The `shared` columns are also free in the set that this one is compared with. Where the other frames do not
+    /// constrain a shared column, it keeps the model's value: otherwise a line that is seen only in the frames left out would
+    /// drown the difference between the two sets. None if a fit is singular.
     pub(crate) fn gains(
         &self,
-        system: &LinearSystem,
-        base: &DVector<f64>,
+        evidence: &Evidence<'_>,
         free: &[ColumnIndex],
         shared: &[ColumnIndex],
         kind: FoldKind,
-    ) -> Option<Vec<f64>> {
+    ) -> Option<HeldOutGains> {
+        let (system, base) = (evidence.system, &evidence.base);
         let mut gains = vec![0.0; system.frames.len()];
-        let mut drawn_to = base.clone();
+        // The prior draws a column towards neutral, but a shared one towards the model's value.
+        let mut offset_from_prior = base.clone();
         for &column in shared {
-            drawn_to[column.0] = 0.0;
+            offset_from_prior[column.0] = 0.0;
         }
         let folds = match kind {
             FoldKind::Stretches => &self.stretches,
             FoldKind::ShortRuns => &self.runs,
         };
         for fold in folds {
-            let delta = fold.others.fit_beside(free, &drawn_to, &-base)?.delta;
+            let delta = fold.others.fit_beside(free, &offset_from_prior, &-base)?.delta;
             for &frame in &fold.left_out {
                 gains[frame] = system.frames[frame].gain(&delta);
             }
         }
-        Some(gains)
+        Some(HeldOutGains::new(gains, &evidence.fit(free)?.delta, base.len()))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::system_of;
-    use nalgebra::DMatrix;
+    use crate::{
+        linear_model::system::LinearSystem,
+        testing::{system_of, two_column_frames},
+    };
+    use nalgebra::{DMatrix, DVector};
 
     fn cross_validation(frames: usize) -> CrossValidation {
         let one = || (DMatrix::identity(1, 1), DVector::zeros(1));
-        CrossValidation::new(&system_of((0..frames).map(|_| one()).collect()), 1)
+        let system = system_of((0..frames).map(|_| one()).collect());
+        CrossValidation::new(&Evidence::new(&system, DVector::zeros(1)))
     }
 
     #[test]
@@ -115,5 +119,52 @@ mod tests {
             folds.stretches.iter().all(|fold| fold.left_out.windows(2).all(|pair| pair[1] == pair[0] + 1))
         );
         assert_eq!(folds.runs[1].left_out, [2, 3, 14, 15, 26, 27, 38, 39]);
+    }
+
+    const BOTH: [ColumnIndex; 2] = [ColumnIndex(0), ColumnIndex(1)];
+
+    fn system(seed: u64, truth: [f64; 2]) -> LinearSystem {
+        system_of(two_column_frames(seed, truth, 0.5))
+    }
+
+    /// Returns the gains of freeing columns at a model with these coordinates.
+    fn gains(system: &LinearSystem, base: &DVector<f64>, free: &[ColumnIndex]) -> HeldOutGains {
+        let evidence = Evidence::new(system, base.clone());
+        CrossValidation::new(&evidence).gains(&evidence, free, &[], FoldKind::Stretches).unwrap()
+    }
+
+    #[test]
+    fn an_effect_gains_on_frames_that_the_fit_has_not_seen() {
+        let neutral = DVector::zeros(2);
+        for seed in 0..200 {
+            let system = system(seed, [0.6, -0.2]);
+            let gain = gains(&system, &neutral, &BOTH).over(&gains(&system, &neutral, &[]));
+            assert!(gain.value > 0.0 && gain.score() > 2.0, "{seed}: {gain:?}");
+        }
+    }
+
+    #[test]
+    fn an_absent_effect_gains_nothing_on_frames_that_the_fit_has_not_seen() {
+        let neutral = DVector::zeros(2);
+        let gain = |seed: u64| {
+            let system = system(seed, [0.5, 0.0]);
+            gains(&system, &neutral, &BOTH).over(&gains(&system, &neutral, &BOTH[..1])).value
+        };
+        assert!((0..100).map(gain).sum::<f64>() < 0.0);
+    }
+
+    #[test]
+    fn an_effect_of_the_model_that_is_not_free_is_removed_from_it() {
+        let mut frames = two_column_frames(3, [0.4, 0.0], 0.0);
+        // The model has the effect already, so no residual remains.
+        let base = DVector::from_vec(vec![0.4, 0.0]);
+        for (a, g) in &mut frames {
+            *g -= &*a * &base;
+        }
+        let system = system_of(frames);
+        let gain = gains(&system, &base, &BOTH[1..]).over(&gains(&system, &base, &BOTH));
+        assert!(gain.value < -50.0, "{gain:?}");
+        let kept = Evidence::new(&system, base).fit(&BOTH).unwrap();
+        assert!(kept.delta[0].abs() < 0.1);
     }
 }

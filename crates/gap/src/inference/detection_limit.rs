@@ -4,7 +4,7 @@ use reality_sim_sensor::{Effect, EffectIndex, Need, Stage};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    inference::effect_test::EffectTests,
+    inference::effect_fit::EffectFits,
     inference::hypothesis_test::student_quantile,
     linear_model::column::ColumnIndex,
     recording::{LEAST_VIEWS, Recording},
@@ -78,7 +78,7 @@ impl UnobservableCause {
 /// Returns the detection limit of an effect that is tested beside those in the model, or why it cannot be seen.
 pub(crate) fn limit(
     recording: &Recording<'_>,
-    naming: &EffectTests<'_>,
+    fits: &EffectFits<'_>,
     effect: EffectIndex,
     all: &[EffectIndex],
 ) -> NotFound {
@@ -86,37 +86,36 @@ pub(crate) fn limit(
     if let Some(input) = missing_input(recording, used) {
         return NotFound::Unobservable(UnobservableCause::MissingInput { input });
     }
-    let columns = naming.columns_of(&[effect]);
-    let sizes: Vec<ColumnIndex> =
-        columns.into_iter().filter(|&column| naming.columns[column.0].is_size()).collect();
     // The first observable parameter counts: parameters are listed by importance.
-    let limit = sizes.iter().find_map(|&column| Some((column, limit_of(naming, column, all)?)));
+    let mut sizes = fits.sizes_of(effect).into_iter();
+    let limit = sizes.find_map(|column| Some((column, limit_of(fits, column, all)?)));
     let Some((column, value)) = limit else {
-        return NotFound::Unobservable(unseen_cause(recording, used));
+        return NotFound::Unobservable(unobservable_cause(recording, used));
     };
-    let parameter = naming.columns[column.0].parameter();
+    let parameter = fits.columns[column.0].parameter();
     NotFound::Limit { value, unit: parameter.unit, parameter: parameter.name }
 }
 
 /// Returns the detection limit of a single column beside the effects of the model, in the column's unit. None if it cannot
 /// be seen.
-fn limit_of(naming: &EffectTests<'_>, column: ColumnIndex, all: &[EffectIndex]) -> Option<f64> {
-    if naming.evidence.views() < LEAST_VIEWS {
+fn limit_of(fits: &EffectFits<'_>, column: ColumnIndex, all: &[EffectIndex]) -> Option<f64> {
+    if fits.evidence.views() < LEAST_VIEWS {
         return None;
     }
-    let mut free = naming.columns_of(all);
+    let mut free = fits.columns_of(all);
     free.insert(0, column);
-    let fit = naming.evidence.fit(&free)?;
-    let sigma = naming.evidence.sigma(&fit, column);
+    let fit = fits.evidence.fit(&free)?;
+    let sigma = fits.evidence.sigma(&fit, column);
     if fit.tells_nothing(column) || sigma <= 0.0 {
         return None;
     }
-    let tests = naming.effects().len() as f64;
-    let degrees = naming.evidence.degrees() as f64;
-    let sure = student_quantile(1.0 - THRESHOLDS.significance / (2.0 * tests), degrees);
-    let coordinate = (sure + student_quantile(THRESHOLDS.power, degrees)) * sigma;
-    let parameter = naming.columns[column.0].parameter();
-    let value = naming.columns[column.0].size(coordinate).max(parameter.material);
+    let tests = fits.effects().len() as f64;
+    let degrees_of_freedom = fits.evidence.degrees_of_freedom() as f64;
+    let quantile = |probability: f64| student_quantile(probability, degrees_of_freedom);
+    let critical_score = quantile(1.0 - THRESHOLDS.significance / (2.0 * tests));
+    let coordinate = (critical_score + quantile(THRESHOLDS.power)) * sigma;
+    let parameter = fits.columns[column.0].parameter();
+    let value = fits.columns[column.0].size(coordinate).max(parameter.material);
     let reach = (parameter.range[1] - parameter.neutral).max(parameter.neutral - parameter.range[0]);
     (value < reach).then_some(value)
 }
@@ -142,7 +141,7 @@ fn provides(recording: &Recording<'_>, need: Need) -> bool {
     }
 }
 
-fn unseen_cause(recording: &Recording<'_>, effect: &dyn Effect) -> UnobservableCause {
+fn unobservable_cause(recording: &Recording<'_>, effect: &dyn Effect) -> UnobservableCause {
     let moves = recording.moves();
     let views = recording.views().last().map_or(0, |last| last + 1);
     match effect.stage() {
@@ -184,9 +183,9 @@ mod tests {
     fn limit_and_p(seed: u64, information: f64, size: f64) -> (Option<f64>, f64) {
         let system = system(seed, information, size);
         let evidence = Evidence::new(&system, DVector::zeros(1));
-        let naming = EffectTests { evidence, columns: &[pitch()] };
-        let fit = naming.evidence.fit(&[ColumnIndex(0)]).unwrap();
-        (limit_of(&naming, ColumnIndex(0), &[]), naming.evidence.p_value(&fit, &[ColumnIndex(0)]))
+        let fits = EffectFits { evidence, columns: &[pitch()] };
+        let fit = fits.evidence.fit(&[ColumnIndex(0)]).unwrap();
+        (limit_of(&fits, ColumnIndex(0), &[]), fits.evidence.p_value(&fit, &[ColumnIndex(0)]))
     }
 
     #[test]

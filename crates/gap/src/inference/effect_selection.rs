@@ -16,11 +16,11 @@ impl EffectTests<'_> {
     /// follow, because a linearised model cannot tell reliably which of several large effects fits best. If no effect is
     /// supported alone, returns a pair that is supported, if there is one.
     pub(crate) fn next_additions(&self, named: &[EffectIndex]) -> Vec<Vec<EffectIndex>> {
-        if self.evidence.views() < LEAST_VIEWS {
+        if self.fits.evidence.views() < LEAST_VIEWS {
             return Vec::new();
         }
         let others: Vec<EffectIndex> =
-            self.effects().into_iter().filter(|effect| !named.contains(effect)).collect();
+            self.fits.effects().into_iter().filter(|effect| !named.contains(effect)).collect();
         let tested = self.tests_of(&others, named);
         let mut supported: Vec<&EffectTest> = tested.iter().filter(|test| test.is_supported()).collect();
         supported.sort_by(|a, b| b.gain.value.total_cmp(&a.gain.value));
@@ -74,7 +74,7 @@ impl EffectTests<'_> {
         named: &[EffectIndex],
     ) -> Vec<(EffectIndex, EffectIndex)> {
         let others: Vec<EffectIndex> =
-            self.effects().into_iter().filter(|effect| !all.contains(effect)).collect();
+            self.fits.effects().into_iter().filter(|effect| !all.contains(effect)).collect();
         let tries = named.iter().flat_map(|&old| others.iter().map(move |&new| (old, new)));
         let tries: Vec<(EffectIndex, EffectIndex)> = tries.collect();
         let gains = tries.into_par_iter().filter_map(|(old, new)| {
@@ -95,7 +95,7 @@ impl EffectTests<'_> {
     pub(crate) fn confusable_with(&self, effect: EffectIndex, named: &[EffectIndex]) -> Vec<EffectIndex> {
         let without: Vec<EffectIndex> = named.iter().copied().filter(|other| *other != effect).collect();
         let others: Vec<EffectIndex> =
-            self.effects().into_iter().filter(|other| !named.contains(other)).collect();
+            self.fits.effects().into_iter().filter(|other| !named.contains(other)).collect();
         let is_confusable = |other: &EffectIndex| {
             let is_supported =
                 self.test(*other, &without, others.len()).is_some_and(|test| test.is_supported());

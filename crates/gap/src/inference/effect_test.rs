@@ -1,16 +1,14 @@
 //! Tests of single effects: whether the training frames support one beside others.
 
-use nalgebra::DVector;
 use rayon::prelude::*;
 use reality_sim_sensor::{Covariate, EffectIndex};
 
 use crate::{
-    inference::cross_validation::FoldKind,
-    inference::evidence::Evidence,
+    inference::cross_validation::{CrossValidation, FoldKind},
+    inference::effect_fit::EffectFits,
     inference::gain::{Gain, HeldOutGains},
     inference::hypothesis_test::two_sided,
     linear_model::column::ColumnIndex,
-    linear_model::parameters::FittedParameter,
     linear_model::reduced_equations::Fit,
     thresholds::{InferenceThresholds, Thresholds},
 };
@@ -43,22 +41,15 @@ impl EffectTest {
 /// Tests of effects at the present model.
 #[derive(Debug)]
 pub(crate) struct EffectTests<'a> {
-    pub(crate) evidence: Evidence<'a>,
-    pub(crate) columns: &'a [FittedParameter],
+    pub(crate) fits: EffectFits<'a>,
+    folds: CrossValidation,
 }
 
-impl EffectTests<'_> {
-    /// Returns the columns of some effects.
-    pub(crate) fn columns_of(&self, effects: &[EffectIndex]) -> Vec<ColumnIndex> {
-        let all = ColumnIndex::first(self.columns.len());
-        all.filter(|column| effects.contains(&self.columns[column.0].effect)).collect()
-    }
-
-    /// Returns the effects that have columns.
-    pub(crate) fn effects(&self) -> Vec<EffectIndex> {
-        let mut effects: Vec<EffectIndex> = self.columns.iter().map(|column| column.effect).collect();
-        effects.dedup();
-        effects
+impl<'a> EffectTests<'a> {
+    /// Creates the tests at the model of these fits.
+    pub(crate) fn new(fits: EffectFits<'a>) -> Self {
+        let folds = CrossValidation::new(&fits.evidence);
+        Self { fits, folds }
     }
 
     /// Tests an effect beside others; `tested` is the number of effects tested at the same time. None if the fit is
@@ -71,22 +62,18 @@ impl EffectTests<'_> {
     ) -> Option<EffectTest> {
         let without: Vec<EffectIndex> = beside.iter().copied().filter(|other| *other != effect).collect();
         let with: Vec<EffectIndex> = without.iter().copied().chain([effect]).collect();
-        let free = self.columns_of(&with);
-        let fit = self.evidence.fit(&free)?;
-        let sizes: Vec<ColumnIndex> = self
-            .columns_of(&[effect])
-            .into_iter()
-            .filter(|&column| self.columns[column.0].is_size())
-            .collect();
-        let [held_out, others] = self.held_out([&with, &without])?;
+        let free = self.fits.columns_of(&with);
+        let fit = self.fits.evidence.fit(&free)?;
+        let sizes = self.fits.sizes_of(effect);
+        let [held_out, others] = self.held_out_gains([&with, &without])?;
         let gain = held_out.over(&others);
         let p_value = if self.is_possible(&fit, &sizes) {
-            let together = Some(self.evidence.p_value(&fit, &sizes));
+            let together = Some(self.fits.evidence.p_value(&fit, &sizes));
             // An effect that is fixed to the field is predicted as well by the reflectance of carpet patches, which are
             // fixed too.
             let keeps_place = effect.effect().covariates().contains(&Covariate::FieldPosition);
-            let predicted = (!keeps_place).then(|| self.predicted_p_value(held_out.surely_over(&others)));
-            best_of([together, self.alone(&without, &sizes), predicted])
+            let predicted = (!keeps_place).then(|| self.predicted_p_value(held_out.score_over(&others)));
+            best_of([together, self.single_size_p_value(&without, &sizes), predicted])
         } else {
             1.0
         };
@@ -104,48 +91,23 @@ impl EffectTests<'_> {
         effects.par_iter().filter_map(|&effect| self.test(effect, beside, effects.len())).collect()
     }
 
-    /// Fits effects with all parameters within their ranges: a parameter that would leave its range is held at the limit
-    /// while the others are refitted.
-    pub(crate) fn fit_in_range(&self, effects: &[EffectIndex]) -> Option<Fit> {
-        let mut free = self.columns_of(effects);
-        let mut held = -&self.evidence.base;
-        loop {
-            let fit = self.evidence.fit_beside(&free, &held)?;
-            let farthest = free.iter().copied().map(|column| (column, self.outside(&fit, column)));
-            match farthest.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())) {
-                Some((column, outside)) if outside != 0.0 => {
-                    held[column.0] = fit.delta[column.0] - outside;
-                    free.retain(|&other| other != column);
-                }
-                _ => return Some(fit),
-            }
-        }
-    }
-
-    /// Returns how far a fitted column lies beyond its range; 0 inside.
-    fn outside(&self, fit: &Fit, column: ColumnIndex) -> f64 {
-        let coordinate = self.coordinate(fit, column);
-        let inside = self.columns[column.0].coordinate(self.columns[column.0].value(coordinate));
-        if (coordinate - inside).abs() > 1e-9 { coordinate - inside } else { 0.0 }
-    }
-
     /// P-value of a gain on held-out frames that is `score` standard deviations above zero. Predictions are more informative
     /// than the scatter of a fit if an effect has too many parameters for so few frames, or if another effect is missing
     /// from the model.
     fn predicted_p_value(&self, score: f64) -> f64 {
-        if score > 0.0 { two_sided(score, self.evidence.degrees() as f64) } else { 1.0 }
+        if score > 0.0 { two_sided(score, self.fits.evidence.degrees_of_freedom() as f64) } else { 1.0 }
     }
 
     /// Smallest p-value of an effect's sizes tested one at a time, corrected for their number: few of the sizes may differ
     /// from neutral.
-    fn alone(&self, beside: &[EffectIndex], sizes: &[ColumnIndex]) -> Option<f64> {
+    fn single_size_p_value(&self, beside: &[EffectIndex], sizes: &[ColumnIndex]) -> Option<f64> {
         if !(2..=THRESHOLDS.most_sizes_tested_alone).contains(&sizes.len()) {
             return None;
         }
         let p_value = |&size: &ColumnIndex| {
-            let mut free = self.columns_of(beside);
+            let mut free = self.fits.columns_of(beside);
             free.push(size);
-            self.evidence.fit(&free).map_or(1.0, |fit| self.evidence.p_value(&fit, &[size]))
+            self.fits.evidence.fit(&free).map_or(1.0, |fit| self.fits.evidence.p_value(&fit, &[size]))
         };
         Some(sizes.len() as f64 * sizes.iter().map(p_value).fold(1.0, f64::min))
     }
@@ -153,18 +115,10 @@ impl EffectTests<'_> {
     /// Whether the fitted sizes are physically possible; a blur, for example, cannot be negative.
     fn is_possible(&self, fit: &Fit, sizes: &[ColumnIndex]) -> bool {
         let below = |column: &ColumnIndex| {
-            let parameter = self.columns[column.0].parameter();
-            parameter.range[0] >= parameter.neutral && self.coordinate(fit, *column) <= 0.0
+            let parameter = self.fits.columns[column.0].parameter();
+            parameter.range[0] >= parameter.neutral && self.fits.coordinate(fit, *column) <= 0.0
         };
         !sizes.iter().all(below)
-    }
-
-    fn coordinate(&self, fit: &Fit, column: ColumnIndex) -> f64 {
-        self.evidence.base[column.0] + fit.delta[column.0]
-    }
-
-    pub(crate) fn value(&self, fit: &Fit, column: ColumnIndex) -> f64 {
-        self.columns[column.0].value(self.coordinate(fit, column))
     }
 
     /// Whether sizes large enough to matter are significant, jointly or one at a time. One of a field's five dimensions may
@@ -178,8 +132,8 @@ impl EffectTests<'_> {
         sizes: &[ColumnIndex],
     ) -> bool {
         let matters = |fit: &Fit, column: ColumnIndex| {
-            let parameter = self.columns[column.0].parameter();
-            (self.value(fit, column) - parameter.neutral).abs() >= parameter.material
+            let parameter = self.fits.columns[column.0].parameter();
+            (self.fits.value(fit, column) - parameter.neutral).abs() >= parameter.material
         };
         let large: Vec<ColumnIndex> = sizes.iter().copied().filter(|&column| matters(fit, column)).collect();
         if large.is_empty() {
@@ -187,32 +141,32 @@ impl EffectTests<'_> {
         }
         let alone = |&size: &ColumnIndex| {
             let others = sizes.iter().filter(|other| **other != size);
-            let mut free = self.columns_of(with);
+            let mut free = self.fits.columns_of(with);
             others.for_each(|other| free.retain(|column| column != other));
-            self.evidence.fit(&free).is_some_and(|fit| {
-                let p_value = sizes.len() as f64 * self.evidence.p_value(&fit, &[size]);
+            self.fits.evidence.fit(&free).is_some_and(|fit| {
+                let p_value = sizes.len() as f64 * self.fits.evidence.p_value(&fit, &[size]);
                 matters(&fit, size) && p_value < THRESHOLDS.material_significance
             })
         };
         changes_over_time(&[effect])
-            || self.evidence.p_value(fit, &large) < THRESHOLDS.material_significance
+            || self.fits.evidence.p_value(fit, &large) < THRESHOLDS.material_significance
             || (sizes.len() <= THRESHOLDS.most_sizes_tested_alone && sizes.iter().any(alone))
     }
 
     /// Returns the gain of one set of effects over another on the same held-out frames.
     pub(crate) fn gain(&self, set: &[EffectIndex], over: &[EffectIndex]) -> Option<Gain> {
-        let [set, over] = self.held_out([set, over])?;
+        let [set, over] = self.held_out_gains([set, over])?;
         Some(set.over(&over))
     }
 
     /// Returns the gains of two sets on the same held-out frames. The folds are short runs if an effect changes over time.
-    fn held_out(&self, sets: [&[EffectIndex]; 2]) -> Option<[HeldOutGains; 2]> {
+    fn held_out_gains(&self, sets: [&[EffectIndex]; 2]) -> Option<[HeldOutGains; 2]> {
         let over_time = sets.into_iter().any(changes_over_time);
         let kind = if over_time { FoldKind::ShortRuns } else { FoldKind::Stretches };
-        let [first, second] = sets.map(|effects| self.columns_of(effects));
+        let [first, second] = sets.map(|effects| self.fits.columns_of(effects));
         let shared: Vec<ColumnIndex> =
             first.iter().copied().filter(|column| second.contains(column)).collect();
-        let held_out = |free: &[ColumnIndex]| self.evidence.held_out(free, &shared, kind);
+        let held_out = |free: &[ColumnIndex]| self.folds.gains(&self.fits.evidence, free, &shared, kind);
         Some([held_out(&first)?, held_out(&second)?])
     }
 }
@@ -226,11 +180,6 @@ fn best_of(tests: [Option<f64>; 3]) -> f64 {
 /// Whether one of these effects varies over time.
 fn changes_over_time(effects: &[EffectIndex]) -> bool {
     effects.iter().any(|effect| effect.effect().about().varies_over_time)
-}
-
-/// Returns a model in the coordinates of the columns.
-pub(crate) fn base(columns: &[FittedParameter], model: &reality_sim_sensor::Model) -> DVector<f64> {
-    DVector::from_iterator(columns.len(), columns.iter().map(|column| column.coordinate_in(model)))
 }
 
 #[cfg(test)]

@@ -1,11 +1,9 @@
-//! Fits of sets of columns to a linear system, with their covariances, tests and gains on held-out frames.
+//! Fits of sets of columns to a linear system, with their covariances and tests.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::{
     inference::cluster_covariance::{self, LAG},
-    inference::cross_validation::{CrossValidation, FoldKind},
-    inference::gain::HeldOutGains,
     inference::hypothesis_test::hotelling_p_value,
     linear_model::column::ColumnIndex,
     linear_model::normal_equations::NormalEquations,
@@ -17,11 +15,11 @@ use crate::{
 /// Linear system with the present model as its origin.
 #[derive(Debug)]
 pub(crate) struct Evidence<'a> {
-    system: &'a LinearSystem,
+    pub(crate) system: &'a LinearSystem,
     /// Present model in the coordinates of the fitted parameters' columns.
     pub(crate) base: DVector<f64>,
+    /// Equations of all training frames.
     total: ReducedEquations,
-    folds: CrossValidation,
 }
 
 impl<'a> Evidence<'a> {
@@ -29,8 +27,7 @@ impl<'a> Evidence<'a> {
     /// the columns of the nuisance parameters follow behind them.
     pub(crate) fn new(system: &'a LinearSystem, base: DVector<f64>) -> Self {
         let total = ReducedEquations::of(system.frames.iter(), system.size, base.len());
-        let folds = CrossValidation::new(system, base.len());
-        Self { system, base, total, folds }
+        Self { system, base, total }
     }
 
     /// Number of different views.
@@ -41,7 +38,7 @@ impl<'a> Evidence<'a> {
     /// Degrees of freedom of the scatter between views. They are fewer than the views because neighbouring views are
     /// correlated (Kiefer and Vogelsang 2005: for Bartlett's kernel about 1.5 times the number of views over the kernel's
     /// width).
-    pub(crate) fn degrees(&self) -> usize {
+    pub(crate) fn degrees_of_freedom(&self) -> usize {
         3 * self.views() / (2 * (LAG + 1))
     }
 
@@ -58,18 +55,6 @@ impl<'a> Evidence<'a> {
     /// parameters refitted.
     pub(crate) fn improvement(&self, fit: &Fit) -> f64 {
         self.total.gain(&fit.delta)
-    }
-
-    /// Returns the gains of freeing a set of columns over the present model, on held-out frames. See
-    /// [`CrossValidation::gains`].
-    pub(crate) fn held_out(
-        &self,
-        free: &[ColumnIndex],
-        shared: &[ColumnIndex],
-        kind: FoldKind,
-    ) -> Option<HeldOutGains> {
-        let gains = self.folds.gains(self.system, &self.base, free, shared, kind)?;
-        Some(HeldOutGains::new(gains, &self.fit(free)?.delta, self.base.len()))
     }
 
     /// Returns two cluster-robust covariances of the free columns: one from the scatter of scores between views, one from
@@ -98,7 +83,7 @@ impl<'a> Evidence<'a> {
         if tested.is_empty() {
             return 1.0;
         }
-        let counts = [self.degrees() + 1, self.system.cells.len()];
+        let counts = [self.degrees_of_freedom() + 1, self.system.cells.len()];
         let covariances = self.covariances(fit);
         let place = |column: &ColumnIndex| fit.place(*column);
         // Parameters that are not observed on the field, such as those of the odometry, have no scatter between cells.
@@ -141,35 +126,16 @@ impl<'a> Evidence<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{Noise, system_of};
+    use crate::testing::{system_of, two_column_frames};
 
     const BOTH: [ColumnIndex; 2] = [ColumnIndex(0), ColumnIndex(1)];
 
-    type Equations = (DMatrix<f64>, DVector<f64>);
-
-    /// Returns frames with 20 measurements each of two columns; all measurements of a frame also share a common error.
-    fn frames(seed: u64, truth: [f64; 2], shared: f64) -> Vec<Equations> {
-        let mut noise = Noise(seed);
-        let mut frame = || {
-            let common = shared * noise.next();
-            let (mut a, mut g) = (DMatrix::zeros(2, 2), DVector::zeros(2));
-            for _ in 0..20 {
-                let row = DVector::from_vec(vec![1.0 + 0.3 * noise.next(), noise.next()]);
-                let residual = row.dot(&DVector::from_vec(truth.to_vec())) + common + noise.next();
-                a.ger(1.0, &row, &row, 1.0);
-                g += residual * row;
-            }
-            (a, g)
-        };
-        (0..45).map(|_| frame()).collect()
-    }
-
     fn system(seed: u64, truth: [f64; 2], shared: f64) -> LinearSystem {
-        system_of(frames(seed, truth, shared))
+        system_of(two_column_frames(seed, truth, shared))
     }
 
     #[test]
-    fn without_an_effect_p_values_are_even_although_rows_of_a_frame_share_errors() {
+    fn without_an_effect_p_values_are_uniform_although_measurements_of_a_frame_share_errors() {
         let p_values: Vec<f64> = (0..400)
             .map(|seed| {
                 let system = system(seed, [0.0, 0.0], 1.0);
@@ -185,16 +151,13 @@ mod tests {
     }
 
     #[test]
-    fn an_effect_is_found_with_its_size_and_gains_on_unseen_frames() {
+    fn an_effect_is_significant_and_its_interval_contains_the_true_size() {
         let mut inside = 0;
         for seed in 0..200 {
             let system = system(seed, [0.6, -0.2], 0.5);
             let evidence = Evidence::new(&system, DVector::zeros(2));
             let fit = evidence.fit(&BOTH).unwrap();
             assert!(evidence.p_value(&fit, &BOTH[..1]) < 1e-3);
-            let nothing = evidence.held_out(&[], &[], FoldKind::Stretches).unwrap();
-            let gain = evidence.held_out(&BOTH, &[], FoldKind::Stretches).unwrap().over(&nothing);
-            assert!(gain.value > 0.0 && gain.score() > 2.0);
             let sigma = evidence.sigma(&fit, BOTH[0]);
             inside += usize::from((fit.delta[0] - 0.6).abs() < 1.96 * sigma);
         }
@@ -202,8 +165,8 @@ mod tests {
     }
 
     #[test]
-    fn what_hardly_shows_is_as_unknown_as_before() {
-        let mut frames = frames(1, [0.5, 0.0], 0.5);
+    fn a_column_with_hardly_any_information_keeps_the_sigma_of_its_prior() {
+        let mut frames = two_column_frames(1, [0.5, 0.0], 0.5);
         // The second column has almost no influence.
         for (a, g) in &mut frames {
             a.row_mut(1).scale_mut(1e-3);
@@ -214,40 +177,5 @@ mod tests {
         let evidence = Evidence::new(&system, DVector::zeros(2));
         let fit = evidence.fit(&BOTH).unwrap();
         assert!(evidence.sigma(&fit, BOTH[1]) > 0.99 && evidence.sigma(&fit, BOTH[0]) < 0.1);
-    }
-
-    #[test]
-    fn what_is_not_there_gains_nothing_on_unseen_frames() {
-        let gains: Vec<f64> = (0..100)
-            .map(|seed| {
-                let system = system(seed, [0.5, 0.0], 0.5);
-                let evidence = Evidence::new(&system, DVector::zeros(2));
-                evidence
-                    .held_out(&BOTH, &[], FoldKind::Stretches)
-                    .unwrap()
-                    .over(&evidence.held_out(&BOTH[..1], &[], FoldKind::Stretches).unwrap())
-                    .value
-            })
-            .collect();
-        assert!(gains.iter().sum::<f64>() < 0.0);
-    }
-
-    #[test]
-    fn an_effect_held_at_neutral_is_taken_out_of_the_model() {
-        let mut frames = frames(3, [0.4, 0.0], 0.0);
-        // The model has the effect already, so no residual remains.
-        let base = DVector::from_vec(vec![0.4, 0.0]);
-        for (a, g) in &mut frames {
-            *g -= &*a * &base;
-        }
-        let system = system_of(frames);
-        let evidence = Evidence::new(&system, base);
-        let kept = evidence.held_out(&BOTH, &[], FoldKind::Stretches).unwrap();
-        assert!(
-            evidence.held_out(&BOTH[1..], &[], FoldKind::Stretches).unwrap().over(&kept).value < -50.0,
-            "without it much is lost"
-        );
-        let kept = evidence.fit(&BOTH).unwrap();
-        assert!(kept.delta[0].abs() < 0.1);
     }
 }

@@ -21,28 +21,29 @@ pub(crate) struct Gain {
 pub(crate) struct HeldOutGains {
     /// Gain in log-likelihood of each frame, by a fit to the other parts of the recording.
     frames: Vec<f64>,
-    /// Half the sum of squares of the fitted nuisance parameters, in their prior standard deviations. A set that needs
-    /// nominal values far from their priors is less plausible, which the gain of no frame shows.
-    strain: f64,
+    /// Half the sum of squares of the fitted nuisance parameters, in their prior standard deviations: minus the logarithm of
+    /// their prior density. A set that needs nominal values far from their priors is less plausible, which no frame's gain
+    /// shows.
+    nuisance_penalty: f64,
 }
 
 impl HeldOutGains {
     /// Creates the gains of a set. `frames` are the gains frame by frame; `fitted` is the change of all columns in a fit to
     /// all frames, with `parameters` fitted parameters first and the nuisance parameters behind them.
     pub(crate) fn new(frames: Vec<f64>, fitted: &DVector<f64>, parameters: usize) -> Self {
-        let strain = fitted.iter().skip(parameters).map(|value| value * value).sum::<f64>();
-        Self { frames, strain: 0.5 * PRIOR * strain }
+        let squares = fitted.iter().skip(parameters).map(|value| value * value).sum::<f64>();
+        Self { frames, nuisance_penalty: 0.5 * PRIOR * squares }
     }
 
     /// Returns the gain of this set over another one.
     pub(crate) fn over(&self, other: &Self) -> Gain {
         let gain = sum_of(&self.differences(other));
-        Gain { value: gain.value + other.strain - self.strain, ..gain }
+        Gain { value: gain.value + other.nuisance_penalty - self.nuisance_penalty, ..gain }
     }
 
     /// Returns the score of the gain of this set over another one, in standard deviations. It uses the signed roots of the
     /// frames' gains: a gain grows with the square of the effect's size at that time, and roots scatter less.
-    pub(crate) fn surely_over(&self, other: &Self) -> f64 {
+    pub(crate) fn score_over(&self, other: &Self) -> f64 {
         let roots: Vec<f64> =
             self.differences(other).iter().map(|gain| gain.signum() * gain.abs().sqrt()).collect();
         let sum = sum_of(&roots);
@@ -68,9 +69,9 @@ impl Gain {
 pub(crate) fn sum_of(frames: &[f64]) -> Gain {
     let count = frames.len() as f64;
     let value: f64 = frames.iter().sum();
-    let left: Vec<DVector<f64>> =
+    let deviations: Vec<DVector<f64>> =
         frames.iter().map(|frame| DVector::from_element(1, frame - value / count)).collect();
-    let sigma = cluster_covariance::of_neighbours(&left, 1)[(0, 0)].max(0.0).sqrt();
+    let sigma = cluster_covariance::of_neighbours(&deviations, 1)[(0, 0)].max(0.0).sqrt();
     Gain { value, sigma, rank_score: rank_score(frames) }
 }
 
@@ -92,26 +93,26 @@ mod tests {
     use crate::{inference::hypothesis_test::two_sided, testing::Noise};
 
     fn held_out(frames: Vec<f64>) -> HeldOutGains {
-        HeldOutGains { frames, strain: 0.0 }
+        HeldOutGains { frames, nuisance_penalty: 0.0 }
     }
 
     #[test]
-    fn gains_of_what_comes_and_goes_are_surer_by_their_roots() {
+    fn the_score_of_an_effect_that_comes_and_goes_is_higher_by_the_roots_of_its_gains() {
         let wave = held_out((0..40).map(|i| 200.0 * (0.3 * f64::from(i)).sin().powi(2)).collect());
         let nothing = held_out(vec![0.0; 40]);
         let plain = wave.over(&nothing);
-        let (surely, plain) = (wave.surely_over(&nothing), plain.value / plain.sigma);
-        assert!(surely > 1.2 * plain, "{surely} {plain}");
+        let (score, plain) = (wave.score_over(&nothing), plain.value / plain.sigma);
+        assert!(score > 1.2 * plain, "{score} {plain}");
     }
 
     #[test]
-    fn gains_by_chance_are_sure_as_seldom_as_they_should_be() {
+    fn gains_by_chance_are_as_rarely_significant_as_their_p_value_says() {
         let nothing = held_out(vec![0.0; 40]);
-        let sure = |seed: u64| {
+        let score = |seed: u64| {
             let mut noise = Noise(seed);
-            held_out((0..40).map(|_| 5.0 * noise.next()).collect()).surely_over(&nothing)
+            held_out((0..40).map(|_| 5.0 * noise.next()).collect()).score_over(&nothing)
         };
-        let count = (0..400).filter(|&seed| two_sided(sure(seed), 15.0) < 0.02).count();
+        let count = (0..400).filter(|&seed| two_sided(score(seed), 15.0) < 0.02).count();
         assert!(count < 24, "{count} of 400");
     }
 }

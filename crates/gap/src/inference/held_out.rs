@@ -55,12 +55,12 @@ impl HeldOutResiduals {
         found: &SelectedModel,
         model: &Model,
     ) -> Result<Self, MeasureError> {
-        let measured = &found.measured;
-        let frames = linearise(recording, &measured.looks, model, &[], &measured.tolerances)?;
-        let nowhere = DVector::zeros(measured.tolerances.len());
-        let sigmas = &measured.system.pose_sigmas;
+        let linearized = &found.linearized;
+        let frames = linearise(recording, &linearized.measurements, model, &[], &linearized.nuisances)?;
+        let nowhere = DVector::zeros(linearized.nuisances.len());
+        let sigmas = &linearized.system.pose_sigmas;
         let residual = |frame: &LinearizedFrame, pose_sigmas: &[f64; 6]| {
-            let weights = weigh(frame, &frame.residuals, &measured.system.sigmas);
+            let weights = weigh(frame, &frame.residuals, &linearized.system.sigmas);
             FittedResiduals::new(frame, &weights, &nowhere, pose_sigmas).residuals
         };
         Ok(Self {
@@ -79,15 +79,15 @@ pub(crate) fn gaps(
     let mut sums: BTreeMap<Channel, Squares> = BTreeMap::new();
     let mut last: BTreeMap<Quantity, f64> = BTreeMap::new();
     let mut next = 0;
-    for frame in found.split.judged() {
-        let rows = &found.measured.frames[frame];
+    for frame in found.split.held_out() {
+        let rows = &found.linearized.frames[frame];
         // Neighbours are measurements in one picture; for the odometry they are successive steps.
         last.retain(|quantity, _| quantity.is_odometry() && frame == next);
         next = frame + 1;
         for (index, row) in rows.measurements.iter().enumerate() {
             let (b, a) = (before.residuals[frame][index], after.residuals[frame][index]);
             let refitted = after.refitted[frame][index];
-            let sigma = found.measured.system.sigmas.get(&row.quantity).copied().unwrap_or(0.0);
+            let sigma = found.linearized.system.sigmas.get(&row.quantity).copied().unwrap_or(0.0);
             // Outliers do not count: they are not measurements of a line or of carpet.
             if !(b.is_finite()
                 && a.is_finite()
@@ -99,7 +99,7 @@ pub(crate) fn gaps(
             sums.before += b * b;
             sums.after += a * a;
             sums.count += 1.0;
-            sums.poses += pose_variance(&rows.pose[index], &found.measured.system.pose_sigmas);
+            sums.poses += pose_variance(&rows.pose[index], &found.linearized.system.pose_sigmas);
             if let Some(previous) = last.insert(row.quantity, refitted) {
                 sums.steps += 0.5 * (refitted - previous).powi(2);
                 sums.pairs += 1.0;

@@ -3,7 +3,8 @@
 use reality_sim_sensor::{Effect, Model};
 
 use crate::{
-    inference::effect_test::{EffectTests, base},
+    inference::effect_fit::{EffectFits, base},
+    inference::effect_test::EffectTests,
     inference::evidence::Evidence,
     inference::split::HeldOutSplit,
     linear_model::initial_values::starting_values,
@@ -17,20 +18,23 @@ use crate::{
     thresholds::Thresholds,
 };
 
-/// Recording measured where a model expects things, with the model's linearisation there.
+/// Recording measured at the lines and the carpet that a model predicts, with the model's linearisation there.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearizedRecording {
     pub(crate) model: Model,
-    pub(crate) looks: Vec<FrameMeasurements>,
-    pub(crate) tolerances: Vec<Nuisance>,
+    /// What was measured in each picture.
+    pub(crate) measurements: Vec<FrameMeasurements>,
+    /// Nuisance parameters, in the order of their columns.
+    pub(crate) nuisances: Vec<Nuisance>,
+    /// Residuals of each frame with their derivatives.
     pub(crate) frames: Vec<LinearizedFrame>,
     /// Normal equations of the training frames.
     pub(crate) system: LinearSystem,
 }
 
 impl LinearizedRecording {
-    /// Measures and linearises a recording. Lines are searched for up to `search` from where they are expected, as a
-    /// fraction of the picture's width.
+    /// Measures and linearises a recording. Lines are searched for within `search` of where they are expected, a fraction
+    /// of the picture's width.
     pub(crate) fn new(
         recording: &Recording<'_>,
         model: Model,
@@ -39,24 +43,29 @@ impl LinearizedRecording {
         search: f64,
     ) -> Result<Self, MeasureError> {
         let search_px = search * f64::from(recording.sequence.setup.camera.width);
-        let looks = measure_frames(recording, &model, search_px)?;
-        let tolerances = tolerances(&looks);
-        let mut frames = linearise(recording, &looks, &model, columns, &tolerances)?;
+        let measurements = measure_frames(recording, &model, search_px)?;
+        let nuisances = tolerances(&measurements);
+        let mut frames = linearise(recording, &measurements, &model, columns, &nuisances)?;
         // An odometry step that ends at a held-out frame is not fitted.
-        for frame in split.fitted().filter(|frame| split.is_judged(frame + 1)) {
+        for frame in split.training().filter(|frame| split.is_held_out(frame + 1)) {
             frames[frame].leave_out(Channel::Motion);
         }
-        let fitted: Vec<&LinearizedFrame> = split.fitted().map(|frame| &frames[frame]).collect();
+        let training: Vec<&LinearizedFrame> = split.training().map(|frame| &frames[frame]).collect();
         let views = recording.views();
-        let views: Vec<usize> = split.fitted().map(|frame| views[frame]).collect();
-        let size = columns.len() + tolerances.len();
-        let system = LinearSystem::new(&fitted, size, recording.reference(), &views);
-        Ok(Self { model, looks, tolerances, frames, system })
+        let views: Vec<usize> = split.training().map(|frame| views[frame]).collect();
+        let size = columns.len() + nuisances.len();
+        let system = LinearSystem::new(&training, size, recording.reference(), &views);
+        Ok(Self { model, measurements, nuisances, frames, system })
     }
 
-    /// Returns the effect tests at the present model.
+    /// Returns the fits of effects at the present model.
+    pub(crate) fn effect_fits<'a>(&'a self, columns: &'a [FittedParameter]) -> EffectFits<'a> {
+        EffectFits { evidence: Evidence::new(&self.system, base(columns, &self.model)), columns }
+    }
+
+    /// Returns the tests of effects at the present model.
     pub(crate) fn effect_tests<'a>(&'a self, columns: &'a [FittedParameter]) -> EffectTests<'a> {
-        EffectTests { evidence: Evidence::new(&self.system, base(columns, &self.model)), columns }
+        EffectTests::new(self.effect_fits(columns))
     }
 }
 

@@ -2,14 +2,15 @@
 //! the gap on held-out frames.
 //!
 //! ```text
-//! split ─ cross_validation ─┐
-//! cluster_covariance ─ gain ┼─ evidence ─ effect_test ─ effect_selection ─ model_search
-//! hypothesis_test ──────────┘                  └─ detection_limit
+//! cluster_covariance ─┬─ evidence ─┬─ effect_fit ─┬─ detection_limit
+//! hypothesis_test ────┘            │              └─ effect_test ─ effect_selection ─ model_search
+//! split, gain ─────────────────────┴─ cross_validation ─┘
 //! ```
 
 pub(crate) mod cluster_covariance;
 pub(crate) mod cross_validation;
 pub(crate) mod detection_limit;
+pub(crate) mod effect_fit;
 pub(crate) mod effect_selection;
 pub(crate) mod effect_test;
 pub(crate) mod evidence;

@@ -1,4 +1,4 @@
-//! Comparison of settled models by the likelihood of their residuals.
+//! Comparison of fitted models by the likelihood of their residuals.
 
 use std::collections::BTreeMap;
 
@@ -16,33 +16,33 @@ use crate::{
 
 const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
 
-/// Difference in log-likelihood below which two settled models fit equally well, if the better one explains `explained`. No
+/// Difference in log-likelihood below which two fitted models fit equally well, if the better one explains `explained`. No
 /// model is exact, and its error grows with what it explains.
 pub(crate) fn indistinguishable_below(explained: f64) -> f64 {
     let score = THRESHOLDS.distinguishable_score;
     (0.5 * score * score).max(THRESHOLDS.compared_model_error * explained)
 }
 
-/// Minus log-likelihood of the training frames under a settled model. It adds up the squared residuals in the standard
+/// Minus log-likelihood of the training frames under a fitted model. It adds up the squared residuals in the standard
 /// deviations of one system, clipped at outliers, and the squared nuisance parameters that the fit needs. Infinite if the
 /// nuisance parameters cannot be fitted.
 pub(crate) fn minus_log_likelihood(
-    measured: &LinearizedRecording,
+    linearized: &LinearizedRecording,
     system: &LinearSystem,
     columns: &[FittedParameter],
     split: &HeldOutSplit,
 ) -> f64 {
     // The effects keep their values; only the nuisance parameters are fitted.
-    let own = &measured.system;
-    let total = ReducedEquations::of(own.frames.iter(), own.size, columns.len());
-    let Some(fit) = total.fit(&[], &DVector::zeros(columns.len())) else { return f64::INFINITY };
-    let strain = 0.5 * fit.delta.norm_squared();
+    let own = &linearized.system;
+    let equations = ReducedEquations::of(own.frames.iter(), own.size, columns.len());
+    let Some(fit) = equations.fit(&[], &DVector::zeros(columns.len())) else { return f64::INFINITY };
+    let nuisance_penalty = 0.5 * fit.delta.norm_squared();
     let mut means: BTreeMap<Quantity, (f64, f64)> = BTreeMap::new();
-    for (frame, weights) in split.fitted().zip(&own.weights) {
-        let frame = &measured.frames[frame];
-        let left = FittedResiduals::new(frame, weights, &fit.delta, &system.pose_sigmas);
-        let rows = frame.measurements.iter().zip(&left.residuals);
-        for (row, residual) in rows.filter(|(_, left)| left.is_finite()) {
+    for (frame, weights) in split.training().zip(&own.weights) {
+        let frame = &linearized.frames[frame];
+        let fitted = FittedResiduals::new(frame, weights, &fit.delta, &system.pose_sigmas);
+        let rows = frame.measurements.iter().zip(&fitted.residuals);
+        for (row, residual) in rows.filter(|(_, residual)| residual.is_finite()) {
             if let Some(sigma) = system.sigmas.get(&row.quantity) {
                 let mean = means.entry(row.quantity).or_default();
                 let most = THRESHOLDS.compared_residual_sigmas * THRESHOLDS.compared_residual_sigmas;
@@ -61,7 +61,7 @@ pub(crate) fn minus_log_likelihood(
         };
         0.5 * rows * sum / count.max(1.0)
     });
-    counted.sum::<f64>() + strain
+    counted.sum::<f64>() + nuisance_penalty
 }
 
 #[cfg(test)]
@@ -69,10 +69,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn models_are_apart_by_more_than_what_they_explain_may_be_off_by() {
+    fn the_difference_that_counts_grows_with_what_the_better_model_explains() {
         let score = THRESHOLDS.distinguishable_score;
         assert_eq!(indistinguishable_below(0.0), 0.5 * score * score);
         assert!(indistinguishable_below(1000.0) > indistinguishable_below(100.0));
-        assert!(indistinguishable_below(1000.0) < 100.0, "a tenth of what is explained is no tie");
+        assert!(
+            indistinguishable_below(1000.0) < 100.0,
+            "models that differ by a tenth of what they explain are distinguishable"
+        );
     }
 }

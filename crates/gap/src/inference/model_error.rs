@@ -16,9 +16,9 @@ pub(crate) struct ModelError(BTreeMap<Quantity, f64>);
 impl ModelError {
     pub(crate) fn new(found: &SelectedModel, before: &HeldOutResiduals, after: &HeldOutResiduals) -> Self {
         let mut sums: BTreeMap<Quantity, (f64, f64)> = BTreeMap::new();
-        for frame in found.split.judged() {
+        for frame in found.split.held_out() {
             let residuals = before.residuals[frame].iter().zip(&after.residuals[frame]);
-            for (row, (before, after)) in found.measured.frames[frame].measurements.iter().zip(residuals) {
+            for (row, (before, after)) in found.linearized.frames[frame].measurements.iter().zip(residuals) {
                 let change = before - after;
                 if change.is_finite() {
                     let sum = sums.entry(row.quantity).or_default();

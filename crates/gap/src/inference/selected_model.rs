@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use reality_sim_sensor::EffectIndex;
 
 use super::{
+    effect_fit::EffectFits,
     effect_test::{EffectTest, EffectTests},
     linearized_recording::LinearizedRecording,
     split::HeldOutSplit,
@@ -16,7 +17,7 @@ pub(crate) struct SelectedModel {
     pub(crate) columns: Vec<FittedParameter>,
     pub(crate) split: HeldOutSplit,
     /// Recording measured and linearised at the final model.
-    pub(crate) measured: LinearizedRecording,
+    pub(crate) linearized: LinearizedRecording,
     /// Effects that the model had from the start.
     pub(crate) given: Vec<EffectIndex>,
     /// Effects that were added, in the order in which they were added.
@@ -33,9 +34,14 @@ impl SelectedModel {
         self.given.iter().chain(&self.named).copied().collect()
     }
 
-    /// Returns the effect tests at the final model.
+    /// Returns the fits of effects at the final model.
+    pub(crate) fn effect_fits(&self) -> EffectFits<'_> {
+        self.linearized.effect_fits(&self.columns)
+    }
+
+    /// Returns the tests of effects at the final model.
     pub(crate) fn effect_tests(&self) -> EffectTests<'_> {
-        self.measured.effect_tests(&self.columns)
+        self.linearized.effect_tests(&self.columns)
     }
 
     /// P-value of a named effect: the smaller one of those before and after it was added.

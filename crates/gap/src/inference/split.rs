@@ -14,7 +14,8 @@ pub(crate) fn stretch(frame: usize, count: usize, stretches: usize) -> usize {
 /// Split into training frames and held-out frames, which no fit sees.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct HeldOutSplit {
-    judged: Vec<bool>,
+    /// Whether each frame is held out.
+    is_held_out: Vec<bool>,
 }
 
 impl HeldOutSplit {
@@ -23,20 +24,28 @@ impl HeldOutSplit {
         // Short recordings have shorter runs, so that both kinds of frames are spread over the whole recording.
         let run = RUN.min(frames / (2 * EVERY)).max(1);
         let first = (seed % EVERY as u64) as usize;
-        Self { judged: (0..frames).map(|frame| (frame / run) % EVERY == (first + 2) % EVERY).collect() }
+        let is_held_out = (0..frames).map(|frame| (frame / run) % EVERY == (first + 2) % EVERY).collect();
+        Self { is_held_out }
     }
 
-    pub(crate) fn fitted(&self) -> impl Iterator<Item = usize> {
-        self.judged.iter().enumerate().filter(|(_, judged)| !**judged).map(|(frame, _)| frame)
+    /// Returns the indices of the training frames, in order.
+    pub(crate) fn training(&self) -> impl Iterator<Item = usize> {
+        self.frames(false)
+    }
+
+    /// Returns the indices of the held-out frames, in order.
+    pub(crate) fn held_out(&self) -> impl Iterator<Item = usize> {
+        self.frames(true)
     }
 
     /// Whether a frame is held out; false for a frame that does not exist.
-    pub(crate) fn is_judged(&self, frame: usize) -> bool {
-        self.judged.get(frame).copied().unwrap_or(false)
+    pub(crate) fn is_held_out(&self, frame: usize) -> bool {
+        self.is_held_out.get(frame).copied().unwrap_or(false)
     }
 
-    pub(crate) fn judged(&self) -> impl Iterator<Item = usize> {
-        self.judged.iter().enumerate().filter(|(_, judged)| **judged).map(|(frame, _)| frame)
+    fn frames(&self, held_out: bool) -> impl Iterator<Item = usize> {
+        let frames = self.is_held_out.iter().enumerate();
+        frames.filter(move |(_, is_held_out)| **is_held_out == held_out).map(|(frame, _)| frame)
     }
 }
 
@@ -45,16 +54,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_frame_is_either_fitted_or_judged_and_both_are_spread_over_the_recording() {
+    fn each_frame_is_in_one_of_two_sets_and_both_sets_are_spread_over_the_recording() {
         for frames in [12, 20, 60, 61, 240] {
             for seed in 0..9 {
                 let split = HeldOutSplit::new(frames, seed);
-                let (fitted, judged): (Vec<_>, Vec<_>) = (split.fitted().collect(), split.judged().collect());
-                let mut all: Vec<_> = fitted.iter().chain(&judged).copied().collect();
+                let (training, held_out): (Vec<_>, Vec<_>) =
+                    (split.training().collect(), split.held_out().collect());
+                let mut all: Vec<_> = training.iter().chain(&held_out).copied().collect();
                 all.sort_unstable();
                 assert_eq!(all, (0..frames).collect::<Vec<_>>());
-                let part = judged.len() as f64 / frames as f64;
-                assert!((0.12..0.4).contains(&part), "{frames} {seed}: {part}");
+                let share = held_out.len() as f64 / frames as f64;
+                assert!((0.12..0.4).contains(&share), "{frames} {seed}: {share}");
             }
         }
         assert_ne!(HeldOutSplit::new(60, 0), HeldOutSplit::new(60, 1), "the seed chooses");

@@ -131,7 +131,7 @@ pub struct Course {
     /// Times of the frames, seconds.
     pub time_s: Vec<f64>,
     /// Whether each frame is held out.
-    pub judged: Vec<bool>,
+    pub held_out: Vec<bool>,
     /// Sizes with the model as it was given.
     pub before: Vec<Option<f64>>,
     /// Sizes with the extended model.
@@ -170,7 +170,7 @@ pub struct Report {
     /// Number of frames that were compared.
     pub frames: usize,
     /// Number of held-out frames, which no fit has seen.
-    pub judged_frames: usize,
+    pub held_out_frames: usize,
     /// Picture files of frames that were left out because the picture is broken or missing.
     pub left_out: Vec<String>,
     /// Verdict on the recording.

@@ -105,7 +105,7 @@ impl Maps {
     fn contradiction(&self) -> Option<Contradiction> {
         let course = &self.time;
         let frames = course.time_s.len();
-        let lengths = [course.judged.len(), course.before.len(), course.after.len()];
+        let lengths = [course.held_out.len(), course.before.len(), course.after.len()];
         match () {
             () if !(self.picture.has_all_cells() && self.field.has_all_cells()) => Some(Contradiction::Cells),
             () if !(self.picture.has_area() && self.field.has_area()) => Some(Contradiction::Extent),

@@ -28,7 +28,7 @@ type ByChannel<T> = BTreeMap<&'static str, T>;
 struct Written<'a> {
     recording: &'a str,
     frames: usize,
-    judged_frames: usize,
+    held_out_frames: usize,
     left_out: &'a [String],
     verdict: Verdict,
     summary: String,
@@ -136,7 +136,7 @@ impl<'a> From<&'a Report> for Written<'a> {
         Self {
             recording: &report.recording,
             frames: report.frames,
-            judged_frames: report.judged_frames,
+            held_out_frames: report.held_out_frames,
             left_out: &report.left_out,
             verdict: report.verdict,
             summary: text::summary(report),
@@ -343,7 +343,7 @@ mod tests {
         };
         let time = Course {
             time_s: vec![0.1, 0.3],
-            judged: vec![false, true],
+            held_out: vec![false, true],
             before: vec![Some(0.333), None],
             after: vec![None; 2],
         };

@@ -32,8 +32,8 @@ pub(crate) fn maps(
     let field_rows = [cells.x as usize, cells.y as usize];
     let mut maps = BTreeMap::new();
     for channel in Channel::ALL {
-        let of = |judged: &HeldOutResiduals| -> Vec<(usize, Measurement, f64)> {
-            residuals(found, judged, channel)
+        let of = |held_out: &HeldOutResiduals| -> Vec<(usize, Measurement, f64)> {
+            residuals(found, held_out, channel)
         };
         let (before, after) = (of(before), of(after));
         if after.is_empty() {
@@ -69,10 +69,10 @@ pub(crate) fn maps(
 /// Returns a channel's residuals without outliers, each with its frame and measurement.
 fn residuals(
     found: &SelectedModel,
-    judged: &HeldOutResiduals,
+    held_out: &HeldOutResiduals,
     channel: Channel,
 ) -> Vec<(usize, Measurement, f64)> {
-    let frames = found.measured.frames.iter().zip(&judged.residuals).enumerate();
+    let frames = found.linearized.frames.iter().zip(&held_out.residuals).enumerate();
     frames
         .flat_map(|(frame, (rows, residuals))| {
             rows.measurements.iter().zip(residuals).map(move |(row, residual)| (frame, *row, *residual))
@@ -107,8 +107,8 @@ fn course(
     after: &[(usize, Measurement, f64)],
 ) -> Course {
     let count = recording.frames.len();
-    let mut judged = vec![false; count];
-    found.split.judged().for_each(|frame| judged[frame] = true);
+    let mut held_out = vec![false; count];
+    found.split.held_out().for_each(|frame| held_out[frame] = true);
     let sizes = |rows: &[(usize, Measurement, f64)]| -> Vec<Option<f64>> {
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); count];
         rows.iter().for_each(|(frame, _, residual)| values[*frame].push(residual.abs()));
@@ -118,7 +118,7 @@ fn course(
     };
     Course {
         time_s: recording.frames.iter().map(|frame| frame.time_s).collect(),
-        judged,
+        held_out,
         before: sizes(before),
         after: sizes(after),
     }

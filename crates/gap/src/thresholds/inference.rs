@@ -38,7 +38,7 @@ pub(crate) struct InferenceThresholds {
     /// A supported effect may stand for the best one where it gains this part of what that one gains. Set on the study, on
     /// effects so large that the linearised model is far off.
     pub(crate) least_gain_ratio: f64,
-    /// Number of effects beside the best one that are settled in full. Chosen for the time that it takes.
+    /// Number of effects beside the best one that are fitted until they converge. Chosen for the time that it takes.
     pub(crate) most_alternatives: usize,
     /// Largest p-value, corrected, of an effect that is tried beside every other one where none is supported alone. Chosen.
     pub(crate) lead_p_value: f64,
@@ -47,19 +47,19 @@ pub(crate) struct InferenceThresholds {
 
     /// Distance at which lines are looked for from where the first model has them, as a part of the picture's width. Chosen.
     pub(crate) search_first: f64,
-    /// The same from where a settled model has them. Chosen.
+    /// The same from where a fitted model has them. Chosen.
     pub(crate) search_again: f64,
-    /// Steps of Gauss and Newton's method in which a model settles at most. Chosen.
-    pub(crate) most_settling_steps: usize,
-    /// A model has settled when a step gains less than this, log-likelihood. Chosen.
-    pub(crate) settled_gain: f64,
-    /// Part of what a model explains by which two settled models may differ, in log-likelihood, and still leave as little as
+    /// Largest number of steps of Gauss and Newton's method. Chosen.
+    pub(crate) most_gauss_newton_steps: usize,
+    /// A fit has converged when a step gains less than this, log-likelihood. Chosen.
+    pub(crate) converged_gain: f64,
+    /// Part of what a model explains by which two fitted models may differ, in log-likelihood, and still leave as little as
     /// each other. Set on the study. Not [`Self::model_error`], which is of residuals and decides what is unknown.
     pub(crate) compared_model_error: f64,
-    /// Standard deviations at which residuals are cut off where settled models are compared: beyond, they are no measurements.
+    /// Standard deviations at which residuals are cut off where fitted models are compared: beyond, they are no measurements.
     /// The same as Tukey's constant in [`crate::linear_model::system`], but as a bound and not as a weight.
     pub(crate) compared_residual_sigmas: f64,
-    /// Measurements that the mean residual of a quantity of the pictures stands for where settled models are compared, as
+    /// Measurements that the mean residual of a quantity of the pictures stands for where fitted models are compared, as
     /// models find different numbers of lines. Chosen.
     pub(crate) picture_rows: f64,
     /// The same of a quantity of the odometry. Chosen.
@@ -98,8 +98,8 @@ impl InferenceThresholds {
         most_leads: 3,
         search_first: 0.028,
         search_again: 0.014,
-        most_settling_steps: 8,
-        settled_gain: 1.0,
+        most_gauss_newton_steps: 8,
+        converged_gain: 1.0,
         compared_model_error: 0.03,
         compared_residual_sigmas: 5.0,
         picture_rows: 3000.0,

@@ -10,6 +10,7 @@ use crate::{
     diagnostics::detector::{FitResiduals, FrameResiduals},
     diagnostics::finding::Finding,
     inference::detection_limit::{NotFound, limit},
+    inference::effect_fit::EffectFits,
     inference::effect_test::{EffectTest, EffectTests},
     inference::gain::Gain,
     inference::held_out::{ChannelGap, HeldOutResiduals, gaps},
@@ -47,12 +48,12 @@ pub fn analyse(
     progress(Progress::Judging);
     let tests = found.effect_tests();
     let before = HeldOutResiduals::new(recording, &found, model)?;
-    let after = HeldOutResiduals::new(recording, &found, &found.measured.model)?;
+    let after = HeldOutResiduals::new(recording, &found, &found.linearized.model)?;
     let channels = gaps(&found, &before, &after);
     let mut effects = effect_reports(recording, &tests, &found, (&found.named, model), &after)?;
     effects.sort_by(|a, b| b.held_out_gain.value.total_cmp(&a.held_out_gain.value));
     let in_model = effect_reports(recording, &tests, &found, (&found.given, model), &after)?;
-    let unexplained = if tests.evidence.views() < LEAST_VIEWS {
+    let unexplained = if tests.fits.evidence.views() < LEAST_VIEWS {
         // A pattern of a single view may come from that place.
         Vec::new()
     } else {
@@ -62,7 +63,7 @@ pub fn analyse(
     let report = Report {
         recording: recording.sequence.name.clone(),
         frames: recording.frames.len(),
-        judged_frames: found.split.judged().count(),
+        held_out_frames: found.split.held_out().count(),
         left_out: recording.left_out.iter().map(|path| path.display().to_string()).collect(),
         verdict: verdict(&effects, &unexplained, &unobservable),
         effects,
@@ -77,7 +78,7 @@ pub fn analyse(
         seed: options.seed,
         field: recording.sequence.field.clone(),
     };
-    Ok(Analysis { report, model: found.measured.model.clone() })
+    Ok(Analysis { report, model: found.linearized.model.clone() })
 }
 
 /// Returns the gap of a model as it is, in noise floors, on the same held-out frames as [`analyse`]: the error of a
@@ -88,8 +89,8 @@ pub fn analyse(
 /// Returns the same errors as [`analyse`].
 pub fn gap_of(recording: &Recording<'_>, model: &Model, options: &Options) -> Result<Gap, MeasureError> {
     let found = as_given(recording, model, options)?;
-    let judged = HeldOutResiduals::new(recording, &found, model)?;
-    Ok(whole_gap(gaps(&found, &judged, &judged)))
+    let residuals = HeldOutResiduals::new(recording, &found, model)?;
+    Ok(whole_gap(gaps(&found, &residuals, &residuals)))
 }
 
 /// Returns a model without one effect.
@@ -123,7 +124,7 @@ fn whole_gap(channels: BTreeMap<Channel, ChannelGap>) -> Gap {
 }
 
 fn poses(recording: &Recording<'_>, found: &SelectedModel) -> PosesReport {
-    let [a, b, c, d, e, f] = found.measured.system.pose_sigmas;
+    let [a, b, c, d, e, f] = found.linearized.system.pose_sigmas;
     PosesReport { source: recording.source, rotation_sigma_rad: [a, b, c], position_sigma_m: [d, e, f] }
 }
 
@@ -136,13 +137,14 @@ fn effect_reports(
     after: &HeldOutResiduals,
 ) -> Result<Vec<EffectReport>, MeasureError> {
     let all = found.all();
-    let cases = effects.iter().filter_map(|&effect| tests.test(effect, &all, tests.effects().len()));
-    let report = |case: EffectTest| {
-        let alone = without(&found.measured.model, case.effect);
-        let closes = closed(&gaps(found, &HeldOutResiduals::new(recording, found, &alone)?, after));
-        Ok(effect_report(tests, &case, found, given, closes))
+    let tested = tests.fits.effects().len();
+    let made = effects.iter().filter_map(|&effect| tests.test(effect, &all, tested));
+    let report = |test: EffectTest| {
+        let others = without(&found.linearized.model, test.effect);
+        let closes = closed(&gaps(found, &HeldOutResiduals::new(recording, found, &others)?, after));
+        Ok(effect_report(&tests.fits, &test, found, given, closes))
     };
-    cases.map(report).collect()
+    made.map(report).collect()
 }
 
 fn gain(gain: Gain) -> Estimate {
@@ -150,50 +152,50 @@ fn gain(gain: Gain) -> Estimate {
 }
 
 fn effect_report(
-    tests: &EffectTests<'_>,
-    case: &EffectTest,
+    fits: &EffectFits<'_>,
+    test: &EffectTest,
     found: &SelectedModel,
     given: &Model,
     closes: BTreeMap<Channel, f64>,
 ) -> EffectReport {
-    let effect = case.effect.effect();
+    let effect = test.effect.effect();
     let given = given.values(effect.id()).unwrap_or_default();
     let given = effect.parameters().iter().zip(given);
-    let rivals = found.confusable_with(case.effect).into_iter();
+    let confusable = found.confusable_with(test.effect).into_iter();
     EffectReport {
         id: effect.id().to_owned(),
-        parameters: estimates(tests, case),
-        correlations: correlations(tests, case),
+        parameters: estimates(fits, test),
+        correlations: correlations(fits, test),
         given: given.map(|(parameter, value)| (parameter.name.to_owned(), *value)).collect(),
-        p_value: found.p_value(case),
-        held_out_gain: gain(case.gain),
-        confusable_with: rivals.map(|rival| rival.effect().id().to_owned()).collect(),
+        p_value: found.p_value(test),
+        held_out_gain: gain(test.gain),
+        confusable_with: confusable.map(|other| other.effect().id().to_owned()).collect(),
         closes,
     }
 }
 
 /// Returns estimates of an effect's parameters by their names.
-fn estimates(tests: &EffectTests<'_>, case: &EffectTest) -> BTreeMap<String, Estimate> {
+fn estimates(fits: &EffectFits<'_>, test: &EffectTest) -> BTreeMap<String, Estimate> {
     let estimate = |index: ColumnIndex| {
-        let column = &tests.columns[index.0];
-        let sigma = tests.evidence.sigma(&case.fit, index);
-        // The value is the one in the model's file; the last fit moves from there by less than matters.
-        let coordinate = tests.evidence.base[index.0];
+        let column = &fits.columns[index.0];
+        let sigma = fits.evidence.sigma(&test.fit, index);
+        // The value is that of the model file; a further fit would change it by less than its last step did.
+        let coordinate = fits.evidence.base[index.0];
         let (value, sigma) = (column.value(coordinate), column.value_sigma(coordinate, sigma));
         let parameter = column.parameter();
         (parameter.name.to_owned(), Estimate { value, sigma, unit: Some(parameter.unit.to_owned()) })
     };
-    tests.columns_of(&[case.effect]).into_iter().map(estimate).collect()
+    fits.columns_of(&[test.effect]).into_iter().map(estimate).collect()
 }
 
 /// Returns correlations of these estimates' errors; each pair of parameters appears once, in their order.
-fn correlations(tests: &EffectTests<'_>, case: &EffectTest) -> BTreeMap<String, BTreeMap<String, f64>> {
-    let columns = tests.columns_of(&[case.effect]);
-    let name = |column: ColumnIndex| tests.columns[column.0].parameter().name.to_owned();
+fn correlations(fits: &EffectFits<'_>, test: &EffectTest) -> BTreeMap<String, BTreeMap<String, f64>> {
+    let columns = fits.columns_of(&[test.effect]);
+    let name = |column: ColumnIndex| fits.columns[column.0].parameter().name.to_owned();
     let mut correlations: BTreeMap<String, BTreeMap<String, f64>> = BTreeMap::new();
     for (index, &one) in columns.iter().enumerate() {
         for &other in &columns[index + 1..] {
-            let correlation = tests.evidence.correlation(&case.fit, [one, other]);
+            let correlation = fits.evidence.correlation(&test.fit, [one, other]);
             correlations.entry(name(one)).or_default().insert(name(other), correlation);
         }
     }
@@ -207,18 +209,18 @@ fn others(
     all: &[EffectIndex],
 ) -> (Vec<NotFoundReport>, Vec<Unobservable>) {
     let (mut not_found, mut unobservable) = (Vec::new(), Vec::new());
-    let effects = tests.effects();
+    let effects = tests.fits.effects();
     for &index in effects.iter().filter(|effect| !all.contains(effect)) {
         let id = index.effect().id().to_owned();
-        match limit(recording, tests, index, all) {
+        match limit(recording, &tests.fits, index, all) {
             NotFound::Limit { value, unit, parameter } => {
-                let case = tests.test(index, all, effects.len());
+                let test = tests.test(index, all, effects.len());
                 not_found.push(NotFoundReport {
                     id,
                     parameter: parameter.to_owned(),
                     detection_limit: Limit { value, unit: unit.to_owned() },
-                    p_value: case.as_ref().map_or(1.0, |case| case.p_value),
-                    held_out_gain: gain(case.map_or_else(Gain::default, |case| case.gain)),
+                    p_value: test.as_ref().map_or(1.0, |test| test.p_value),
+                    held_out_gain: gain(test.map_or_else(Gain::default, |test| test.gain)),
                 });
             }
             NotFound::Unobservable(cause) => unobservable.push(Unobservable { id, cause }),
@@ -234,16 +236,16 @@ fn findings(
     gaps: &BTreeMap<Channel, ChannelGap>,
     model_error: &ModelError,
 ) -> Vec<Finding> {
-    let delta = settled(found);
-    let measured = &found.measured;
+    let delta = nuisance_fit(found);
+    let linearized = &found.linearized;
     let fit = FitResiduals {
         recording,
         start_s: recording.frames[0].time_s,
         frames: frame_residuals(recording, found, &delta),
-        steps: found.split.fitted().map(|frame| &recording.frames[frame]).collect(),
-        measurements: found.split.fitted().map(|frame| &measured.looks[frame]).collect(),
-        sigmas: &measured.system.sigmas,
-        nuisances: &measured.tolerances,
+        steps: found.split.training().map(|frame| &recording.frames[frame]).collect(),
+        measurements: found.split.training().map(|frame| &linearized.measurements[frame]).collect(),
+        sigmas: &linearized.system.sigmas,
+        nuisances: &linearized.nuisances,
         nuisance_values: &delta.as_slice()[found.columns.len()..],
         model_error,
         gaps,
@@ -251,11 +253,12 @@ fn findings(
     DETECTORS.iter().flat_map(|detector| detector.detect(&fit)).collect()
 }
 
-/// Fits the nuisance parameters. The model has settled, so the effects keep their values.
-fn settled(found: &SelectedModel) -> DVector<f64> {
-    let tests = found.effect_tests();
-    let mut delta = tests.evidence.fit(&tests.columns_of(&found.all())).map_or_else(
-        || DVector::zeros(found.columns.len() + found.measured.tolerances.len()),
+/// Returns the change of all columns that fits the nuisance parameters. The effects' fit has converged, so they keep their
+/// values.
+fn nuisance_fit(found: &SelectedModel) -> DVector<f64> {
+    let fits = found.effect_fits();
+    let mut delta = fits.evidence.fit(&fits.columns_of(&found.all())).map_or_else(
+        || DVector::zeros(found.columns.len() + found.linearized.nuisances.len()),
         |fit| fit.delta,
     );
     delta.rows_mut(0, found.columns.len()).fill(0.0);
@@ -267,17 +270,17 @@ fn frame_residuals<'a>(
     found: &'a SelectedModel,
     delta: &DVector<f64>,
 ) -> Vec<FrameResiduals<'a>> {
-    let system = &found.measured.system;
+    let system = &found.linearized.system;
     let camera = &recording.sequence.setup.camera;
-    let fitted = found.split.fitted().zip(&system.weights);
+    let fitted = found.split.training().zip(&system.weights);
     fitted
         .map(|(index, weights)| {
-            let frame = &found.measured.frames[index];
+            let frame = &found.linearized.frames[index];
             FrameResiduals {
                 measurements: &frame.measurements,
                 values: FittedResiduals::new(frame, weights, delta, &system.pose_sigmas).residuals,
                 time_s: recording.frames[index].time_s,
-                camera: found.measured.looks[index].camera.truncate(),
+                camera: found.linearized.measurements[index].camera.truncate(),
                 size: [camera.width, camera.height],
             }
         })
@@ -288,13 +291,13 @@ fn frame_residuals<'a>(
 fn shown_frame(recording: &Recording<'_>, found: &SelectedModel, before: &HeldOutResiduals) -> usize {
     let most = THRESHOLDS.most_shown_sigmas * THRESHOLDS.most_shown_sigmas;
     let size = |frame: usize| -> f64 {
-        let rows = found.measured.frames[frame].measurements.iter().zip(&before.residuals[frame]);
+        let rows = found.linearized.frames[frame].measurements.iter().zip(&before.residuals[frame]);
         let squares = rows.filter_map(|(row, residual)| {
-            let sigma = found.measured.system.sigmas.get(&row.quantity)?;
+            let sigma = found.linearized.system.sigmas.get(&row.quantity)?;
             residual.is_finite().then(|| (residual / sigma).powi(2).min(most))
         });
         squares.sum()
     };
-    let frame = found.split.judged().max_by(|&a, &b| size(a).total_cmp(&size(b)));
+    let frame = found.split.held_out().max_by(|&a, &b| size(a).total_cmp(&size(b)));
     frame.map_or(0, |frame| recording.frames[frame].index)
 }

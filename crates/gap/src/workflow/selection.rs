@@ -14,7 +14,7 @@ use crate::{
     progress::Progress,
     recording::Recording,
     thresholds::Thresholds,
-    workflow::coarse_alignment::placing,
+    workflow::coarse_alignment::coarsely_aligned,
 };
 
 const SEARCH_FIRST: f64 = Thresholds::DEFAULT.inference.search_first;
@@ -43,52 +43,53 @@ pub(crate) fn find(
     let source = FittedRecording { recording, columns: &columns, split: &split };
     let search = ModelSearch { source: &source, columns: &columns, split: &split, given: &given, progress };
     progress(Progress::Measuring);
-    let mut measured = LinearizedRecording::new(recording, model.clone(), &columns, &split, SEARCH_FIRST)?;
+    let mut linearized = LinearizedRecording::new(recording, model.clone(), &columns, &split, SEARCH_FIRST)?;
     let mut named: Vec<EffectIndex> = Vec::new();
     if !given.is_empty() {
-        measured = search.settle(measured, &given)?;
+        linearized = search.converge(linearized, &given)?;
     }
-    // If lines are not where the model expects them, they are searched for elsewhere, and everything is compared from there.
-    let as_given = measured.model.clone();
-    if let Some(placed) = placing(recording, &as_given, &columns, &split)? {
-        measured = LinearizedRecording::new(recording, placed, &columns, &split, SEARCH_FIRST)?;
+    // If lines are far from where the model predicts them, the search starts at a coarsely aligned model.
+    let as_given = linearized.model.clone();
+    if let Some(aligned) = coarsely_aligned(recording, &as_given, &columns, &split)? {
+        linearized = LinearizedRecording::new(recording, aligned, &columns, &split, SEARCH_FIRST)?;
     }
-    // Sets that were tried, so that swapping does not go round in circles.
+    // Sets that were tried, so that replacements do not go round in circles.
     let mut tried: Vec<Vec<EffectIndex>> = vec![Vec::new()];
     let mut ties = Vec::new();
     let mut p_values = BTreeMap::new();
     while named.len() < Thresholds::DEFAULT.workflow.most_effects {
         progress(Progress::Testing);
-        let tests = measured.effect_tests(&columns);
-        if let Some((set, settled)) = search.dropped(&measured, &tests, &named)? {
-            (named, measured) = (set, settled);
+        let tests = linearized.effect_tests(&columns);
+        if let Some((set, converged)) = search.without_unsupported(&linearized, &tests, &named)? {
+            (named, linearized) = (set, converged);
             continue;
         }
         let is_new = |set: &[EffectIndex]| {
             set.len() <= Thresholds::DEFAULT.workflow.most_effects && !tried.contains(&sorted(set))
         };
         let sets = search.next_sets(&tests, &named, is_new);
-        let swaps = sets.iter().any(|set| set.len() == named.len());
-        let mut closest = search.closest(&measured, sets)?.into_iter();
-        let Some((set, settled)) = closest.next() else { break };
+        let is_replacement = sets.iter().any(|set| set.len() == named.len());
+        let mut best = search.best_sets(&linearized, sets)?.into_iter();
+        let Some((set, converged)) = best.next() else { break };
         tried.push(sorted(&set));
-        // A set that looked better before it settled may not be better afterwards.
-        if swaps && search.left(&settled, &measured.system) > search.left(&measured, &measured.system) {
+        // A replacement that is better in the linearised model may be worse once it has converged.
+        let misfit = |model: &LinearizedRecording| search.minus_log_likelihood(model, &linearized.system);
+        if is_replacement && misfit(&converged) > misfit(&linearized) {
             continue;
         }
-        for (other, _) in closest {
+        for (other, _) in best {
             tried.push(sorted(&other));
             ties.extend(differing(&set, &other));
         }
         let new = set.iter().copied().filter(|effect| !named.contains(effect));
         p_values.extend(new.filter_map(|effect| Some((effect, search.p_value(&tests, &named, effect)?))));
-        (named, measured) = (set, settled);
+        (named, linearized) = (set, converged);
     }
-    if named.is_empty() && measured.model != as_given {
-        measured = LinearizedRecording::new(recording, as_given, &columns, &split, SEARCH_AGAIN)?;
+    if named.is_empty() && linearized.model != as_given {
+        linearized = LinearizedRecording::new(recording, as_given, &columns, &split, SEARCH_AGAIN)?;
     }
-    let confusable = search.confusable(&measured, &named, &ties)?;
-    Ok(SelectedModel { columns, split, measured, given, named, p_values, confusable })
+    let confusable = search.confusable(&linearized, &named, &ties)?;
+    Ok(SelectedModel { columns, split, linearized, given, named, p_values, confusable })
 }
 
 /// Returns the effects of a model that are in the library.
@@ -105,9 +106,9 @@ pub(crate) fn as_given(
     check(recording, model)?;
     let columns = columns(&options.without);
     let split = HeldOutSplit::new(recording.frames.len(), options.seed);
-    let measured = LinearizedRecording::new(recording, model.clone(), &columns, &split, SEARCH_AGAIN)?;
+    let linearized = LinearizedRecording::new(recording, model.clone(), &columns, &split, SEARCH_AGAIN)?;
     let (given, named, p_values, confusable) = Default::default();
-    Ok(SelectedModel { columns, split, measured, given, named, p_values, confusable })
+    Ok(SelectedModel { columns, split, linearized, given, named, p_values, confusable })
 }
 
 /// Returns an effect of the first set that the other set lacks, with the one that the other set has instead.

@@ -45,9 +45,10 @@ pub fn ui(ui: &mut Ui, course: &Course, channel: Channel, room: Vec2) {
                 let line = Line::new(side.name(), PlotPoints::from(points(course, &run, first_s, factor)));
                 plot.line(line.color(side.color()).width(width).allow_band(false));
             }
-            let judged: Vec<_> = runs(course, side).concat();
-            let judged: Vec<_> = judged.into_iter().filter(|(frame, _)| course.judged[*frame]).collect();
-            let dots = Points::new(side.name(), PlotPoints::from(points(course, &judged, first_s, factor)));
+            let held_out: Vec<_> = runs(course, side).concat();
+            let held_out: Vec<_> =
+                held_out.into_iter().filter(|(frame, _)| course.held_out[*frame]).collect();
+            let dots = Points::new(side.name(), PlotPoints::from(points(course, &held_out, first_s, factor)));
             plot.points(dots.color(side.color()).radius(*side.of(&[4.0, 3.0])));
         }
     });
@@ -81,7 +82,7 @@ mod tests {
         let before = vec![None, Some(1.0), Some(2.0), None, None, Some(5.0)];
         let course = Course {
             time_s: (0..6).map(|frame| 10.0 + f64::from(frame)).collect(),
-            judged: vec![false; 6],
+            held_out: vec![false; 6],
             after: vec![None; 6],
             before,
         };

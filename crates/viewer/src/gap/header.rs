@@ -69,7 +69,7 @@ fn facts(report: &Report) -> String {
         "{} · {} frames, {} of them judged and in no fit · poses {poses} · gap {:.2} before, {:.2} after, in {} (floor {:.2})",
         report.recording,
         report.frames,
-        report.judged_frames,
+        report.held_out_frames,
         report.gap.before,
         report.gap.after,
         GAP_UNIT,

@@ -47,7 +47,7 @@ fn maps() -> Maps {
         field: map(15, 11, [-3.725, 2.725, 3.725, -2.725]),
         time: Course {
             time_s: (0..frames).map(|frame| 100.0 + 0.2 * f64::from(frame)).collect(),
-            judged: (0..frames).map(|frame| frame % 4 == 0).collect(),
+            held_out: (0..frames).map(|frame| frame % 4 == 0).collect(),
             before: (0..frames).map(|frame| (frame != 5).then_some(0.2 + 0.01 * f64::from(frame))).collect(),
             after: (0..frames).map(|frame| (frame != 5).then_some(0.05)).collect(),
         },
@@ -66,7 +66,7 @@ pub fn report() -> Report {
         field: FieldDimensions::preset("humanoid-kidsize-2010").unwrap(),
         recording: "hall-3".to_owned(),
         frames: 12,
-        judged_frames: 3,
+        held_out_frames: 3,
         left_out: vec!["images/000007.jpg".to_owned()],
         verdict: Verdict::Confusable,
         effects: vec![effect("vignetting", "strength"), rival],

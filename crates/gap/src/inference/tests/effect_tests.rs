@@ -4,6 +4,7 @@ use reality_sim_sensor::{EffectIndex, Model};
 
 use super::{Signature, World, effect};
 use crate::inference::{
+    effect_fit::EffectFits,
     effect_test::{EffectTest, EffectTests},
     evidence::Evidence,
 };
@@ -14,7 +15,7 @@ fn with_tests<T>(world: &World, check: impl FnOnce(&EffectTests<'_>) -> T) -> T 
     let frames = world.frames(&model);
     let system = world.system(&frames.iter().collect::<Vec<_>>());
     let evidence = Evidence::new(&system, world.base(&model));
-    check(&EffectTests { evidence, columns: &world.columns })
+    check(&EffectTests::new(EffectFits { evidence, columns: &world.columns }))
 }
 
 fn test_of(world: &World, id: &str) -> EffectTest {
@@ -30,7 +31,7 @@ const LIKE_FIRST: Signature = |_, numbers| numbers[0] + 0.05 * numbers[3];
 const PARTLY_FIRST: Signature = |_, numbers| 0.8 * numbers[0] + 0.6 * numbers[3];
 
 #[test]
-fn a_large_effect_is_supported_and_one_that_is_not_there_is_not() {
+fn a_large_effect_is_supported_and_an_absent_one_is_not() {
     let world = World::new(&[("mount_pitch", FIRST, 3.0), ("mount_roll", SECOND, 0.0)]);
     let pitch = test_of(&world, "mount_pitch");
     assert!(pitch.is_supported() && pitch.material && pitch.p_value < 1e-6, "{pitch:?}");
@@ -39,7 +40,7 @@ fn a_large_effect_is_supported_and_one_that_is_not_there_is_not() {
 }
 
 #[test]
-fn an_effect_that_is_sure_but_too_small_to_matter_is_not_supported() {
+fn a_significant_effect_below_its_material_size_is_not_supported() {
     let world = World::new(&[("mount_pitch", FIRST, 0.7), ("mount_roll", SECOND, 0.0)]);
     let pitch = test_of(&world, "mount_pitch");
     assert!(pitch.p_value < 1e-4 && pitch.gain.value > 4.0, "{pitch:?}");
@@ -47,7 +48,7 @@ fn an_effect_that_is_sure_but_too_small_to_matter_is_not_supported() {
 }
 
 #[test]
-fn an_effect_that_would_have_to_be_below_zero_is_not_supported() {
+fn an_effect_whose_size_would_have_to_be_negative_is_not_supported() {
     let blur = |size: f64| {
         test_of(&World::new(&[("motion_blur", FIRST, size), ("mount_roll", SECOND, 0.0)]), "motion_blur")
     };
@@ -79,7 +80,7 @@ fn the_effect_of_the_largest_gain_is_added_first_and_nothing_where_none_is_suppo
 }
 
 #[test]
-fn an_effect_that_leaves_the_best_one_nothing_to_add_is_an_alternative() {
+fn an_effect_beside_which_the_best_one_adds_nothing_is_an_alternative() {
     let world = World::new(&[("mount_pitch", FIRST, 3.0), ("mount_roll", LIKE_FIRST, 0.0)]);
     assert_eq!(additions(&world, &[]), [[effect("mount_pitch")], [effect("mount_roll")]]);
     let world = World::new(&[("mount_pitch", FIRST, 3.0), ("mount_roll", PARTLY_FIRST, 0.0)]);
@@ -129,14 +130,14 @@ fn effects_that_gain_as_much_in_the_place_of_a_named_one_are_confusable_with_it(
 }
 
 #[test]
-fn a_fit_holds_a_parameter_at_the_end_of_its_range_and_the_others_are_best_beside_it() {
+fn a_fit_holds_a_parameter_at_the_end_of_its_range_and_refits_the_others() {
     let mut world = World::new(&[("motion_blur", FIRST, -2.0), ("mount_roll", LIKE_FIRST, 2.0)]);
     world.seed = 5;
     let both = ["motion_blur", "mount_roll"].map(effect);
     with_tests(&world, |tests| {
-        let fit = tests.fit_in_range(&both).unwrap();
+        let fit = tests.fits.fit_in_range(&both).unwrap();
         assert_eq!(fit.delta[0], 0.0);
-        let alone = tests.fit_in_range(&both[1..]).unwrap();
+        let alone = tests.fits.fit_in_range(&both[1..]).unwrap();
         assert!((fit.delta[1] - alone.delta[1]).abs() < 1e-9);
     });
 }

@@ -117,6 +117,6 @@ impl World {
 
     /// Returns a model in the columns' coordinates.
     fn base(&self, model: &Model) -> DVector<f64> {
-        crate::inference::effect_test::base(&self.columns, model)
+        crate::inference::effect_fit::base(&self.columns, model)
     }
 }

@@ -37,11 +37,11 @@ impl Scale {
 pub(super) fn drawing(course: &Course, channel: Channel, floor: Option<f64>) -> String {
     let (factor, unit) = channel_scale(channel);
     let scaled = |values: &[Option<f64>]| -> Vec<(f64, f64, bool)> {
-        let judged = course.judged.iter().copied().chain(std::iter::repeat(false));
-        let points = course.time_s.iter().zip(values).zip(judged);
+        let held_out = course.held_out.iter().copied().chain(std::iter::repeat(false));
+        let points = course.time_s.iter().zip(values).zip(held_out);
         points
             // Missing measurements interrupt a curve.
-            .map(|((time_s, value), judged)| (*time_s, factor * value.unwrap_or(f64::NAN), judged))
+            .map(|((time_s, value), held_out)| (*time_s, factor * value.unwrap_or(f64::NAN), held_out))
             .collect()
     };
     let (before, after) = (scaled(&course.before), scaled(&course.after));
@@ -123,7 +123,7 @@ fn level(scale: &Scale, value: f64) -> String {
 /// Draws a curve with gaps, and dots on the held-out frames.
 fn curve(points: &[(f64, f64, bool)], scale: &Scale, [line, dot]: [&str; 2]) -> String {
     let (mut path, mut dots, mut pen_down) = (String::new(), String::new(), false);
-    for &(time_s, value, judged) in points {
+    for &(time_s, value, held_out) in points {
         let (x, y) = (scale.x(time_s), scale.y(value));
         if !(x.is_finite() && y.is_finite()) {
             pen_down = false;
@@ -131,7 +131,7 @@ fn curve(points: &[(f64, f64, bool)], scale: &Scale, [line, dot]: [&str; 2]) -> 
         }
         let _ = write!(path, "{}{x:.1} {y:.1}", if pen_down { "L" } else { "M" });
         pen_down = true;
-        if judged {
+        if held_out {
             let _ = write!(dots, "<circle class=\"{dot}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.5\"/>");
         }
     }
@@ -164,7 +164,7 @@ mod tests {
     fn a_frame_without_measurement_interrupts_the_curve() {
         let course = Course {
             time_s: vec![5.0, 6.0, 7.0, 8.0],
-            judged: vec![false, true, false, true],
+            held_out: vec![false, true, false, true],
             before: vec![Some(1.0), Some(2.0), None, Some(1.5)],
             after: vec![Some(1.0); 3],
         };
@@ -176,7 +176,8 @@ mod tests {
 
     #[test]
     fn a_course_without_frames_says_so() {
-        let course = Course { time_s: Vec::new(), judged: Vec::new(), before: Vec::new(), after: Vec::new() };
+        let course =
+            Course { time_s: Vec::new(), held_out: Vec::new(), before: Vec::new(), after: Vec::new() };
         assert!(drawing(&course, Channel::Geometry, Some(1.0)).contains("Nothing was measured"));
     }
 }

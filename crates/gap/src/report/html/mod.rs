@@ -48,7 +48,7 @@ fn verdict(report: &Report) -> String {
         escape(&summary(report)).replace(" %", "&#160;%"),
         verdict_word(report.verdict),
         report.frames,
-        report.judged_frames
+        report.held_out_frames
     )
 }
 

@@ -23,7 +23,7 @@ what is left. That of the odometry is what neighbouring steps scatter by; metres
 pub(super) fn section(report: &Report) -> String {
     let rows = [
         ("Frames compared", report.frames.to_string()),
-        ("Frames kept for judging", format!("{}, chosen with seed {}", report.judged_frames, report.seed)),
+        ("Frames kept for judging", format!("{}, chosen with seed {}", report.held_out_frames, report.seed)),
         ("Frames left out", left_out(&report.left_out)),
         ("Reference poses", reference_source(report.poses.source).to_owned()),
         (

@@ -57,8 +57,8 @@ fn map(columns: usize, rows: usize, extent: [f64; 4]) -> Map {
 fn maps() -> Maps {
     let time_s: Vec<f64> = (0..40).map(|frame| 1000.0 + 0.25 * f64::from(frame)).collect();
     let wave = |size: f64| time_s.iter().map(|time_s| Some(size * (2.0 + time_s.sin()))).collect();
-    let judged = (0..40).map(|frame| frame % 4 == 0).collect();
-    let time = Course { judged, before: wave(0.1), after: wave(0.02), time_s: time_s.clone() };
+    let held_out = (0..40).map(|frame| frame % 4 == 0).collect();
+    let time = Course { held_out, before: wave(0.1), after: wave(0.02), time_s: time_s.clone() };
     let (picture, field) = (map(8, 6, [0.0, 0.0, 640.0, 480.0]), map(8, 6, [-4.0, 3.0, 4.0, -3.0]));
     Maps { picture, field, time }
 }
@@ -128,7 +128,7 @@ fn assert_balanced(page: &str) {
 fn hollow() -> Report {
     let empty = Map { columns: 0, rows: 0, extent: [f64::NAN; 4], before: Vec::new(), after: Vec::new() };
     let course =
-        Course { time_s: vec![f64::NAN; 3], judged: Vec::new(), before: vec![None; 3], after: Vec::new() };
+        Course { time_s: vec![f64::NAN; 3], held_out: Vec::new(), before: vec![None; 3], after: Vec::new() };
     let maps = Maps { picture: empty.clone(), field: empty, time: course };
     let nothing = channel([f64::NAN; 3]);
     let mut effect = found(library()[12].id());
