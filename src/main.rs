@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, error::ErrorKind};
 
 use commands::{Command, advice};
+use reality_sim::sequence::one_line;
 
 /// What does the camera see at this pose? Real pictures for robot simulators, by pose.
 #[derive(Debug, Parser)]
@@ -37,11 +38,4 @@ fn main() -> ExitCode {
 fn quiet_drivers() {
     // SAFETY: the program has no other thread yet that could read the environment at the same time.
     unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
-}
-
-/// Replaces line breaks and other control characters of a message.
-fn one_line(message: &str) -> String {
-    let printable: String =
-        message.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
-    printable.split_whitespace().collect::<Vec<_>>().join(" ")
 }

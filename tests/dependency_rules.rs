@@ -13,15 +13,8 @@ const ROOT: &str = "reality-sim-cli";
 /// Package of the library. Graphics may come only with its feature `gpu`.
 const LIBRARY: &str = "reality-sim";
 
-/// Packages that must never depend on graphics or on a program's dependencies, whatever their features.
-const PLAIN: [&str; 6] = [
-    "reality-sim-core",
-    "reality-sim-db",
-    "reality-sim-synthesis",
-    "reality-sim-pipeline",
-    "reality-sim-sensor",
-    "reality-sim-gap",
-];
+/// The one part of the library that uses graphics.
+const GPU: &str = "reality-sim-gpu";
 
 /// Dependencies that belong to a graphics card or a window.
 const GRAPHICS: [&str; 7] = ["wgpu", "wgpu-core", "winit", "egui", "eframe", "egui-wgpu", "egui-winit"];
@@ -29,40 +22,29 @@ const GRAPHICS: [&str; 7] = ["wgpu", "wgpu-core", "winit", "egui", "eframe", "eg
 /// Dependencies that belong to a program.
 const PROGRAM: [&str; 3] = ["clap", "indicatif", "anyhow"];
 
+/// All parts of the library.
+const PARTS: &[&str] = &[
+    "reality-sim-core",
+    GPU,
+    "reality-sim-db",
+    "reality-sim-synthesis",
+    "reality-sim-pipeline",
+    "reality-sim-sensor",
+    "reality-sim-gap",
+];
+
 /// Packages of this workspace that each package may use.
 const MAY_USE: [(&str, &[&str]); 10] = [
     ("reality-sim-core", &[]),
-    ("reality-sim-gpu", &["reality-sim-core"]),
+    (GPU, &["reality-sim-core"]),
     ("reality-sim-db", &["reality-sim-core"]),
     ("reality-sim-synthesis", &["reality-sim-core", "reality-sim-db"]),
     ("reality-sim-pipeline", &["reality-sim-core", "reality-sim-db", "reality-sim-synthesis"]),
     ("reality-sim-sensor", &["reality-sim-core"]),
     ("reality-sim-hidden", &["reality-sim-core"]),
     ("reality-sim-gap", &["reality-sim-core", "reality-sim-sensor"]),
-    (
-        LIBRARY,
-        &[
-            "reality-sim-core",
-            "reality-sim-gpu",
-            "reality-sim-db",
-            "reality-sim-synthesis",
-            "reality-sim-pipeline",
-            "reality-sim-sensor",
-            "reality-sim-gap",
-        ],
-    ),
-    (
-        "reality-sim-viewer",
-        &[
-            "reality-sim-core",
-            "reality-sim-gpu",
-            "reality-sim-db",
-            "reality-sim-synthesis",
-            "reality-sim-pipeline",
-            "reality-sim-sensor",
-            "reality-sim-gap",
-        ],
-    ),
+    (LIBRARY, PARTS),
+    ("reality-sim-viewer", PARTS),
 ];
 
 fn cargo(arguments: &[&str]) -> String {
@@ -114,9 +96,9 @@ fn packages_under(package: &str, features: &[&str]) -> Vec<String> {
 }
 
 #[test]
-fn neither_graphics_nor_a_programs_dependencies_are_under_the_library() {
+fn the_library_depends_on_neither_graphics_nor_a_programs_crates() {
     let workspace = workspace();
-    let plain = PLAIN.iter().map(|package| (*package, "--all-features"));
+    let plain = PARTS.iter().filter(|package| **package != GPU).map(|package| (*package, "--all-features"));
     for (package, features) in plain.chain([(LIBRARY, "--features=")]) {
         assert!(workspace.contains_key(package), "{package} is not in the workspace");
         let names = packages_under(package, &[features]);
@@ -127,7 +109,7 @@ fn neither_graphics_nor_a_programs_dependencies_are_under_the_library() {
 }
 
 #[test]
-fn the_graphics_card_comes_under_the_library_with_its_feature_but_no_window_does() {
+fn the_feature_gpu_adds_wgpu_to_the_library_but_no_window() {
     let names = packages_under(LIBRARY, &["--features=gpu"]);
     assert!(names.iter().any(|name| name == "wgpu"));
     for forbidden in ["winit", "egui"].iter().chain(&PROGRAM) {
@@ -138,7 +120,7 @@ fn the_graphics_card_comes_under_the_library_with_its_feature_but_no_window_does
 /// The shaders are outside the package that is built from them, which reaches them through a link.
 #[test]
 fn every_shader_is_in_the_package_that_is_built_from_it() {
-    let list = cargo(&["package", "--list", "--allow-dirty", "--package", "reality-sim-gpu"]);
+    let list = cargo(&["package", "--list", "--allow-dirty", "--package", GPU]);
     let packed = |name: &str| list.lines().any(|line| Path::new(line) == Path::new("shaders").join(name));
     let shaders = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders")).unwrap();
     let mut count = 0;

@@ -28,7 +28,7 @@ fn gpu() -> Arc<dyn Backend> {
     Arc::new(GpuBackend::new(Arc::new(context)))
 }
 
-fn tagged(
+fn localize(
     sequence: &Sequence,
     config: LocalizerConfig,
     start: Option<Pose2>,
@@ -52,7 +52,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 /// Both filters run independently over the whole walk. One survivor more or less of a particle changes the random numbers
 /// of all particles after it, so the filters diverge within a few pictures; their results must be equally good.
 #[test]
-fn the_walk_is_tagged_as_well_as_on_the_cpu() {
+fn the_gpu_localizes_the_walk_as_well_as_the_cpu() {
     let (sequence, gpu) = (walk(), gpu());
     // Half the pictures agree to the first number, 95 % to the second: this is the filters' own noise, and `contrast` is
     // refined.
@@ -62,8 +62,8 @@ fn the_walk_is_tagged_as_well_as_on_the_cpu() {
         (ObservationKind::Contrast, 0.0002, 0.001),
     ] {
         let config = LocalizerConfig::new(kind);
-        let found = tagged(&sequence, config, sequence.start, gpu.clone());
-        let expected = tagged(&sequence, config, sequence.start, Arc::new(CpuBackend));
+        let found = localize(&sequence, config, sequence.start, gpu.clone());
+        let expected = localize(&sequence, config, sequence.start, Arc::new(CpuBackend));
         let error = |frames: &[LocalizedFrame]| {
             let pairs = frames.iter().zip(sequence.reference_poses());
             mean(pairs.filter_map(|(frame, truth)| Some(PoseError::new(frame.pose, truth?).distance_m)))
@@ -86,7 +86,7 @@ fn the_walk_is_tagged_as_well_as_on_the_cpu() {
 /// number of copies is nearly whole had one survivor more or less, which gave other random numbers to all particles after
 /// it. The residual scheme rounds every particle's copies, the systematic one hardly any.
 #[test]
-fn the_best_particle_is_that_of_the_cpu() {
+fn from_the_same_particles_gpu_and_cpu_agree_on_the_best_one() {
     let (sequence, gpu) = (walk(), gpu());
     let Sequence { setup, field, .. } = &sequence;
     let preprocessor = Preprocessor::new(&setup.camera, field.line_width_m);
@@ -131,11 +131,11 @@ fn the_best_particle_is_that_of_the_cpu() {
 }
 
 #[test]
-fn a_start_that_nobody_knows_is_found_on_the_device() {
+fn an_unknown_start_is_found_on_the_gpu() {
     let mut sequence = walk();
     sequence.frames.truncate(5);
     let config = LocalizerConfig::new(ObservationKind::Contrast);
-    let found = tagged(&sequence, config, None, gpu());
+    let found = localize(&sequence, config, None, gpu());
     let (last, truth) = (found[4].pose, sequence.frames[4].reference_pose.expect("exact truth"));
     assert!(distance_m(last, truth).min(distance_m(last.mirrored(), truth)) < 0.02, "{last:?}");
 }
@@ -158,7 +158,7 @@ fn the_program_names_the_adapter_it_computed_on() {
 }
 
 #[test]
-fn the_doctor_lists_adapters_and_compares_them_with_the_cpu() {
+fn doctor_lists_adapters_and_compares_them_with_the_cpu() {
     let (code, report, errors) = program(&["doctor", "--json"]);
     assert_eq!((code, errors.as_str()), (Some(0), ""), "{report}");
     let adapters = report["adapters"].as_array().expect("a list");

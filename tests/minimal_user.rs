@@ -40,7 +40,7 @@ fn cargo(folder: &Path, arguments: &[&str]) -> String {
 }
 
 #[test]
-fn a_package_outside_the_workspace_gets_a_picture_without_a_programs_or_a_windows_dependencies() {
+fn a_package_outside_the_workspace_gets_a_picture_without_graphics_or_a_programs_crates() {
     let folder = user();
     let tree = cargo(&folder, &["tree", "--edges", "normal,build", "--prefix", "none"]);
     // Each line has name and version; packages printed before are marked after that.

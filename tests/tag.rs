@@ -40,25 +40,25 @@ fn error_of(observation: &str) -> (f64, u64) {
 }
 
 #[test]
-fn contrast_follows_the_walk_to_a_centimetre_and_a_half() {
+fn contrast_follows_the_walk_to_15_mm() {
     let (mean_m, lost_frames) = error_of("contrast");
     assert!(mean_m <= 0.015 && lost_frames == 0, "{mean_m} m, {lost_frames} lost");
 }
 
 #[test]
-fn the_papers_gauss_model_follows_the_walk() {
+fn the_gauss_model_follows_the_walk_to_3_cm() {
     let (mean_m, lost_frames) = error_of("gauss");
     assert!(mean_m <= 0.03 && lost_frames == 0, "{mean_m} m, {lost_frames} lost");
 }
 
 #[test]
-fn the_papers_distance_model_follows_the_walk() {
+fn the_distance_model_follows_the_walk_to_4_cm() {
     let (mean_m, lost_frames) = error_of("distance");
     assert!(mean_m <= 0.04 && lost_frames == 0, "{mean_m} m, {lost_frames} lost");
 }
 
 #[test]
-fn the_start_is_found_when_it_is_not_known() {
+fn an_unknown_start_is_found() {
     let report = tag_json(&["--unknown-start", "--frames", "0..8"]);
     let error = &report["error"];
     assert!(error["max_m"].as_f64().unwrap() < 0.1, "{report}");
@@ -66,7 +66,7 @@ fn the_start_is_found_when_it_is_not_known() {
 }
 
 #[test]
-fn later_frames_start_where_odometry_leads() {
+fn a_range_of_frames_starts_at_the_dead_reckoned_pose() {
     let report = tag_json(&["--frames", "20..24"]);
     assert_eq!(report["frames"], 4);
     assert!(report["error"]["max_m"].as_f64().unwrap() < 0.1, "{report}");
@@ -105,7 +105,7 @@ fn without_ground_truth_there_is_no_error() {
 }
 
 #[test]
-fn people_get_lines_without_a_progress_bar_in_a_pipe() {
+fn in_a_pipe_the_report_comes_without_a_progress_bar() {
     let output = tag(Path::new(WALK), &["--frames", "0..3", "--particles", "200"]);
     let lines = text(&output.stdout);
     assert!(output.status.success() && output.stderr.is_empty(), "{}", text(&output.stderr));
@@ -236,7 +236,7 @@ fn assert_fails(sequence: &Path, arguments: &[&str], words: &[&str]) {
 }
 
 #[test]
-fn a_folder_that_is_no_sequence_is_named() {
+fn a_folder_that_is_not_a_sequence_is_named() {
     let folder = TempDir::new().unwrap();
     assert_fails(&folder.path().join("nowhere"), &[], &["nowhere", "no such folder"]);
     assert_fails(folder.path(), &[], &["sequence.toml", "no such file"]);
@@ -287,7 +287,7 @@ fn broken_pictures_are_named() {
 }
 
 #[test]
-fn outputs_without_a_place_are_refused_before_the_work_starts() {
+fn outputs_that_cannot_be_written_are_refused_before_any_picture_is_read() {
     // A picture is missing: a complaint about the output shows that no picture was read before.
     let walk = Walk::new(1);
     fs::remove_file(walk.path("images/000000.jpg")).unwrap();
@@ -324,7 +324,7 @@ fn inputs_are_never_overwritten() {
 }
 
 #[test]
-fn options_that_cannot_be_met_are_named() {
+fn values_that_cannot_be_used_are_named() {
     let walk = Path::new(WALK);
     assert_fails(walk, &["--frames", "0..61"], &["assets/walk", "60 frames"]);
     assert_fails(walk, &["--frames", "60.."], &["assets/walk", "60 frames"]);

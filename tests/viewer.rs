@@ -248,7 +248,7 @@ fn refusal(command: &mut Command) -> String {
 }
 
 #[test]
-fn without_a_display_one_line_says_so() {
+fn without_a_display_the_error_is_one_line() {
     let message = refusal(&mut Home::new().viewer(WALK));
     assert!(message.contains("no display") && message.contains("xvfb-run"), "{message}");
 }
@@ -260,7 +260,7 @@ fn a_path_that_does_not_exist_is_named() {
 }
 
 #[test]
-fn a_display_that_is_not_there_is_an_error_in_words() {
+fn a_display_that_does_not_exist_is_an_error_with_its_remedy() {
     let gone = Display::start().name;
     let message = refusal(Home::new().viewer(WALK).env("DISPLAY", gone));
     assert!(message.contains("could not be opened") && message.contains("check that DISPLAY"), "{message}");
@@ -279,7 +279,7 @@ fn without_a_vulkan_driver_one_line_says_what_to_install() {
 }
 
 #[test]
-fn the_window_opens_gives_a_screenshot_and_remembers_what_was_set() {
+fn the_window_opens_saves_a_screenshot_and_remembers_its_settings() {
     let (home, display) = (Home::new(), Display::start());
     let mut viewer = Viewer::start(&home, &display);
     let picture = viewer.press_ctrl_until('p', "a screenshot", |_| home.screenshot());
@@ -293,7 +293,7 @@ fn the_window_opens_gives_a_screenshot_and_remembers_what_was_set() {
 }
 
 #[test]
-fn a_home_that_cannot_be_written_to_does_no_harm() {
+fn the_viewer_works_without_a_writable_home() {
     let (home, display) = (Home::new(), Display::start());
     // A file takes the folder's place; a folder without permissions would not do, since root may write to those.
     fs::remove_dir(home.path("data")).unwrap();

@@ -1,10 +1,10 @@
-//! The paper's Table 2 and Fig. 9, and the sweep from which the defaults come, on sequences with ground truth:
+//! The paper's Table 2 and Fig. 9, and the sweep of the settings of its two models, on sequences with ground truth:
 //!
 //! `cargo run --release --example paper_figures -- figures FRAMES SEEDS SEQUENCE` writes `tables.md`, `error.svg` and
 //! `time.svg` into `docs/figures`;
 //! `cargo run --release --example paper_figures -- sweep FRAMES SEEDS SEQUENCE...` writes `sweep.md`.
 //!
-//! FRAMES is the largest number of pictures used of each sequence.
+//! FRAMES is the largest number of pictures used of each sequence. `scripts/figures` makes the recordings, too.
 
 mod figures;
 mod recording;
@@ -30,7 +30,7 @@ fn main() -> anyhow::Result<()> {
         .map(|folder| Recording::open(Path::new(folder), frames as usize))
         .collect::<anyhow::Result<Vec<_>>>()?;
     fs::create_dir_all(OUT).with_context(|| format!("{OUT}: cannot be made"))?;
-    let mut text = header(what, frames, seeds, &recordings)?;
+    let mut text = header(&arguments.join(" "), &recordings)?;
     let file = match (what.as_str(), recordings.as_slice()) {
         ("figures", [recording]) => {
             figures::write(recording, u64::from(seeds), &mut text)?;
@@ -46,13 +46,13 @@ fn main() -> anyhow::Result<()> {
 }
 
 /// Describes how the file was made.
-fn header(what: &str, frames: u32, seeds: u32, recordings: &[Recording]) -> anyhow::Result<String> {
+fn header(arguments: &str, recordings: &[Recording]) -> anyhow::Result<String> {
     let mut text = format!(
-        "Made by `cargo run --release --example paper_figures -- {what} {frames} {seeds} SEQUENCE...`, {seeds} seeds, on"
+        "Made by `bash scripts/figures`, which makes the recordings that are not part of the repository, and runs \
+         `cargo run --release --example paper_figures -- {arguments}`.\n\n| sequence | name | pictures |\n|---|---|---|\n"
     );
-    for recording in recordings {
-        write!(text, " `{}` ({} pictures)", recording.sequence.name, recording.pictures.len())?;
+    for Recording { sequence, pictures } in recordings {
+        writeln!(text, "| `{}` | {} | {} |", sequence.folder.display(), sequence.name, pictures.len())?;
     }
-    text.push_str(".\n");
     Ok(text)
 }

@@ -1,4 +1,4 @@
-//! Sweep from which the defaults of the paper's two models come: blur, α and border mask on several recordings at once.
+//! Sweep of the settings of the paper's two models: blur, α and border mask on several recordings.
 
 use std::fmt::Write;
 

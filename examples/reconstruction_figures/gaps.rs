@@ -54,8 +54,8 @@ pub fn write(walk: &Sequence, text: &mut String) -> anyhow::Result<()> {
                 .map(|(change, truth)| difference(change, truth))
                 .collect::<Vec<_>>();
             sums[number].wrong_change.extend(wrong);
-            sums[number].gauss.extend(tag(walk, first, row, ObservationKind::Gauss)?);
-            sums[number].contrast.extend(tag(walk, first, row, ObservationKind::Contrast)?);
+            sums[number].gauss.extend(localization_errors(walk, first, row, ObservationKind::Gauss)?);
+            sums[number].contrast.extend(localization_errors(walk, first, row, ObservationKind::Contrast)?);
         }
         if part == PARTS / 2 {
             show(&rows)?;
@@ -63,13 +63,13 @@ pub fn write(walk: &Sequence, text: &mut String) -> anyhow::Result<()> {
     }
     writeln!(
         text,
-        "\n## Along a path\n\nOf `{}`, {PARTS} times {PICTURES} pictures in a row are left out and reconstructed from all others. \
+        "\n## Along a path\n\nOf the first {} pictures, {PARTS} times {PICTURES} in a row are left out and reconstructed from all others. \
          Wrong change: mean difference, grey levels, between how a picture differs from the one before and how the true \
          ones do, in squares of 4 × 4 pixels, over which noise is averaged out: 0 for a path as smooth as the true one, the \
          change of the truth itself for a picture that stands still. Error: of the \
          poses that the particle filter (800 particles, seed 0, from the true pose of the part's first picture) finds \
          in these pictures.\n\n| pictures | wrong change | mean error, `gauss` | mean error, `contrast` |\n|---|---|---|---|",
-        walk.name
+        walk.frames.len()
     )?;
     for Sums { name, wrong_change, gauss, contrast } in &sums {
         let cm = |errors: &[PoseError]| {
@@ -122,15 +122,20 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Returns the filter's errors when these pictures replace a part of a walk.
-fn tag(walk: &Sequence, first: usize, row: &Row, kind: ObservationKind) -> anyhow::Result<Vec<PoseError>> {
+fn localization_errors(
+    walk: &Sequence,
+    first: usize,
+    row: &Row,
+    kind: ObservationKind,
+) -> anyhow::Result<Vec<PoseError>> {
     let start = walk.frames[first].reference_pose.map(reality_sim::CameraPose::planar);
     let builder = Localizer::builder(&walk.setup.camera, &walk.field).start(start);
     let mut localizer = builder.config(LocalizerConfig::new(kind)).build()?;
     let mut errors = Vec::new();
     for (offset, picture) in row.pictures.iter().enumerate() {
-        let tagged = localizer.update(&Observation::of_frame(walk, first + offset, picture))?;
+        let frame = localizer.update(&Observation::of_frame(walk, first + offset, picture))?;
         errors.extend(
-            walk.frames[first + offset].reference_pose.map(|truth| PoseError::new(tagged.pose, truth)),
+            walk.frames[first + offset].reference_pose.map(|truth| PoseError::new(frame.pose, truth)),
         );
     }
     Ok(errors)

@@ -1,5 +1,7 @@
 //! Options and commands that remedy errors of the library, which knows nothing of a command line.
 
+use std::error::Error;
+
 #[cfg(feature = "gpu")]
 use reality_sim::gpu::GpuError;
 use reality_sim::{
@@ -12,85 +14,125 @@ use reality_sim::{
 #[cfg(feature = "viewer")]
 use reality_sim_viewer::ViewerError;
 
-/// Returns what to type, in a few words; `None` if the message says everything.
+/// Error of the library that options or commands of the program may remedy.
+trait Remedied: Error + Sized + 'static {
+    /// Returns what to type, in a few words; `None` if the message says everything.
+    fn remedy(&self) -> Option<&'static str>;
+
+    /// Returns the remedy of any error, if it is one of this type.
+    fn remedy_of(error: &(dyn Error + 'static)) -> Option<&'static str> {
+        error.downcast_ref::<Self>()?.remedy()
+    }
+}
+
+/// The errors that have remedies. Those that another one wraps transparently are asked by the wrapping one.
+const REMEDIES: &[fn(&(dyn Error + 'static)) -> Option<&'static str>] = &[
+    PipelineError::remedy_of,
+    SynthesisError::remedy_of,
+    LocalizationError::remedy_of,
+    RecordingError::remedy_of,
+    DbError::remedy_of,
+    BackendError::remedy_of,
+    #[cfg(feature = "gpu")]
+    GpuError::remedy_of,
+    #[cfg(feature = "viewer")]
+    ViewerError::remedy_of,
+];
+
+/// Returns what to type to remedy an error, in a few words; `None` if its message says everything.
 pub fn advice(error: &anyhow::Error) -> Option<&'static str> {
-    error.chain().find_map(|cause| {
-        if let Some(error) = cause.downcast_ref() {
-            return of_synthesis(error);
-        }
-        if let Some(error) = cause.downcast_ref() {
-            return of_pipeline(error);
-        }
-        if let Some(RecordingError::TooFewFrames { .. }) = cause.downcast_ref() {
-            return Some("`--frames`, `--poses`");
-        }
-        if let Some(LocalizationError::Backend(error)) = cause.downcast_ref() {
-            return of_backend(error);
-        }
-        #[cfg(feature = "gpu")]
-        if let Some(error) = cause.downcast_ref() {
-            return of_graphics(error);
-        }
-        #[cfg(feature = "viewer")]
-        if let Some(ViewerError::NoGraphics(_)) = cause.downcast_ref() {
-            return Some("`reality-sim doctor` lists those that are there");
-        }
-        of_database(cause.downcast_ref()?)
-    })
+    error.chain().find_map(|cause| REMEDIES.iter().find_map(|remedy_of| remedy_of(cause)))
 }
 
-fn of_synthesis(error: &SynthesisError) -> Option<&'static str> {
-    match error {
-        SynthesisError::Database(error) => of_database(error),
-        SynthesisError::Backend(error) => of_backend(error),
-        SynthesisError::Empty { .. } => Some("`reality-sim build RECORDING --out DATABASE`"),
-        SynthesisError::NoNeighbours { reason: NoNeighbours::OutOfReach { .. }, .. }
-        | SynthesisError::TooLittleSeen { .. } => Some("`--best-effort`"),
-        SynthesisError::OtherSize { .. } | SynthesisError::TooFewPoints { .. } => {
-            Some("`--method plane` or `--method blend`")
+impl Remedied for PipelineError {
+    fn remedy(&self) -> Option<&'static str> {
+        match self {
+            Self::Device(error) => error.remedy(),
+            Self::Localization(error) => error.remedy(),
+            Self::Database(error) => error.remedy(),
+            Self::Hall(error) => error.remedy(),
+            _ => None,
         }
-        _ => None,
     }
 }
 
-fn of_pipeline(error: &PipelineError) -> Option<&'static str> {
-    match error {
-        PipelineError::Database(error) => of_database(error),
-        PipelineError::Hall(error) => of_synthesis(error),
-        PipelineError::Device(error) | PipelineError::Localization(LocalizationError::Backend(error)) => {
-            of_backend(error)
+impl Remedied for SynthesisError {
+    fn remedy(&self) -> Option<&'static str> {
+        match self {
+            Self::Database(error) => error.remedy(),
+            Self::Backend(error) => error.remedy(),
+            Self::Empty { .. } => Some("`reality-sim build RECORDING --out DATABASE`"),
+            Self::NoNeighbours { reason: NoNeighbours::OutOfReach { .. }, .. }
+            | Self::TooLittleSeen { .. } => Some("`--best-effort`"),
+            Self::OtherSize { .. } | Self::TooFewPoints { .. } => {
+                Some("`--method plane` or `--method blend`")
+            }
+            _ => None,
         }
-        _ => None,
+    }
+}
+
+impl Remedied for LocalizationError {
+    fn remedy(&self) -> Option<&'static str> {
+        match self {
+            Self::Backend(error) => error.remedy(),
+            _ => None,
+        }
+    }
+}
+
+impl Remedied for RecordingError {
+    fn remedy(&self) -> Option<&'static str> {
+        match self {
+            Self::TooFewFrames { .. } => Some("`--frames`, `--poses`"),
+            _ => None,
+        }
+    }
+}
+
+impl Remedied for DbError {
+    fn remedy(&self) -> Option<&'static str> {
+        match self {
+            Self::Database { fault: DbFault::Missing, .. } => {
+                Some("`reality-sim build RECORDING --out DATABASE`")
+            }
+            Self::Database { fault: DbFault::Older { .. }, .. } => {
+                Some("`reality-sim build`, with one of its recordings, opens it for writing")
+            }
+            _ => None,
+        }
+    }
+}
+
+impl Remedied for BackendError {
+    #[cfg(feature = "gpu")]
+    fn remedy(&self) -> Option<&'static str> {
+        GpuError::remedy_of(self.get_ref())
+    }
+
+    #[cfg(not(feature = "gpu"))]
+    fn remedy(&self) -> Option<&'static str> {
+        None
     }
 }
 
 #[cfg(feature = "gpu")]
-fn of_backend(error: &BackendError) -> Option<&'static str> {
-    error.get_ref().downcast_ref().and_then(of_graphics)
-}
-
-#[cfg(not(feature = "gpu"))]
-fn of_backend(_: &BackendError) -> Option<&'static str> {
-    None
-}
-
-fn of_database(error: &DbError) -> Option<&'static str> {
-    match error {
-        DbError::Database { fault: DbFault::Missing, .. } => {
-            Some("`reality-sim build RECORDING --out DATABASE`")
+impl Remedied for GpuError {
+    fn remedy(&self) -> Option<&'static str> {
+        match self {
+            Self::NoSuchAdapter { .. } => Some("`reality-sim doctor` lists them"),
+            _ => Some("`--backend cpu`"),
         }
-        DbError::Database { fault: DbFault::Older { .. }, .. } => {
-            Some("`reality-sim build`, with one of its recordings, opens it for writing")
-        }
-        _ => None,
     }
 }
 
-#[cfg(feature = "gpu")]
-fn of_graphics(error: &GpuError) -> Option<&'static str> {
-    match error {
-        GpuError::NoSuchAdapter { .. } => Some("`reality-sim doctor` lists them"),
-        _ => Some("`--backend cpu`"),
+#[cfg(feature = "viewer")]
+impl Remedied for ViewerError {
+    fn remedy(&self) -> Option<&'static str> {
+        match self {
+            Self::NoGraphics(_) => Some("`reality-sim doctor` lists those that are there"),
+            _ => None,
+        }
     }
 }
 
@@ -100,11 +142,24 @@ mod tests {
 
     use super::*;
 
+    fn empty() -> SynthesisError {
+        SynthesisError::Empty { database: "walk.db".to_owned() }
+    }
+
     #[test]
-    fn an_option_of_the_command_is_found_behind_context_and_other_errors_have_none() {
-        let empty = SynthesisError::Empty { database: "walk.db".to_owned() };
-        let error = Err::<(), _>(empty).context("walk.db").expect_err("it is one");
+    fn a_remedy_is_found_behind_context() {
+        let error = Err::<(), _>(empty()).context("walk.db").expect_err("it is one");
         assert!(advice(&error).is_some_and(|words| words.contains("--out")));
+    }
+
+    #[test]
+    fn a_remedy_is_found_in_a_transparent_error() {
+        let error = PipelineError::Hall(empty());
+        assert_eq!(advice(&error.into()), empty().remedy());
+    }
+
+    #[test]
+    fn other_errors_have_no_remedy() {
         assert_eq!(advice(&anyhow::anyhow!("something else")), None);
     }
 }

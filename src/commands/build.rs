@@ -22,19 +22,19 @@ use super::{
 /// Options of `build`.
 #[derive(Debug, Args)]
 pub struct BuildArgs {
-    /// Folders of the sequences: those that hold sequence.toml
+    /// Folders of the sequences, which contain sequence.toml
     #[arg(required = true)]
     sequences: Vec<PathBuf>,
-    /// The database, made where there is none; what it holds already is not added again
+    /// Database to add to, created if it does not exist; pictures that it contains are not added again
     #[arg(long, value_name = "DATABASE")]
     out: PathBuf,
-    /// Poses of the pictures, as `tag --out` writes them, in place of the sequence's own
+    /// Poses to use instead of the sequence's own, as `tag --out` writes them
     #[arg(long, value_name = "FILE", conflicts_with = "tag")]
     poses: Option<PathBuf>,
-    /// Tag the pictures with the particle filter even where the sequence has ground truth
+    /// Find the poses by the particle filter, even if the sequence has ground truth
     #[arg(long)]
     tag: bool,
-    /// Take pictures with poses that the filter is not sure of, too
+    /// Also store pictures of whose poses the filter is not sure
     #[arg(long)]
     unsure: bool,
     /// Seed of the particle filter
@@ -42,10 +42,10 @@ pub struct BuildArgs {
     seed: u64,
     #[command(flatten)]
     backend: BackendArgs,
-    /// Do not measure where walls and ceiling are
+    /// Do not measure the walls and the ceiling of the hall
     #[arg(long)]
     no_hall: bool,
-    /// Print one JSON object on standard output
+    /// Print the report as one JSON object
     #[arg(long)]
     json: bool,
 }
@@ -89,9 +89,8 @@ impl BuildArgs {
     /// Refuses a single file of poses for several sequences.
     pub fn check_usage(&self) -> Result<(), String> {
         if self.poses.is_some() && self.sequences.len() > 1 {
-            return Err(
-                "--poses belongs to one sequence: give one, and the others in calls of their own".to_owned()
-            );
+            return Err("--poses gives the poses of one sequence: add the other sequences in separate calls"
+                .to_owned());
         }
         self.backend.check_usage()
     }
@@ -148,7 +147,7 @@ impl BuildArgs {
 fn with_options(error: PipelineError) -> anyhow::Error {
     match error {
         PipelineError::NothingSure { folder } => anyhow!(
-            "{}: the filter is sure of no picture's pose: give the poses with --poses, or take them all with --unsure",
+            "{}: the filter is not sure of any picture's pose: give the poses with --poses, or store all with --unsure",
             folder.display()
         ),
         error => pose_error(error),
@@ -189,10 +188,15 @@ impl Report {
             };
             lines.push((
                 "sequence",
-                format!("{name}: {added} pictures added, {already_there} were there, poses from {poses}"),
+                format!(
+                    "{name}: {added} pictures added, {already_there} were already there, poses from {poses}"
+                ),
             ));
             if *without_pose > 0 {
-                lines.push(("", format!("{without_pose} left out: no pose, or not sure")));
+                lines.push((
+                    "",
+                    format!("{without_pose} left out: without a pose, or with one that is not sure"),
+                ));
             }
         }
         if let Some(HallReport { min_x_m, min_y_m, max_x_m, max_y_m, ceiling_m, .. }) = &self.hall {

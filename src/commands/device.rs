@@ -9,13 +9,13 @@ use reality_sim::backend::{Backend, BackendError, CpuBackend, DeviceChoice};
 
 use super::choice::one_of;
 
-/// Where to compute.
+/// Device to compute on.
 #[derive(Debug, Clone, Args)]
 pub struct BackendArgs {
-    /// Where to compute: auto takes a graphics card where there is one
+    /// Device to compute on; auto takes a graphics card if there is one
     #[arg(long, value_parser = one_of::<DeviceChoice>(DeviceChoice::ALL.map(DeviceChoice::name)), default_value_t)]
     backend: DeviceChoice,
-    /// The graphics adapter whose name contains this; `reality-sim doctor` lists them
+    /// Use the graphics adapter whose name contains NAME; `reality-sim doctor` lists them
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
 }
@@ -51,7 +51,7 @@ impl BackendArgs {
     /// Returns the processor, for an option that no graphics card supports.
     pub fn processor_only(&self, option: &str) -> anyhow::Result<Device> {
         if self.backend == DeviceChoice::Gpu || self.adapter.is_some() {
-            bail!("{option}: is not computed on the graphics card: leave it out, or use --backend cpu");
+            bail!("{option}: is not supported on graphics cards: leave it out, or use --backend cpu");
         }
         Ok(Device::processor(None))
     }
@@ -82,7 +82,12 @@ impl BackendArgs {
     /// Returns the processor: this build supports nothing else.
     #[cfg(not(feature = "gpu"))]
     pub fn device(&self) -> anyhow::Result<Device> {
-        self.processor_only("--backend gpu")
+        if self.backend == DeviceChoice::Gpu || self.adapter.is_some() {
+            bail!(
+                "reality-sim: was built without support of graphics cards: use --backend cpu, or build it with the feature `gpu`"
+            );
+        }
+        Ok(Device::processor(None))
     }
 }
 

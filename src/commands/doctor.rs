@@ -25,10 +25,10 @@ const PICTURES: u64 = 9;
 /// Options of `doctor`.
 #[derive(Debug, Args)]
 pub struct DoctorArgs {
-    /// Only the adapters whose name contains this
+    /// Only the adapters whose name contains NAME
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
-    /// Print one JSON object on standard output
+    /// Print the report as one JSON object
     #[arg(long)]
     json: bool,
 }
@@ -89,7 +89,7 @@ pub fn run(args: &DoctorArgs) -> anyhow::Result<()> {
     }
     match report.adapters.iter().find(|adapter| !adapter.agrees) {
         Some(adapter) => bail!(
-            "{}: does not compute what the CPU computes: update its driver, or use --backend cpu",
+            "{}: computes something else than the CPU: update its driver, or use --backend cpu",
             adapter.summary.name
         ),
         None => Ok(()),

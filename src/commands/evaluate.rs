@@ -23,19 +23,19 @@ use super::{
 /// Options of `evaluate`.
 #[derive(Debug, Args)]
 pub struct EvaluateArgs {
-    /// The database, as `build` makes it
+    /// Database, as `build` makes it
     database: PathBuf,
     /// Folder of a sequence with ground truth whose pictures are not in the database
     probes: PathBuf,
     #[command(flatten)]
     synthesis: SynthesisArgs,
-    /// Write the figures of every probe, as a CSV file
+    /// Write the results of every probe to this CSV file
     #[arg(long, value_name = "FILE")]
     details: Option<PathBuf>,
-    /// Write for every probe the true picture and those of all methods side by side
+    /// Write, for every probe, the true picture beside those of all methods to this folder
     #[arg(long, value_name = "FOLDER")]
     pictures: Option<PathBuf>,
-    /// Print one JSON object on standard output
+    /// Print the report as one JSON object
     #[arg(long)]
     json: bool,
 }
@@ -64,7 +64,10 @@ pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
     let archive = args.synthesis.archive(&args.database)?;
     let probes = Sequence::open(&args.probes)?;
     if !probes.has_reference_poses() {
-        bail!("{}: has no ground truth: the poses of probes must be known", args.probes.display());
+        bail!(
+            "{}: has no ground truth: give a sequence with the true poses of its pictures",
+            args.probes.display()
+        );
     }
     check_poses(args, &probes)?;
     check_outputs(args, &probes)?;
@@ -98,7 +101,7 @@ fn check_poses(args: &EvaluateArgs, probes: &Sequence) -> anyhow::Result<()> {
     let is_impossible = |pose: Option<CameraPose>| pose.is_some_and(|pose| !pose.is_possible());
     match probes.reference_poses().position(is_impossible) {
         Some(frame) => bail!(
-            "{}: the ground truth of frame {frame} is none that a camera can have (above the ground, within 200 m): correct it, or leave it out",
+            "{}: the true pose of frame {frame} is impossible for a camera (above the ground, within 200 m of the field's centre): correct it, or leave it out",
             args.probes.display()
         ),
         None => Ok(()),
@@ -169,7 +172,7 @@ impl Report {
             // Writing into a string cannot fail.
             let _ = writeln!(
                 text,
-                "{} probes are in the database: leave them out of it\n",
+                "{} probes are in the database, which makes their results meaningless: build it without them\n",
                 self.probes_in_database
             );
         }

@@ -28,7 +28,7 @@ pub fn filter_plan(backend: &BackendArgs, seed: u64) -> FilterPlan {
 pub fn pose_error(error: PipelineError) -> anyhow::Error {
     match error {
         PipelineError::NoPoses { file } => {
-            anyhow!("{}: holds no poses: make it with `tag --out`", file.display())
+            anyhow!("{}: contains no poses of these pictures: make it with `tag --out`", file.display())
         }
         error => error.into(),
     }

@@ -25,12 +25,12 @@ const NEAR_PX: f64 = 100.0;
 /// Options of `info`.
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// The database, as `build` makes it
+    /// Database, as `build` makes it
     database: PathBuf,
-    /// Draw where pictures were taken, in which directions, and how far the next one is: an SVG file
+    /// Draw to this SVG file where and in which directions pictures were taken, and how far the nearest one is
     #[arg(long, value_name = "FILE")]
     coverage: Option<PathBuf>,
-    /// Print one JSON object on standard output
+    /// Print the report as one JSON object
     #[arg(long)]
     json: bool,
 }
@@ -99,7 +99,7 @@ struct CoverageReport {
 pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
     if let Some(file) = &args.coverage {
         if file.extension().is_none_or(|ending| ending != "svg") {
-            bail!("{}: the chart is an SVG file: give a name that ends in .svg", file.display());
+            bail!("{}: is not the name of an SVG file: give one that ends in .svg", file.display());
         }
         check_output_file(file, std::slice::from_ref(&args.database))?;
     }
@@ -208,7 +208,9 @@ impl Report {
             ));
             lines.push((
                 "",
-                format!("the next picture is {median:.0} px away in the median, 95 % are below {p95:.0} px"),
+                format!(
+                    "the nearest picture is {median:.0} px away in the median, and below {p95:.0} px in 95 %"
+                ),
             ));
         }
         aligned(&lines)

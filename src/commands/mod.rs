@@ -22,22 +22,22 @@ pub use self::advice::advice;
 /// What to do.
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
-    /// Tag every picture of a sequence with the pose of the camera
+    /// Find the camera's pose for every picture of a recording
     Tag(Box<tag::TagArgs>),
-    /// Put recordings with their poses into a database
+    /// Store recordings with their poses in a database
     Build(build::BuildArgs),
-    /// Give the picture at a pose, or the pictures along a path, from a database
+    /// Make the picture at a pose, or the pictures along a path, from a database
     Render(Box<render::RenderArgs>),
-    /// Compare pictures at poses that are not in a database with those taken there
+    /// Compare reconstructed pictures with true ones that are not in the database
     Evaluate(evaluate::EvaluateArgs),
-    /// Say what a database holds, and which parts of the field it covers
+    /// Summarise a database: what it holds, and how much of the field it covers
     Info(info::InfoArgs),
-    /// Find which effect a model of the camera misses, add it, and show what that brings
+    /// Find the effect that a camera model lacks, add it, and measure what that brings
     Gap(Box<gap::GapArgs>),
-    /// List graphics adapters, and check that they compute what the CPU computes
+    /// List the graphics adapters, and check that they compute what the CPU computes
     #[cfg(feature = "gpu")]
     Doctor(doctor::DoctorArgs),
-    /// Open a window: the filter at work on a recording, pictures at any pose; without arguments the demonstration
+    /// Show a recording, a database or a report in a window
     #[cfg(feature = "viewer")]
     Viewer(viewer::ViewerArgs),
 }

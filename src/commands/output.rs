@@ -140,15 +140,15 @@ fn check_writable_folder(folder: &Path) -> anyhow::Result<()> {
     let name = folder.display();
     match fs::metadata(folder) {
         Ok(metadata) if metadata.is_dir() => {}
-        Ok(_) => bail!("{name}: is not a folder: give the name of one that is there"),
+        Ok(_) => bail!("{name}: is not a folder: give the name of an existing one"),
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            bail!("{name}: there is no such folder: create it first, or give another")
+            bail!("{name}: there is no such folder: create it first, or give another one")
         }
         Err(error) => {
             return Err(error).with_context(|| format!("{name}: cannot be read: check the path"));
         }
     }
-    tempfile::tempfile_in(folder)
-        .map(drop)
-        .with_context(|| format!("{name}: cannot be written to: check its permissions, or give another"))
+    tempfile::tempfile_in(folder).map(drop).with_context(|| {
+        format!("{name}: cannot be written to: check its permissions, or give another folder")
+    })
 }

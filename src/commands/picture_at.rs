@@ -11,13 +11,13 @@ use super::device::BackendArgs;
 /// How pictures are made.
 #[derive(Debug, Args)]
 pub struct SynthesisArgs {
-    /// Pictures that `blend` mixes
+    /// Number of pictures that `blend` mixes
     #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u8).range(1..=MAX_SOURCES as i64))]
     neighbours: u8,
-    /// Give a picture however far the next one recorded is
+    /// Make a picture however far away the nearest recorded one is
     #[arg(long)]
     best_effort: bool,
-    /// Decoded pictures that are held in memory, MiB
+    /// Memory for decoded pictures, MiB
     #[arg(long, default_value_t = 1024, value_name = "MIB")]
     cache: u32,
     #[command(flatten)]

@@ -15,7 +15,7 @@ const DEMONSTRATION: &str = "assets/walk";
 /// Options of `viewer`.
 #[derive(Debug, Args)]
 pub struct ViewerArgs {
-    /// A recording's folder, a database or a report's folder; without it, the demonstration
+    /// Folder of a sequence, database, or folder of a report; the demonstration walk if left out
     #[arg(value_name = "SEQUENCE|DATABASE|REPORT")]
     open: Option<PathBuf>,
 }

@@ -66,7 +66,7 @@ fn all_circles() -> Vec<String> {
 }
 
 #[test]
-fn no_files_and_no_modules_of_a_crate_use_each_other_in_a_circle() {
+fn no_files_or_modules_of_a_crate_use_each_other_in_a_circle() {
     let found = all_circles();
     assert!(found.is_empty(), "circles:\n{}", found.join("\n\n"));
 }
@@ -84,7 +84,7 @@ fn every_crate_is_read_and_its_files_use_each_other() {
 }
 
 #[test]
-fn no_file_and_no_function_is_too_long_to_be_read_at_once() {
+fn no_file_or_function_exceeds_its_limit() {
     let folders = packages()
         .into_iter()
         .flat_map(|package| ["src", "tests", "examples", "benches"].map(|folder| package.join(folder)));

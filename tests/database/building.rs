@@ -12,7 +12,7 @@ use serde_json::Value;
 use super::{WALK, assert_fails, copy_of_database, demonstration, json, part_of_walk, program, shown, text};
 
 #[test]
-fn a_walk_is_stored_once_however_often_it_is_built() {
+fn building_again_stores_nothing_twice() {
     let (folder, ..) = demonstration();
     let own = tempfile::tempdir().unwrap();
     let copy = copy_of_database(own.path());
@@ -29,8 +29,8 @@ fn poses_come_from_the_file_given_or_from_the_filter() {
     let own = tempfile::tempdir().unwrap();
     let walk = part_of_walk(own.path(), "walk", 0..12);
     let poses = own.path().join("poses.tum");
-    let tagged = program(&["tag", shown(&walk), "--out", shown(&poses)]);
-    assert!(tagged.status.success());
+    let output = program(&["tag", shown(&walk), "--out", shown(&poses)]);
+    assert!(output.status.success());
     let by_file = own.path().join("file.db");
     let report = json(&["build", shown(&walk), "--out", shown(&by_file), "--poses", shown(&poses)]);
     assert_eq!((&report["sequences"][0]["poses"], &report["images"]), (&"file".into(), &12.into()));
@@ -55,7 +55,7 @@ fn poses_come_from_the_file_given_or_from_the_filter() {
 }
 
 #[test]
-fn info_counts_and_draws_what_is_there() {
+fn info_counts_the_images_and_draws_their_coverage() {
     let own = tempfile::tempdir().unwrap();
     let chart = own.path().join("coverage.svg");
     let (_, database, _) = demonstration();
@@ -72,7 +72,7 @@ fn info_counts_and_draws_what_is_there() {
 }
 
 #[test]
-fn recordings_that_cannot_be_stored_are_named_and_lose_nothing() {
+fn a_recording_that_cannot_be_stored_is_named_and_nothing_stored_is_lost() {
     let own = tempfile::tempdir().unwrap();
     let out = own.path().join("out.db");
     let walk = part_of_walk(own.path(), "walk", 0..6);
@@ -97,7 +97,7 @@ fn recordings_that_cannot_be_stored_are_named_and_lose_nothing() {
 }
 
 #[test]
-fn a_build_that_was_killed_goes_on_where_it_was() {
+fn a_killed_build_resumes_where_it_stopped() {
     const FRAMES: usize = 2000;
     let own = tempfile::tempdir().unwrap();
     let out = own.path().join("out.db");
@@ -144,7 +144,7 @@ fn a_build_that_was_killed_goes_on_where_it_was() {
 }
 
 #[test]
-fn poses_that_no_camera_can_have_are_refused_before_anything_is_stored() {
+fn impossible_poses_are_refused_before_anything_is_stored() {
     let own = tempfile::tempdir().unwrap();
     let walk = part_of_walk(own.path(), "walk", 0..4);
     let out = own.path().join("out.db");

@@ -5,7 +5,7 @@ use std::{fs, process::Command};
 use super::{WALK, assert_fails, copy_of_database, demonstration, program, shown, text};
 
 #[test]
-fn what_is_no_database_is_named() {
+fn a_file_that_is_not_a_database_is_named() {
     let own = tempfile::tempdir().unwrap();
     let missing = own.path().join("missing.db");
     let (other, cut) = (own.path().join("notes.txt"), copy_of_database(own.path()));
@@ -26,7 +26,7 @@ fn what_is_no_database_is_named() {
 }
 
 #[test]
-fn poses_without_pictures_near_them_are_refused_in_one_line() {
+fn poses_far_from_every_picture_are_refused() {
     let own = tempfile::tempdir().unwrap();
     let (_, database, _) = demonstration();
     let out = own.path().join("out.png");
@@ -40,7 +40,7 @@ fn poses_without_pictures_near_them_are_refused_in_one_line() {
 }
 
 #[test]
-fn outputs_without_a_place_and_inputs_in_the_way_are_refused() {
+fn outputs_that_cannot_be_written_or_are_inputs_are_refused() {
     let own = tempfile::tempdir().unwrap();
     let (_, database, probes) = demonstration();
     let nowhere = own.path().join("no/such/folder/out.png");

@@ -159,7 +159,7 @@ fn the_smallest_databases_give_pictures() {
 }
 
 #[test]
-fn a_picture_is_black_where_the_lens_leaves_it_black_and_that_does_not_count() {
+fn pixels_outside_the_image_circle_are_black_and_do_not_count_as_missing() {
     let own = tempfile::tempdir().unwrap();
     let walk = part_of_walk(own.path(), "walk", 0..20);
     let file = walk.join("camera.toml");
@@ -189,7 +189,7 @@ fn a_picture_is_black_where_the_lens_leaves_it_black_and_that_does_not_count() {
 }
 
 #[test]
-fn another_lens_is_drawn_and_another_size_has_no_nearest_picture() {
+fn pictures_are_drawn_for_another_lens_but_nearest_needs_the_same_size() {
     let own = tempfile::tempdir().unwrap();
     let (_, database, _) = demonstration();
     let (camera, out) = (own.path().join("camera.toml"), own.path().join("out.png"));

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use reality_sim_core::sequence::{Printable, SequenceError};
+use reality_sim_core::sequence::{Printable, SequenceError, one_line};
 use rusqlite::{ErrorCode, ffi};
 
 /// Error of a database, or of a recording that is being stored in one.
@@ -170,7 +170,8 @@ pub enum DbFault {
 
 impl From<rusqlite::Error> for DbFault {
     fn from(error: rusqlite::Error) -> Self {
-        let message = one_line(&error);
+        // SQLite may quote a statement of several lines.
+        let message = one_line(&error.to_string());
         let extended = error.sqlite_error().map_or(0, |error| error.extended_code);
         match error.sqlite_error_code() {
             Some(ErrorCode::NotADatabase) => Self::NotADatabase,
@@ -194,9 +195,4 @@ impl From<io::Error> for DbFault {
             Self::CannotOpen { message: error.to_string() }
         }
     }
-}
-
-/// Returns SQLite's message without the line breaks of the statement that it may quote.
-fn one_line(error: &rusqlite::Error) -> String {
-    error.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_has_no_statistics() {
+    fn no_errors_have_no_statistics() {
         assert_eq!(ErrorStatistics::new(&[]), None);
         assert_eq!(percentile(&[], 0.5), None);
     }

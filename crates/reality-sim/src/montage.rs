@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_stand_where_their_row_and_column_say() {
+    fn pictures_are_placed_by_row_and_column() {
         let plain = |value: u8| RgbImage::from_pixel(8, 6, image::Rgb([value; 3]));
         let (first, second) = ([plain(10), plain(20)], [plain(30)]);
         let all = grid(&[&first, &second], 8);

@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sky_stays_as_it_was() {
+    fn the_sky_is_left_unchanged() {
         let (camera, field) = (camera(), field());
         let drawn = overlay(&camera, &field).draw_scene(RgbImage::from_pixel(320, 240, Rgb([9, 9, 9])));
         assert!((0..320).all(|u| drawn.get_pixel(u, 20).0 == [9, 9, 9]));
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_panics_in_a_tiny_picture_or_at_an_impossible_pose() {
+    fn tiny_pictures_and_impossible_poses_do_not_panic() {
         let (camera, field) = (camera(), field());
         let far = CameraPose { x_m: 1e300, yaw_rad: f64::NAN, height_m: f64::NAN, ..Default::default() };
         let overlay =

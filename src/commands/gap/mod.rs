@@ -47,7 +47,7 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
 /// Refuses effects that are both in the model and left out of the library.
 fn refuse_held(args: &GapArgs, given: &Model) -> anyhow::Result<()> {
     match args.without.iter().find(|id| given.values(id).is_some()) {
-        Some(id) => bail!("--without {id}: the model of --model has it: take it out of that file"),
+        Some(id) => bail!("--without {id}: the file of --model contains this effect: remove it there"),
         None => Ok(()),
     }
 }

@@ -19,45 +19,46 @@ use crate::commands::{
 /// Options of `render`.
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// The database, as `build` makes it
+    /// Database, as `build` makes it
     pub database: PathBuf,
-    /// The camera's pose: metres, metres, radians, metres, radians, radians [default of the last three: as the camera
-    /// usually has them in the database]
+    /// Pose of the camera: metres, metres, radians, metres, radians, radians [default of the last three: those usual in
+    /// the database]
     #[arg(long, value_name = "X,Y,YAW[,HEIGHT,PITCH,ROLL]", value_parser = wanted_pose, allow_hyphen_values = true)]
     pub pose: Option<WantedPose>,
-    /// All poses of a TUM file: --out is then a folder
+    /// Make the pictures at all poses of this TUM file; --out is then a folder
     #[arg(long, value_name = "FILE", conflicts_with = "pose", required_unless_present = "pose")]
     pub path: Option<PathBuf>,
-    /// The way to the picture
+    /// Method by which the picture is made
     #[arg(long, value_parser = one_of::<PictureMethod>(methods()), default_value_t)]
     pub method: PictureMethod,
-    /// The picture, PNG or JPEG; with --path the folder of the pictures
+    /// Write the picture to this PNG or JPEG file; with --path, the pictures to this folder
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-    /// Where the picture came from: a colour for each picture used, the brighter the more it can be trusted
+    /// Write to this picture where the pixels came from: a colour for each recorded picture, brighter where it can be
+    /// trusted more
     #[arg(long, value_name = "FILE", requires = "pose")]
     pub origins: Option<PathBuf>,
-    /// How far each pixel can be trusted: white fully, black not at all
+    /// Write to this picture how far each pixel can be trusted: white fully, black not at all
     #[arg(long, value_name = "FILE", requires = "pose")]
     pub trust: Option<PathBuf>,
-    /// Some pictures of the path side by side
+    /// Write some pictures of the path, side by side, to this file
     #[arg(long, value_name = "FILE", requires = "path")]
     pub strip: Option<PathBuf>,
-    /// Draw as this camera sees, not as the one that took the pictures
+    /// Make the picture of this camera.toml instead of the camera that took the recorded ones
     #[arg(long, value_name = "FILE")]
     pub camera: Option<PathBuf>,
-    /// Effects of the simulated camera, as `gap` writes them: with --method simulated. A single pose is that of a camera
-    /// that stands still; along --path the poses and their times tell how it moves
+    /// Effects of the simulated camera (--method simulated), a model.toml as `gap` writes it. At a single pose the camera
+    /// stands still; along --path it moves as the poses and their times say
     #[arg(long, value_name = "FILE")]
     pub model: Option<PathBuf>,
     #[command(flatten)]
     pub synthesis: SynthesisArgs,
-    /// Print one JSON object on standard output
+    /// Print the report as one JSON object
     #[arg(long)]
     pub json: bool,
 }
 
-/// A way to a picture.
+/// Method by which a picture is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PictureMethod {
     /// From recorded pictures.
@@ -89,10 +90,10 @@ impl FromStr for PictureMethod {
     }
 }
 
-/// Every way with its help.
+/// Lists every method with its help.
 fn methods() -> impl Iterator<Item = PossibleValue> {
     let recorded = MethodKind::ALL.into_iter().map(|kind| described(kind.name(), kind.description()));
-    recorded.chain([described(SIMULATED, "No picture: the model of the field, drawn")])
+    recorded.chain([described(SIMULATED, "The model of the field, drawn without any recorded picture")])
 }
 
 /// Pose whose last three numbers may be left out.
@@ -125,13 +126,13 @@ impl RenderArgs {
     pub fn check_usage(&self) -> Result<(), String> {
         let wants_origins = self.origins.is_some() || self.trust.is_some();
         if self.method == PictureMethod::Simulated && wants_origins {
-            return Err("--origins, --trust: a simulated picture comes from no recorded one: leave them out"
-                .to_owned());
+            return Err(
+                "--origins, --trust: a simulated picture is not made from recorded ones: leave them out"
+                    .to_owned(),
+            );
         }
         if self.method != PictureMethod::Simulated && self.model.is_some() {
-            return Err(
-                "--model: recorded pictures have no model of the camera: add --method simulated".to_owned()
-            );
+            return Err("--model: only a simulated picture has a model: add --method simulated".to_owned());
         }
         self.synthesis.backend.check_usage()
     }
@@ -150,7 +151,7 @@ impl RenderArgs {
             (None, Some(file)) => {
                 let poses = read_tum(file)?;
                 if poses.is_empty() {
-                    bail!("{}: holds no poses: give a TUM file with one pose a line", file.display());
+                    bail!("{}: contains no poses: give a TUM file with one pose a line", file.display());
                 }
                 Ok(poses)
             }
@@ -175,7 +176,10 @@ impl RenderArgs {
                 create_output_folder(&self.out, &inputs)?;
                 let inside = self.strip.as_ref().filter(|strip| strip.parent() == Some(&self.out));
                 inside.map_or(Ok(()), |strip| {
-                    bail!("{}: lies among the pictures of the path: give another folder", strip.display())
+                    bail!(
+                        "{}: lies in the folder of the path's pictures: give another folder",
+                        strip.display()
+                    )
                 })
             }
             None => check_output_picture(&self.out, &inputs),

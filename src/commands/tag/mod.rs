@@ -3,6 +3,8 @@
 mod options;
 mod report;
 
+use std::path::PathBuf;
+
 use anyhow::bail;
 use image::RgbImage;
 use indicatif::ProgressBar;
@@ -19,7 +21,9 @@ use reality_sim::{
 
 pub use self::options::TagArgs;
 use self::report::{PoseResult, Report, details_csv};
-use super::output::{check_output_file, create_output_folder, frame_progress, print, print_json};
+use super::output::{
+    check_distinct, check_output_file, create_output_folder, frame_progress, print, print_json,
+};
 
 /// Runs the command.
 pub fn run(args: &TagArgs) -> anyhow::Result<()> {
@@ -32,14 +36,14 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     let builder = Localizer::builder(&setup.camera, field).config(config).start(*start);
     let mut localizer = builder.backend(device.backend.clone()).build()?;
     let progress = frame_progress(sequence.frames.len())?;
-    let tagged = localize(args, &sequence, &mut localizer, &progress);
+    let frames = localize(args, &sequence, &mut localizer, &progress);
     progress.finish_and_clear();
-    let tagged = tagged?;
+    let frames = frames?;
 
-    let results = if args.smooth { smoothed(&sequence, &localizer, &tagged)? } else { filtered(&tagged) };
+    let results = if args.smooth { smoothed(&sequence, &localizer, &frames)? } else { filtered(&frames) };
     let poses: Vec<CameraPose> = results.iter().map(|result| result.pose).collect();
     if let Some(details) = &args.details {
-        write_atomically(details, details_csv(&sequence, &tagged, &results).as_bytes())?;
+        write_atomically(details, details_csv(&sequence, &frames, &results).as_bytes())?;
     }
     if let Some(out) = &args.out {
         let stamped = sequence.frames.iter().zip(&poses);
@@ -48,7 +52,7 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
             .collect();
         write_tum(out, &stamped)?;
     }
-    let report = Report::new(args, &sequence, &config, &device, &tagged, &poses);
+    let report = Report::new(args, &sequence, &config, &device, &frames, &poses);
     if args.json { print_json(&report) } else { print(&report.text(&sequence.name)) }
 }
 
@@ -81,10 +85,10 @@ fn localize(
 }
 
 /// Returns the filter's pose of every picture, from this and earlier pictures only.
-fn filtered(tagged: &[LocalizedFrame]) -> Vec<PoseResult> {
+fn filtered(frames: &[LocalizedFrame]) -> Vec<PoseResult> {
     let sigmas =
         |frame: &LocalizedFrame| frame.fit.map(|fit| fit.covariance.diagonal().map(f64::sqrt).into());
-    tagged.iter().map(|frame| PoseResult { pose: frame.pose, sigmas: sigmas(frame) }).collect()
+    frames.iter().map(|frame| PoseResult { pose: frame.pose, sigmas: sigmas(frame) }).collect()
 }
 
 /// Returns the most probable poses of the whole recording.
@@ -96,7 +100,7 @@ fn smoothed(
     let picture = |index| sequence.load_image(index).map(Picture::from);
     let Some(smoothed) = localizer.smoother().smooth(frames, picture)? else {
         bail!(
-            "{}: no picture shows enough of the lines to smooth the poses: tag without --smooth",
+            "{}: no picture shows enough of the lines to smooth the poses: leave out --smooth",
             sequence.folder.display()
         );
     };
@@ -110,14 +114,9 @@ fn smoothed(
 /// Checks the outputs first: nobody should wait for an hour and learn then that the result cannot be written.
 fn check_outputs(args: &TagArgs, sequence: &Sequence) -> anyhow::Result<()> {
     let inputs = args.inputs(sequence);
-    for output in [&args.out, &args.details].into_iter().flatten() {
-        check_output_file(output, &inputs)?;
-    }
-    if let (Some(out), Some(details)) = (&args.out, &args.details)
-        && out == details
-    {
-        bail!("{}: is given for --out and for --details: give two names", out.display());
-    }
+    let files: Vec<&PathBuf> = [&args.out, &args.details].into_iter().flatten().collect();
+    files.iter().try_for_each(|file| check_output_file(file, &inputs))?;
+    check_distinct(&files)?;
     args.overlay.as_ref().map_or(Ok(()), |folder| create_output_folder(folder, &inputs))
 }
 

@@ -26,75 +26,75 @@ const RESET_JUMP_M: f64 = 0.1;
 /// Options of `tag`.
 #[derive(Debug, Args)]
 pub struct TagArgs {
-    /// Folder of the sequence: the one that holds sequence.toml
+    /// Folder of the sequence, which contains sequence.toml
     pub sequence: PathBuf,
-    /// Model that weighs the particles
+    /// Observation model, which weighs the particles
     #[arg(long, value_parser = one_of::<ObservationKind>(ObservationKind::ALL.map(|entry| described(entry.name(), entry.description()))), default_value_t)]
     observation: ObservationKind,
-    /// Number of particles; with --adaptive the largest number
+    /// Number of particles; with --adaptive, the largest number
     #[arg(long, default_value_t = 800, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     particles: u32,
-    /// Rounds of weighing and resampling for every picture
+    /// Iterations of weighing and resampling for each picture
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=100))]
     iterations: u32,
-    /// How the particles that survive are chosen
+    /// Resampling scheme
     #[arg(long, value_parser = one_of::<Resampling>(Resampling::ALL.map(Resampling::name)), default_value_t)]
     resampling: Resampling,
-    /// How the filter's pose is taken from the particles
+    /// Estimate of the pose from the particles
     #[arg(long, value_parser = one_of::<Estimator>(Estimator::ALL.map(|entry| described(entry.name(), entry.description()))), default_value_t)]
     estimator: Estimator,
-    /// Adapt the number of particles to their spread (KLD sampling)
+    /// Adapt the number of particles to their spread (KLD-sampling)
     #[arg(long)]
     adaptive: bool,
-    /// Use the whole recording for every pose: fit each picture to a fraction of a pixel, then all pictures, odometry and
-    /// IMU together
+    /// Use the whole recording for every pose: fit each picture to a fraction of a pixel, then smooth all poses with
+    /// odometry and IMU
     #[arg(long)]
     pub smooth: bool,
-    /// Same seed, same result
+    /// Seed of the random numbers: the same seed gives the same result
     #[arg(long, default_value_t = 0)]
     seed: u64,
     #[command(flatten)]
     pub backend: BackendArgs,
-    /// Sigma of the picture's Gaussian blur, pixels (gauss and contrast) [default: the model's own]
+    /// Standard deviation of the picture's Gaussian blur, pixels (gauss and contrast) [default: the model's own]
     #[arg(long, value_name = "PX", value_parser = blur_px)]
     blur: Option<f32>,
-    /// The paper's α (gauss and distance), above 0 [default: the model's own]
+    /// The paper's α, above 0 (gauss and distance) [default: the model's own]
     #[arg(long, value_name = "A", value_parser = positive)]
     alpha: Option<f64>,
-    /// Keep what the picture shows outside the field's border (gauss and distance)
+    /// Do not mask what lies outside the field's border (gauss and distance)
     #[arg(long)]
     no_border_mask: bool,
-    /// Predict from the previous picture alone, as in the paper
+    /// Predict from the previous picture alone, without odometry, as in the paper
     #[arg(long)]
     no_odometry: bool,
     /// Pose of the first picture: metres, metres, radians [default: the sequence's]
     #[arg(long, value_name = "X,Y,YAW", value_parser = start_pose, allow_hyphen_values = true)]
     start: Option<Pose2>,
-    /// Find the pose of the first picture, whatever the sequence says
+    /// Search the whole field for the first pose, even if the sequence gives one
     #[arg(long, conflicts_with = "start")]
     unknown_start: bool,
-    /// Never search the field for a lost pose
+    /// Do not search the field when the pose is lost
     #[arg(long)]
     no_recovery: bool,
-    /// A field.toml or the name of a preset in place of the sequence's field
+    /// Field to use instead of the sequence's: a field.toml, or the name of a preset
     #[arg(long, value_name = "FILE|PRESET")]
     field: Option<PathBuf>,
-    /// A camera.toml in place of the sequence's
+    /// Camera to use instead of the sequence's: a camera.toml
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
-    /// Write the poses, as a TUM file
+    /// Write the poses to this file, in the TUM format
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-    /// Write pose, standard deviations and the filter's state of every picture, as a CSV file
+    /// Write each picture's pose, standard deviations and filter state to this CSV file
     #[arg(long, value_name = "FILE")]
     pub details: Option<PathBuf>,
-    /// Write every picture with lines, border, particles and a map drawn into it
+    /// Write each picture, with lines, border, particles and a map drawn into it, to this folder
     #[arg(long, value_name = "FOLDER")]
     pub overlay: Option<PathBuf>,
-    /// Only these pictures, counted from 0, without B; the start is then dead-reckoned by odometry
+    /// Process only frames A to B − 1, counted from 0; the start pose is then dead-reckoned by odometry
     #[arg(long, value_name = "A..B", value_parser = frame_range)]
     pub frames: Option<FrameRange>,
-    /// Print one JSON object on standard output
+    /// Print the report as one JSON object
     #[arg(long)]
     pub json: bool,
 }
@@ -152,7 +152,7 @@ impl TagArgs {
         ];
         match ignored.iter().find(|(_, ignored)| *ignored) {
             Some((option, _)) => {
-                Err(format!("{option} has no effect on this observation model: leave it out"))
+                Err(format!("{option} has no effect with this observation model: leave it out"))
             }
             None => Ok(()),
         }
@@ -210,7 +210,7 @@ impl TagArgs {
         let end = end.unwrap_or(count);
         if first >= end || end > count {
             let folder = sequence.folder.display();
-            bail!("{folder}: has {count} frames: --frames must lie in 0..{count}");
+            bail!("{folder}: has {count} frames: give --frames within 0..{count}");
         }
         Ok(first..end)
     }
@@ -247,7 +247,7 @@ fn field_by_name(name: &Path) -> anyhow::Result<FieldDimensions> {
     if !name.exists() {
         let presets: Vec<&str> = preset_names().collect();
         let (name, presets) = (name.display(), presets.join(", "));
-        bail!("{name}: there is no such field preset or file: give a field.toml, or one of {presets}");
+        bail!("{name}: is neither a file nor a field preset: give a field.toml, or one of {presets}");
     }
     Ok(read_field(name)?)
 }

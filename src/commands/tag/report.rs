@@ -21,7 +21,7 @@ pub struct PoseResult {
 }
 
 /// Formats one line per picture; unknown values are left empty.
-pub fn details_csv(sequence: &Sequence, tagged: &[LocalizedFrame], results: &[PoseResult]) -> String {
+pub fn details_csv(sequence: &Sequence, frames: &[LocalizedFrame], results: &[PoseResult]) -> String {
     const DEGREES_OF_FREEDOM: [&str; 6] = ["x_m", "y_m", "yaw_rad", "height_m", "pitch_rad", "roll_rad"];
     let mut csv = String::from("timestamp_s");
     let sigmas = DEGREES_OF_FREEDOM.map(|name| format!("sigma_{name}"));
@@ -32,7 +32,7 @@ pub fn details_csv(sequence: &Sequence, tagged: &[LocalizedFrame], results: &[Po
     csv.push_str(
         ",effective_sample_size,particles,line_fraction,sure,mirror_probability,searched,error_m,error_yaw_rad\n",
     );
-    for (index, (frame, result)) in tagged.iter().zip(results).enumerate() {
+    for (index, (frame, result)) in frames.iter().zip(results).enumerate() {
         let pose = result.pose;
         // Writing into a string cannot fail.
         let _ = write!(csv, "{}", sequence.frames[index].timestamp_s);
@@ -99,17 +99,17 @@ impl Report {
         sequence: &Sequence,
         config: &LocalizerConfig,
         device: &Device,
-        tagged: &[LocalizedFrame],
+        frames: &[LocalizedFrame],
         poses: &[CameraPose],
     ) -> Self {
         let truths = sequence.reference_poses().zip(poses);
         let errors: Vec<PoseError> =
             truths.filter_map(|(truth, pose)| Some(PoseError::new(*pose, truth?))).collect();
-        let mut seconds: Vec<f64> = tagged.iter().map(|frame| frame.seconds).collect();
+        let mut seconds: Vec<f64> = frames.iter().map(|frame| frame.seconds).collect();
         seconds.sort_by(f64::total_cmp);
         Self {
             sequence: shown(&args.sequence),
-            frames: tagged.len(),
+            frames: frames.len(),
             observation: config.observation.kind,
             backend: device.name,
             adapter: device.adapter.clone(),
@@ -122,8 +122,8 @@ impl Report {
             seed: config.filter.seed,
             smoothed: args.smooth,
             seconds_per_frame: percentile(&seconds, 0.5).unwrap_or(0.0),
-            sure_frames: tagged.iter().filter(|frame| frame.sure).count(),
-            searched_frames: tagged.iter().filter(|frame| frame.searched).count(),
+            sure_frames: frames.iter().filter(|frame| frame.sure).count(),
+            searched_frames: frames.iter().filter(|frame| frame.searched).count(),
             error: ErrorStatistics::new(&errors),
             out: args.out.as_deref().map(shown),
             details: args.details.as_deref().map(shown),

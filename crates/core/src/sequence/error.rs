@@ -244,8 +244,8 @@ pub(super) fn excerpt(text: &str) -> String {
     }
 }
 
-/// Puts a message of another library on one line.
-pub(super) fn one_line(message: &str) -> String {
+/// Puts a message on one line: replaces line breaks and other control characters by spaces, and joins runs of spaces.
+pub fn one_line(message: &str) -> String {
     let printable: String =
         message.chars().map(|letter| if is_unprintable(letter) { ' ' } else { letter }).collect();
     printable.split_whitespace().collect::<Vec<_>>().join(" ")

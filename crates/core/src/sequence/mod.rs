@@ -26,7 +26,7 @@ use image::RgbImage;
 pub use self::{
     atomic::write_atomically,
     camera_file::{CameraSetup, Photometry, read_camera},
-    error::{Fault, Printable, SequenceError},
+    error::{Fault, Printable, SequenceError, one_line},
     field_file::read_field,
     frames::FrameRecord,
     groundtruth::match_poses,

@@ -17,7 +17,7 @@ fn cut(mut sequence: Sequence, frames: std::ops::Range<usize>) -> Sequence {
     sequence
 }
 
-fn tag(
+fn localize(
     sequence: &Sequence,
     start: Option<Pose2>,
     config: LocalizerConfig,
@@ -34,12 +34,12 @@ fn is_right(pose: CameraPose, truth: CameraPose) -> bool {
 }
 
 #[test]
-fn found_from_nowhere_without_odometry_within_five_pictures() {
+fn an_unknown_start_is_found_within_five_pictures_without_odometry() {
     let config = LocalizerConfig::default().with_odometry(false);
     for first in [0, 9, 21, 33, 47, 55] {
         let sequence = cut(walk(), first..first + 5);
-        let (_, tagged) = tag(&sequence, None, config);
-        let (last, truth) = (&tagged[4], sequence.frames[4].reference_pose.expect("exact truth"));
+        let (_, frames) = localize(&sequence, None, config);
+        let (last, truth) = (&frames[4], sequence.frames[4].reference_pose.expect("exact truth"));
         assert!(
             is_right(last.pose, truth) || is_right(last.pose.mirrored(), truth),
             "from picture {first}: {:?} instead of {truth:?}",
@@ -49,11 +49,11 @@ fn found_from_nowhere_without_odometry_within_five_pictures() {
 }
 
 #[test]
-fn goals_of_two_colours_tell_the_halves_apart() {
+fn goals_of_two_colours_tell_the_halves_of_the_field_apart() {
     let config = LocalizerConfig::default();
     let sequence = walk();
-    let (_, tagged) = tag(&sequence, None, config);
-    let last = tagged.last().expect("sixty pictures");
+    let (_, frames) = localize(&sequence, None, config);
+    let last = frames.last().expect("sixty pictures");
     assert!(is_right(last.pose, sequence.frames[59].reference_pose.expect("exact truth")));
     assert!(last.mirrored_probability < 0.05, "{}", last.mirrored_probability);
 
@@ -65,13 +65,13 @@ fn goals_of_two_colours_tell_the_halves_apart() {
         },
         ..cut(sequence, 0..3)
     };
-    let (_, tagged) = tag(&plain, None, config);
-    assert!(tagged.iter().all(|frame| frame.mirrored_probability == 0.5), "nothing tells them apart");
+    let (_, frames) = localize(&plain, None, config);
+    assert!(frames.iter().all(|frame| frame.mirrored_probability == 0.5), "nothing tells them apart");
 }
 
 /// The robot is carried between pictures: pictures are missing, and the odometry starts again.
 #[test]
-fn found_again_after_being_carried_and_never_sure_while_wrong() {
+fn a_kidnapped_robot_is_found_again_and_never_sure_of_a_wrong_pose() {
     for kind in [ObservationKind::Contrast, ObservationKind::Gauss, ObservationKind::Distance] {
         let mut sequence = walk();
         let origin = sequence.frames[40].odometry.expect("the walk has odometry");
@@ -80,8 +80,8 @@ fn found_again_after_being_carried_and_never_sure_while_wrong() {
             frame.odometry = Some(Pose2::default().moved(motion));
         }
         sequence.frames.drain(10..40);
-        let (_, tagged) = tag(&sequence, sequence.start, LocalizerConfig::new(kind));
-        for (index, frame) in tagged.iter().enumerate() {
+        let (_, frames) = localize(&sequence, sequence.start, LocalizerConfig::new(kind));
+        for (index, frame) in frames.iter().enumerate() {
             let truth = sequence.frames[index].reference_pose.expect("exact truth");
             let right = is_right(frame.pose, truth);
             assert!(right || !frame.sure, "{kind:?}: sure and wrong at picture {index}");
@@ -94,14 +94,14 @@ fn found_again_after_being_carried_and_never_sure_while_wrong() {
 
 /// Compares pose errors, in units of their covariance, with the quantiles of χ² with three degrees of freedom.
 #[test]
-fn smoothed_poses_are_exact_and_their_covariances_honest() {
+fn smoothed_poses_are_accurate_and_their_covariances_match_their_errors() {
     let sequence = walk();
     let config = LocalizerConfig::default().with_refinement(true);
-    let (localizer, tagged) = tag(&sequence, sequence.start, config);
+    let (localizer, frames) = localize(&sequence, sequence.start, config);
     let picture = |index| sequence.load_image(index).map(Picture::from);
     let smoothed = localizer
         .smoother()
-        .smooth(&tagged, picture)
+        .smooth(&frames, picture)
         .expect("every picture can be read")
         .expect("there are lines");
     let (mut worst_m, mut inside) = (0.0_f64, [0; 3]);
@@ -128,11 +128,11 @@ fn smoothed_poses_are_exact_and_their_covariances_honest() {
 }
 
 #[test]
-fn tagging_without_memory_of_the_threads_it_ran_on() {
+fn the_number_of_threads_does_not_change_the_poses() {
     let sequence = cut(walk(), 0..4);
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be had");
-        let (_, frames) = pool.install(|| tag(&sequence, None, LocalizerConfig::default()));
+        let (_, frames) = pool.install(|| localize(&sequence, None, LocalizerConfig::default()));
         frames.into_iter().map(|frame| frame.pose).collect::<Vec<_>>()
     };
     assert_eq!(run(1), run(3));
