@@ -9,9 +9,9 @@ use clap::{CommandFactory, Parser, error::ErrorKind};
 use commands::{Command, advice};
 use reality_sim::sequence::one_line;
 
-/// What does the camera see at this pose? Real pictures for robot simulators, by pose.
+/// What does the camera see at this pose? Answers with recorded pictures, for robot simulators
 #[derive(Debug, Parser)]
-#[command(name = "reality-sim", version, about, disable_help_subcommand = true)]
+#[command(name = "reality-sim", version, disable_help_subcommand = true)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
