@@ -100,13 +100,13 @@ fn offset_of(quantity: Quantity) -> Option<NominalValue> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{linear_model::nuisance::tolerances, measurement::quantity::ColorChannel};
+    use crate::{linear_model::nuisance::nuisances, measurement::quantity::ColorChannel};
 
-    /// What is told where the tolerances that are picked are so many standard deviations off, the others half a one.
+    /// What is told where the nuisances that are picked are so many standard deviations off, the others half a one.
     fn told(value: f64, explained: &ModelError, picked: impl Fn(&Nominal) -> bool) -> Vec<Finding> {
-        let tolerances = tolerances(&[]);
-        let off = |tolerance| if Nominal::of(tolerance).is_some_and(|n| picked(&n)) { value } else { 0.5 };
-        inconsistent(&tolerances, &tolerances.iter().map(off).collect::<Vec<_>>(), explained)
+        let nuisances = nuisances(&[]);
+        let off = |nuisance| if Nominal::of(nuisance).is_some_and(|n| picked(&n)) { value } else { 0.5 };
+        inconsistent(&nuisances, &nuisances.iter().map(off).collect::<Vec<_>>(), explained)
     }
 
     #[test]

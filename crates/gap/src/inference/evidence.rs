@@ -64,7 +64,7 @@ impl<'a> Evidence<'a> {
             let score = |sums: &NormalEquations| self.total.projected(&sums.score(&fit.delta), &fit.free);
             sums.iter().map(score).collect()
         };
-        let nuisances = self.total.tolerance_scatter(&fit.free);
+        let nuisances = self.total.nuisance_scatter(&fit.free);
         let sandwich = |scatter: DMatrix<f64>| &fit.inverse * (scatter + &nuisances) * &fit.inverse;
         let size = fit.free.len();
         [

@@ -9,7 +9,7 @@ use crate::{
     inference::split::HeldOutSplit,
     linear_model::initial_values::starting_values,
     linear_model::linearization::{MeasureError, linearise, measure_frames},
-    linear_model::nuisance::{Nuisance, tolerances},
+    linear_model::nuisance::{Nuisance, nuisances},
     linear_model::parameters::FittedParameter,
     linear_model::{linearized_frame::LinearizedFrame, system::LinearSystem},
     measurement::frame::FrameMeasurements,
@@ -44,7 +44,7 @@ impl LinearizedRecording {
     ) -> Result<Self, MeasureError> {
         let search_px = search * f64::from(recording.sequence.setup.camera.width);
         let measurements = measure_frames(recording, &model, search_px)?;
-        let nuisances = tolerances(&measurements);
+        let nuisances = nuisances(&measurements);
         let mut frames = linearise(recording, &measurements, &model, columns, &nuisances)?;
         // An odometry step that ends at a held-out frame is not fitted.
         for frame in split.training().filter(|frame| split.is_held_out(frame + 1)) {

@@ -16,7 +16,7 @@ use crate::linear_model::parameters::FittedParameter;
 pub(crate) struct SelectedModel {
     pub(crate) columns: Vec<FittedParameter>,
     pub(crate) split: HeldOutSplit,
-    /// Recording measured and linearised at the final model.
+    /// Recording linearised at the final model.
     pub(crate) linearized: LinearizedRecording,
     /// Effects that the model had from the start.
     pub(crate) given: Vec<EffectIndex>,

@@ -81,9 +81,9 @@ pub(crate) fn cell_of(ground: DVec2) -> [i32; 2] {
     [cell.x as i32, cell.y as i32]
 }
 
-/// All tolerances of what was looked at.
-pub(crate) fn tolerances(looks: &[FrameMeasurements]) -> Vec<Nuisance> {
-    let blocks = looks.iter().flat_map(|look| &look.blocks);
+/// Nuisance parameters of these measurements.
+pub(crate) fn nuisances(measurements: &[FrameMeasurements]) -> Vec<Nuisance> {
+    let blocks = measurements.iter().flat_map(|frame| &frame.blocks);
     let cells: BTreeSet<[i32; 2]> = blocks.map(|block| cell_of(block.ground)).collect();
     let patches = cells.into_iter().map(|cell| Nuisance::Patch { cell, sigma: THRESHOLDS.patch_level });
     COMMON.into_iter().chain(patches).collect()

@@ -133,7 +133,7 @@ impl ReducedEquations {
     }
 
     /// What the tolerances' own prior adds to the scatter of scores: no frame shows it.
-    pub(crate) fn tolerance_scatter(&self, free: &[ColumnIndex]) -> DMatrix<f64> {
+    pub(crate) fn nuisance_scatter(&self, free: &[ColumnIndex]) -> DMatrix<f64> {
         DMatrix::from_fn(free.len(), free.len(), |i, j| {
             PRIOR * self.x.column(free[i].0).dot(&self.x.column(free[j].0))
         })

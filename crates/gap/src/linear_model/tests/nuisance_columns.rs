@@ -6,7 +6,7 @@ use super::{recording, sequence};
 use crate::{
     linear_model::{
         linearization::{linearise, measure_frames},
-        nuisance::{Nuisance, cell_of, tolerances},
+        nuisance::{Nuisance, cell_of, nuisances},
     },
     measurement::{quantity::Quantity, scalar::Measurement},
 };
@@ -49,9 +49,9 @@ fn each_nuisance_changes_what_is_expected_as_its_column_says() {
     let sequence = sequence();
     let recording = recording(&sequence);
     let model = Model::default();
-    let looks = measure_frames(&recording, &model, 20.0).unwrap();
-    let nuisances = tolerances(&looks);
-    let frames = linearise(&recording, &looks, &model, &[], &nuisances).unwrap();
+    let measurements = measure_frames(&recording, &model, 20.0).unwrap();
+    let nuisances = nuisances(&measurements);
+    let frames = linearise(&recording, &measurements, &model, &[], &nuisances).unwrap();
     let mut seen = vec![false; nuisances.len()];
     for frame in &frames {
         let rows = frame.measurements.iter().zip(&frame.residuals).zip(&frame.jacobian);

@@ -64,7 +64,7 @@ struct Compared {
 impl Compared {
     fn new(
         recording: &Recording<'_>,
-        looks: &[FrameMeasurements],
+        measurements: &[FrameMeasurements],
         column: FittedParameter,
         values: &[f64],
     ) -> Self {
@@ -74,7 +74,7 @@ impl Compared {
             let mut values = values.to_vec();
             values[column.parameter] = value;
             let model = Model::default().with(column.effect(), values);
-            linearise(recording, looks, &model, columns, &[]).unwrap()
+            linearise(recording, measurements, &model, columns, &[]).unwrap()
         };
         let [minus, plus] = [value - half, value + half].map(|value| linearised(value, &[]));
         let width = column.coordinate(value + half) - column.coordinate(value - half);
@@ -128,7 +128,7 @@ fn is_of_odometry(column: &FittedParameter) -> bool {
 fn each_parameter_changes_what_is_seen_as_its_column_says() {
     let sequence = sequence();
     let recording = recording(&sequence);
-    let looks = measure_frames(&recording, &Model::default(), 20.0).unwrap();
+    let measurements = measure_frames(&recording, &Model::default(), 20.0).unwrap();
     for column in columns(&[]).into_iter().filter(|column| !is_of_odometry(column)) {
         // Noise moves the mean of dark places a little: its columns are for the noise only.
         let is_left_out = |row: &Measurement| {
@@ -137,7 +137,7 @@ fn each_parameter_changes_what_is_seen_as_its_column_says() {
         // The colours have to be clearly apart for a slope; a lens or a lamp that is far off leaves no camera or clips.
         let part = if column.effect().id() == "chromatic_aberration" { 0.1 } else { 0.02 };
         let values = values_at(&recording, &column, part);
-        Compared::new(&recording, &looks, column, &values).assert_same(is_left_out);
+        Compared::new(&recording, &measurements, column, &values).assert_same(is_left_out);
     }
 }
 
@@ -145,7 +145,7 @@ fn each_parameter_changes_what_is_seen_as_its_column_says() {
 fn at_neutral_values_columns_are_the_predictions_slopes_too() {
     let sequence = sequence();
     let recording = recording(&sequence);
-    let looks = measure_frames(&recording, &Model::default(), 20.0).unwrap();
+    let measurements = measure_frames(&recording, &Model::default(), 20.0).unwrap();
     let has_slope = |column: &FittedParameter| {
         column.parameter().growth == Growth::Linear && column.is_size() && !is_of_odometry(column)
     };
@@ -155,7 +155,7 @@ fn at_neutral_values_columns_are_the_predictions_slopes_too() {
                 || column.effect().id() == "sensor_noise" && row.quantity.channel() != Channel::Noise
         };
         let values = values_at(&recording, &column, 0.0);
-        Compared::new(&recording, &looks, column, &values).assert_same(is_left_out);
+        Compared::new(&recording, &measurements, column, &values).assert_same(is_left_out);
     }
 }
 
@@ -181,11 +181,11 @@ fn while_a_robot_walks_steadily_the_odometrys_columns_are_those_of_its_own_steps
         blocks: Vec::new(),
         noise_steps: Vec::new(),
     };
-    let looks = vec![nothing; recording.frames.len()];
+    let measurements = vec![nothing; recording.frames.len()];
     for column in columns(&[]).into_iter().filter(is_of_odometry) {
         for part in [0.0, 0.1] {
             let values = values_at(&recording, &column, part);
-            let compared = Compared::new(&recording, &looks, column, &values);
+            let compared = Compared::new(&recording, &measurements, column, &values);
             compared.assert_same(|_| false);
             assert_eq!(compared.rows().count(), 3 * (recording.frames.len() - 1));
         }
