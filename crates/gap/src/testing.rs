@@ -82,7 +82,7 @@ pub(crate) fn two_column_frames(
 pub(crate) fn system_of(frames: Vec<(DMatrix<f64>, DVector<f64>)>) -> LinearSystem {
     let size = frames[0].1.len();
     let frames: Vec<NormalEquations> =
-        frames.into_iter().map(|(a, g)| NormalEquations::whole(a, g)).collect();
+        frames.into_iter().map(|(a, g)| NormalEquations::dense(a, g)).collect();
     LinearSystem {
         size,
         cells: frames.clone(),

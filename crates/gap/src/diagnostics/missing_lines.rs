@@ -160,7 +160,7 @@ mod tests {
             is_hidden: is_hidden && curve == 0 && piece >= pieces[0],
         };
         FrameMeasurements {
-            camera: DVec3::Z,
+            camera_in_world: DVec3::Z,
             lines: (0..3).flat_map(|curve| vec![found(curve); pieces[curve]]).collect(),
             expected_lines: (0..24).map(|index| expected(index / 8, index % 8)).collect(),
             blocks: Vec::new(),

@@ -9,7 +9,7 @@ use crate::{
     diagnostics::finding::{Finding, Movement, OdometryComponent},
     inference::gain::sum_of,
     inference::split::stretch,
-    linear_model::odometry_steps::around,
+    linear_model::odometry_steps::instrumental_motions,
     measurement::quantity::Quantity,
     recording::{Frame, Recording},
     thresholds::{OdometryThresholds, Thresholds},
@@ -65,7 +65,7 @@ fn movements(recording: &Recording<'_>, frames: &[&Frame]) -> Vec<Option<[f64; 3
         let Motion2 { forward_m, turn_rad, .. } = motion?;
         Some([forward_m, turn_rad, frame.step?.until_s - frame.time_s])
     };
-    around(recording, frames).into_iter().zip(frames).map(followed).collect()
+    instrumental_motions(recording, frames).into_iter().zip(frames).map(followed).collect()
 }
 
 /// What a component of the steps follows most, and how large that is in its standard deviations.

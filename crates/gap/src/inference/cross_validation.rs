@@ -45,7 +45,7 @@ impl CrossValidation {
             let (left_out, others): (Vec<usize>, Vec<usize>) =
                 (0..count).partition(|frame| is_left_out(*frame));
             let others = others.iter().map(|&frame| &system.frames[frame]);
-            Fold { left_out, others: ReducedEquations::of(others, system.size, parameters) }
+            Fold { left_out, others: ReducedEquations::new(others, system.size, parameters) }
         };
         let stretches =
             (0..folds).map(|index| fold(&|frame| stretch(frame, count, folds) == index)).collect();

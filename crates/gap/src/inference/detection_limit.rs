@@ -106,7 +106,7 @@ fn limit_of(fits: &EffectFits<'_>, column: ColumnIndex, all: &[EffectIndex]) -> 
     free.insert(0, column);
     let fit = fits.evidence.fit(&free)?;
     let sigma = fits.evidence.sigma(&fit, column);
-    if fit.tells_nothing(column) || sigma <= 0.0 {
+    if fit.is_prior_dominated(column) || sigma <= 0.0 {
         return None;
     }
     let tests = fits.effects().len() as f64;
@@ -135,7 +135,7 @@ fn provides(recording: &Recording<'_>, need: Need) -> bool {
     let photometry = recording.sequence.setup.photometry;
     match need {
         Need::Odometry => recording.sequence.frames.iter().any(|frame| frame.odometry.is_some()),
-        Need::NominalReflectance => recording.scene.is_some(),
+        Need::NominalReflectance => recording.reflectance.is_some(),
         Need::NominalNoise => photometry.is_some_and(|p| p.noise_shot.is_some() || p.noise_read.is_some()),
         Need::NominalSharpness => photometry.is_some_and(|p| p.psf_sigma_px.is_some()),
     }

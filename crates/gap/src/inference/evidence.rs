@@ -7,7 +7,7 @@ use crate::{
     inference::hypothesis_test::hotelling_p_value,
     linear_model::column::ColumnIndex,
     linear_model::normal_equations::NormalEquations,
-    linear_model::reduced_equations::{Fit, ReducedEquations, UNSEEN},
+    linear_model::reduced_equations::{Fit, MOST_PRIOR_SHARE, ReducedEquations},
     linear_model::{normal_equations::PRIOR, system::LinearSystem},
     thresholds::Thresholds,
 };
@@ -26,7 +26,7 @@ impl<'a> Evidence<'a> {
     /// Creates the evidence of a system. `base` is the present model in the coordinates of the fitted parameters' columns;
     /// the columns of the nuisance parameters follow behind them.
     pub(crate) fn new(system: &'a LinearSystem, base: DVector<f64>) -> Self {
-        let total = ReducedEquations::of(system.frames.iter(), system.size, base.len());
+        let total = ReducedEquations::new(system.frames.iter(), system.size, base.len());
         Self { system, base, total }
     }
 
@@ -78,14 +78,14 @@ impl<'a> Evidence<'a> {
     pub(crate) fn p_value(&self, fit: &Fit, tested: &[ColumnIndex]) -> f64 {
         // Columns that cannot be seen have no scatter either.
         let tested: Vec<ColumnIndex> =
-            tested.iter().copied().filter(|&column| fit.prior_share(column) < UNSEEN).collect();
+            tested.iter().copied().filter(|&column| fit.prior_share(column) < MOST_PRIOR_SHARE).collect();
         let tested = tested.as_slice();
         if tested.is_empty() {
             return 1.0;
         }
         let counts = [self.degrees_of_freedom() + 1, self.system.cells.len()];
         let covariances = self.covariances(fit);
-        let place = |column: &ColumnIndex| fit.place(*column);
+        let place = |column: &ColumnIndex| fit.position(*column);
         // Parameters that are not observed on the field, such as those of the odometry, have no scatter between cells.
         let seen = |covariance: &DMatrix<f64>| {
             let on_field =
@@ -97,7 +97,7 @@ impl<'a> Evidence<'a> {
     }
 
     fn p_of(&self, fit: &Fit, tested: &[ColumnIndex], covariance: &DMatrix<f64>, count: usize) -> f64 {
-        let places: Vec<usize> = tested.iter().filter_map(|&column| fit.place(column)).collect();
+        let places: Vec<usize> = tested.iter().filter_map(|&column| fit.position(column)).collect();
         let number = places.len();
         let part = DMatrix::from_fn(number, number, |i, j| covariance[(places[i], places[j])]);
         let value = DVector::from_fn(number, |i, _| self.base[tested[i].0] + fit.delta[tested[i].0]);
@@ -107,7 +107,7 @@ impl<'a> Evidence<'a> {
     /// Standard deviation of a free column. A column held only by its prior scatters little between frames, so the prior's
     /// variance is added.
     pub(crate) fn sigma(&self, fit: &Fit, column: ColumnIndex) -> f64 {
-        let Some(place) = fit.place(column) else { return 0.0 };
+        let Some(place) = fit.position(column) else { return 0.0 };
         let variances = self.covariances(fit).map(|covariance| covariance[(place, place)]);
         let of_prior = PRIOR * fit.inverse.column(place).norm_squared();
         (variances.into_iter().fold(0.0, f64::max) + of_prior).sqrt()
@@ -115,7 +115,7 @@ impl<'a> Evidence<'a> {
 
     /// Correlation of the errors of two free columns, from their scatter between views and from their priors.
     pub(crate) fn correlation(&self, fit: &Fit, columns: [ColumnIndex; 2]) -> f64 {
-        let [Some(i), Some(j)] = columns.map(|column| fit.place(column)) else { return 0.0 };
+        let [Some(i), Some(j)] = columns.map(|column| fit.position(column)) else { return 0.0 };
         let [scatter, _] = self.covariances(fit);
         let covariance = scatter + &fit.inverse * &fit.inverse * PRIOR;
         let scale = (covariance[(i, i)] * covariance[(j, j)]).sqrt();

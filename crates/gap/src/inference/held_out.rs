@@ -99,7 +99,7 @@ pub(crate) fn gaps(
             sums.before += b * b;
             sums.after += a * a;
             sums.count += 1.0;
-            sums.poses += pose_variance(&rows.pose[index], &found.linearized.system.pose_sigmas);
+            sums.poses += pose_variance(&rows.pose_gradients[index], &found.linearized.system.pose_sigmas);
             if let Some(previous) = last.insert(row.quantity, refitted) {
                 sums.steps += 0.5 * (refitted - previous).powi(2);
                 sums.pairs += 1.0;

@@ -34,7 +34,7 @@ pub(crate) fn minus_log_likelihood(
 ) -> f64 {
     // The effects keep their values; only the nuisance parameters are fitted.
     let own = &linearized.system;
-    let equations = ReducedEquations::of(own.frames.iter(), own.size, columns.len());
+    let equations = ReducedEquations::new(own.frames.iter(), own.size, columns.len());
     let Some(fit) = equations.fit(&[], &DVector::zeros(columns.len())) else { return f64::INFINITY };
     let nuisance_penalty = 0.5 * fit.delta.norm_squared();
     let mut means: BTreeMap<Quantity, (f64, f64)> = BTreeMap::new();

@@ -210,7 +210,7 @@ impl ModelSearch<'_> {
                 .values(effect.id())
                 .map_or_else(|| self.source.starting_values(effect), <[f64]>::to_vec);
             // Parameters of a given effect that these frames do not constrain keep their given values.
-            let stays = |column: &ColumnIndex| self.given.contains(&index) && fit.tells_nothing(*column);
+            let stays = |column: &ColumnIndex| self.given.contains(&index) && fit.is_prior_dominated(*column);
             for column in fits.columns_of(&[index]).into_iter().filter(|column| !stays(column)) {
                 values[self.columns[column.0].parameter] = fits.value(fit, column);
             }

@@ -1,4 +1,4 @@
-//! Residuals that a fit leaves in one frame.
+//! Residuals of one frame after a fit.
 
 use nalgebra::{DVector, Matrix6, Vector6};
 
@@ -6,45 +6,45 @@ use crate::linear_model::{
     column::ColumnIndex, linearized_frame::LinearizedFrame, pose_projection::prior_precision,
 };
 
-/// What a change of the columns and the best pose beside it leave of a frame's residuals.
+/// Residuals of a frame after a change of the columns, with the pose refitted.
 pub(crate) struct FittedResiduals {
     pub(crate) residuals: Vec<f64>,
     /// Estimated error of the reference pose.
-    pub(super) pose: Vector6<f64>,
-    /// Posterior variances of that estimate.
+    pub(super) pose_error: Vector6<f64>,
+    /// Posterior variances of the pose error.
     pub(super) pose_variance: Vector6<f64>,
 }
 
 impl FittedResiduals {
-    /// `r − J δ − P b` with the maximum a posteriori pose error `b = (Pᵀ W P + Λ)⁻¹ Pᵀ W (r − J δ)`.
+    /// Returns `r − J δ − P b` with the maximum a posteriori pose error `b = (Pᵀ W P + Λ)⁻¹ Pᵀ W (r − J δ)`.
     pub(crate) fn new(
         frame: &LinearizedFrame,
         weights: &[f64],
         delta: &DVector<f64>,
         pose_sigmas: &[f64; 6],
     ) -> Self {
-        let change = |row: &Vec<(ColumnIndex, f64)>| {
-            row.iter().map(|(column, value)| value * delta[column.0]).sum::<f64>()
+        let change = |derivatives: &Vec<(ColumnIndex, f64)>| {
+            derivatives.iter().map(|(column, derivative)| derivative * delta[column.0]).sum::<f64>()
         };
         let mut residuals: Vec<f64> = frame
             .residuals
             .iter()
             .zip(&frame.jacobian)
-            .map(|(residual, row)| residual - change(row))
+            .map(|(residual, derivatives)| residual - change(derivatives))
             .collect();
         let (mut normal, mut gradient) = (prior_precision(pose_sigmas), Vector6::zeros());
-        for ((pose, &weight), residual) in frame.pose.iter().zip(weights).zip(&residuals) {
+        for ((pose_gradient, &weight), residual) in frame.pose_gradients.iter().zip(weights).zip(&residuals) {
             if weight > 0.0 {
-                normal.ger(weight, pose, pose, 1.0);
-                gradient += weight * residual * pose;
+                normal.ger(weight, pose_gradient, pose_gradient, 1.0);
+                gradient += weight * residual * pose_gradient;
             }
         }
-        // Squares and a prior precision: positive definite but for rounding.
+        // A sum of squares and a prior precision is positive definite, except for rounding.
         let covariance = normal.cholesky().map_or_else(Matrix6::zeros, |normal| normal.inverse());
-        let pose = covariance * gradient;
-        for (residual, row) in residuals.iter_mut().zip(&frame.pose) {
-            *residual -= row.dot(&pose);
+        let pose_error = covariance * gradient;
+        for (residual, pose_gradient) in residuals.iter_mut().zip(&frame.pose_gradients) {
+            *residual -= pose_gradient.dot(&pose_error);
         }
-        Self { residuals, pose, pose_variance: covariance.diagonal() }
+        Self { residuals, pose_error, pose_variance: covariance.diagonal() }
     }
 }

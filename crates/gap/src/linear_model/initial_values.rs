@@ -1,10 +1,11 @@
-//! Where an effect starts from: its neutral values, with what the recording gives.
+//! Initial values of effects, and models in which one of them is changed.
 
 use reality_sim_sensor::{Effect, Model, Role};
 
 use crate::recording::Recording;
 
-/// Neutral values; parameters that the recording gives are its first and last time.
+/// Returns the neutral values of an effect's parameters. Fixed parameters, which no fit changes, take the times of the
+/// recording's first and last frame.
 pub(crate) fn starting_values(effect: &'static dyn Effect, recording: &Recording<'_>) -> Vec<f64> {
     let (first, last) = (recording.frames.first(), recording.frames.last());
     let given = |name: &str| match name {
@@ -19,7 +20,7 @@ pub(crate) fn starting_values(effect: &'static dyn Effect, recording: &Recording
     effect.parameters().iter().map(value).collect()
 }
 
-/// The model with one value of one effect replaced.
+/// Returns the model with these values of an effect, one of which is replaced.
 pub(crate) fn with_value(
     model: &Model,
     effect: &'static dyn Effect,

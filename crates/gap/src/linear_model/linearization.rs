@@ -1,4 +1,4 @@
-//! A recording measured where a model predicts lines and carpet, and the model's predictions linearised there.
+//! Measurement of a recording at the lines and the carpet that a model predicts, and linearisation of the predictions.
 
 use nalgebra::Vector6;
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use crate::{
         column::ColumnIndex,
         linearized_frame::LinearizedFrame,
         nuisance::Nuisance,
-        odometry_steps::around,
+        odometry_steps::instrumental_motions,
         parameters::FittedParameter,
         perturbed_model::PerturbedModel,
         pose_gradient::pose_gradient,
@@ -26,30 +26,30 @@ use crate::{
     recording::{Frame, Recording},
 };
 
-/// Why a recording cannot be measured.
+/// Reason why a recording cannot be measured.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeasureError {
-    /// The recording.
+    /// A picture of the recording cannot be read.
     #[error(transparent)]
     Sequence(#[from] SequenceError),
-    /// The model.
+    /// The model does not describe a valid camera.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// A model that puts the camera under the carpet.
+    /// The model puts the camera on the ground or below it.
     #[error(
         "the camera of frame {index} is {height_m:.3} m high: it must be above 0, the ground; check the reference poses and \
          the model's camera_height"
     )]
     NotAboveGround {
-        /// Of the frame in the recording.
+        /// Index of the frame in the recording.
         index: usize,
-        /// There, metres.
+        /// Height of the camera above the ground, metres.
         height_m: f64,
     },
 }
 
-/// Returns an error if the model puts the camera on the ground or under it.
+/// Returns an error if the model puts the camera on the ground or below it.
 pub(crate) fn check(recording: &Recording<'_>, model: &Model) -> Result<(), MeasureError> {
     let chain = Chain::new(&recording.sequence.setup, &recording.sequence.field, model)?;
     for frame in &recording.frames {
@@ -61,7 +61,8 @@ pub(crate) fn check(recording: &Recording<'_>, model: &Model) -> Result<(), Meas
     Ok(())
 }
 
-/// Measures every frame where the model predicts lines and carpet; lines up to `search_px` from there.
+/// Measures every frame at the lines and the carpet that the model predicts. Lines are searched for up to `search_px` from
+/// there.
 pub(crate) fn measure_frames(
     recording: &Recording<'_>,
     model: &Model,
@@ -69,22 +70,22 @@ pub(crate) fn measure_frames(
 ) -> Result<Vec<FrameMeasurements>, MeasureError> {
     let chain = Chain::new(&recording.sequence.setup, &recording.sequence.field, model)?;
     let config = MeasurementConfig { search_px, gamma: recording.gamma() };
-    let one = |frame: &Frame| -> Result<FrameMeasurements, MeasureError> {
+    let of_frame = |frame: &Frame| -> Result<FrameMeasurements, MeasureError> {
         let (picture, bytes) = recording.picture(frame)?;
         Ok(measure_frame(&frame_camera(&chain, recording, frame), &picture, &bytes, config))
     };
-    recording.frames.par_iter().map(one).collect()
+    recording.frames.par_iter().map(of_frame).collect()
 }
 
 fn frame_camera<'a>(chain: &'a Chain, recording: &'a Recording<'_>, frame: &Frame) -> FrameCamera<'a> {
     FrameCamera::new(chain, &recording.trajectory, frame.time_s)
 }
 
-/// Returns the residuals of every frame with their Jacobian: the fitted parameters' columns by forward differences, behind
-/// them the nuisance parameters'.
+/// Returns the residuals of every frame with their Jacobian. The columns of the fitted parameters come first, by forward
+/// differences, followed by those of the nuisance parameters.
 pub(crate) fn linearise(
     recording: &Recording<'_>,
-    measured: &[FrameMeasurements],
+    measurements: &[FrameMeasurements],
     model: &Model,
     parameters: &[FittedParameter],
     nuisances: &[Nuisance],
@@ -100,29 +101,29 @@ pub(crate) fn linearise(
         nuisances,
         nominal: Nominal {
             gamma: recording.gamma(),
-            reflectance: recording.scene.as_ref(),
+            reflectance: recording.reflectance.as_ref(),
             noise: photometry.is_some_and(|p| p.noise_shot.is_some() || p.noise_read.is_some()),
             sharpness: photometry.is_some_and(|p| p.psf_sigma_px.is_some()),
         },
     };
-    let steps = around(recording, &recording.frames.iter().collect::<Vec<_>>());
-    let frames = recording.frames.par_iter().zip(measured).zip(&steps);
+    let motions = instrumental_motions(recording, &recording.frames.iter().collect::<Vec<_>>());
+    let frames = recording.frames.par_iter().zip(measurements).zip(&motions);
     Ok(frames.map(|((frame, measured), motion)| linearization.frame(frame, measured, *motion)).collect())
 }
 
-/// A model and its perturbations, to linearise frames with.
+/// Model with its perturbations, at which frames are linearised.
 struct Linearization<'a> {
     recording: &'a Recording<'a>,
     chain: Chain,
     parameters: &'a [FittedParameter],
-    /// For each parameter.
+    /// Models for the forward differences, one for each parameter.
     perturbed: Vec<PerturbedModel>,
     nuisances: &'a [Nuisance],
     nominal: Nominal<'a>,
 }
 
 impl Linearization<'_> {
-    /// `motion` is how the robot moves at about the time of the frame's step of the odometry.
+    /// Linearises a frame. `motion` is that of the robot at about the time of the frame's odometry step.
     fn frame(&self, frame: &Frame, measured: &FrameMeasurements, motion: Option<Motion2>) -> LinearizedFrame {
         let mut measurements = measured.measurements(self.nominal.gamma);
         measurements.extend(frame.step.into_iter().flat_map(|step| Measurement::of_odometry(step.odometry)));
@@ -151,19 +152,19 @@ impl Linearization<'_> {
         }
         for (column, nuisance) in (self.parameters.len()..).zip(self.nuisances) {
             let pairs = measurements.iter().zip(&predicted);
-            let derivatives = pairs.map(|(measurement, now)| nuisance.change(measurement, *now));
+            let derivatives = pairs.map(|(measurement, value)| nuisance.derivative(measurement, *value));
             jacobian.push(ColumnIndex(column), derivatives.collect());
         }
         let residuals = measurements
             .iter()
             .zip(&predicted)
-            .map(|(measurement, now)| measurement.measured - now)
+            .map(|(measurement, value)| measurement.measured - value)
             .collect();
-        let pose = self.pose_gradients(frame, &measurements);
-        LinearizedFrame { measurements, residuals, jacobian: jacobian.rows, pose }
+        let pose_gradients = self.pose_gradients(frame, &measurements);
+        LinearizedFrame { measurements, residuals, jacobian: jacobian.rows, pose_gradients }
     }
 
-    /// Derivatives of all measurements in a parameter of the odometry, at the robot's motion around the step.
+    /// Returns the derivatives of all measurements by a parameter of the odometry, at this motion of the robot.
     fn odometry_derivatives(
         &self,
         perturbed: &PerturbedModel,
@@ -173,15 +174,16 @@ impl Linearization<'_> {
     ) -> Vec<f64> {
         let Some((motion, step)) = motion.zip(frame.step) else { return vec![0.0; measurements.len()] };
         let duration_s = step.until_s - frame.time_s;
-        let [now, then] = [&self.chain, &perturbed.chain].map(|chain| chain.odometry(motion, duration_s));
+        let [unperturbed, perturbed_odometry] =
+            [&self.chain, &perturbed.chain].map(|chain| chain.odometry(motion, duration_s));
         let derivative = |measurement: &Measurement| {
             let of = |motion: Motion2| component(motion, measurement.quantity);
-            (of(then) - of(now)) / perturbed.step
+            (of(perturbed_odometry) - of(unperturbed)) / perturbed.step
         };
         measurements.iter().map(derivative).collect()
     }
 
-    /// See [`LinearizedFrame::pose`].
+    /// Returns the gradients of [`LinearizedFrame::pose_gradients`].
     fn pose_gradients(&self, frame: &Frame, measurements: &[Measurement]) -> Vec<Vector6<f64>> {
         let camera = frame_camera(&self.chain, self.recording, frame);
         let gradient = |measurement: &Measurement| {
@@ -193,20 +195,20 @@ impl Linearization<'_> {
     }
 }
 
-/// Forward differences of all predictions in a parameter.
+/// Returns the derivatives of all predictions by a parameter, as forward differences.
 fn differences(
     parameter: &FittedParameter,
     measurements: &[Measurement],
-    now: &[f64],
-    then: &[f64],
+    predicted: &[f64],
+    perturbed: &[f64],
     step: f64,
 ) -> Vec<f64> {
     let noise_only = parameter.effect().about().changes == Changes::Noise;
-    let difference = |((measurement, now), then): ((&Measurement, &f64), &f64)| {
+    let difference = |((measurement, value), perturbed): ((&Measurement, &f64), &f64)| {
         let counts = !noise_only || measurement.quantity == Quantity::NoiseVariance;
-        if counts { (then - now) / step } else { 0.0 }
+        if counts { (perturbed - value) / step } else { 0.0 }
     };
-    measurements.iter().zip(now).zip(then).map(difference).collect()
+    measurements.iter().zip(predicted).zip(perturbed).map(difference).collect()
 }
 
 /// Sparse rows of a Jacobian, filled column by column.

@@ -1,4 +1,4 @@
-//! One frame's residuals with their derivatives.
+//! Residuals of one frame with their derivatives.
 
 use nalgebra::Vector6;
 
@@ -7,21 +7,21 @@ use crate::{
     measurement::{quantity::Channel, scalar::Measurement},
 };
 
-/// One frame's measurements, residuals and Jacobian.
+/// Measurements, residuals and Jacobian of one frame.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearizedFrame {
     pub(crate) measurements: Vec<Measurement>,
-    /// Measured minus predicted; not a number where there is nothing to compare.
+    /// Measured minus predicted values; not a number where either is missing.
     pub(crate) residuals: Vec<f64>,
-    /// Rows of the Jacobian of the predictions, sparse: columns with their derivatives, in the order of columns.
+    /// Sparse rows of the Jacobian of the predictions: columns with their derivatives, in the order of the columns.
     pub(crate) jacobian: Vec<Vec<(ColumnIndex, f64)>>,
-    /// Gradients of lines' offsets with respect to the pose, see
+    /// Gradients of line offsets with respect to the pose, see
     /// [`crate::linear_model::pose_gradient::pose_gradient`]; zero for other measurements.
-    pub(crate) pose: Vec<Vector6<f64>>,
+    pub(crate) pose_gradients: Vec<Vector6<f64>>,
 }
 
 impl LinearizedFrame {
-    /// Leaves a channel out of the comparison.
+    /// Marks the residuals of a channel as missing, so that they are not fitted.
     pub(crate) fn leave_out(&mut self, channel: Channel) {
         for (row, residual) in self.measurements.iter().zip(&mut self.residuals) {
             if row.quantity.channel() == channel {

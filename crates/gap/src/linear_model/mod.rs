@@ -1,4 +1,4 @@
-//! The residuals of a recording linearised in every parameter, as normal equations with the poses' errors marginalised.
+//! The residuals of a recording linearised in every parameter, as normal equations with the pose errors marginalised.
 
 mod assembly;
 pub(crate) mod column;

@@ -1,12 +1,15 @@
-//! The parameters that can be fitted, each a column of the linearised model.
+//! Parameters of effects that can be fitted. Each is a column of the linearised model.
 
 use reality_sim_sensor::{Effect, EffectIndex, Growth, Model, Parameter, Role};
 
-/// A parameter of an effect as a fit sees it.
+/// Parameter of an effect that is fitted.
+///
+/// What is fitted is its coordinate: the distance from the neutral value (or its square, see [`Growth`]) in units of the
+/// range.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FittedParameter {
     pub(crate) effect: EffectIndex,
-    /// Index of the parameter in the effect's.
+    /// Index among the effect's parameters.
     pub(crate) parameter: usize,
 }
 
@@ -23,26 +26,27 @@ impl FittedParameter {
         self.parameter().role == Role::Size
     }
 
-    /// One unit of the fitted number: the parameter's range (or its square), so that all columns are of one size.
+    /// Unit of the coordinate: the parameter's largest distance from neutral (or its square), so that all columns have
+    /// comparable sizes.
     pub(crate) fn scale(&self) -> f64 {
         let [low, high] = self.parameter().range;
-        self.grown((high - self.parameter().neutral).max(self.parameter().neutral - low))
+        self.unscaled((high - self.parameter().neutral).max(self.parameter().neutral - low))
     }
 
-    /// The fitted number, unscaled, for a difference from the neutral value.
-    fn grown(&self, difference: f64) -> f64 {
+    /// Returns the coordinate, before scaling, of a difference from the neutral value.
+    fn unscaled(&self, difference: f64) -> f64 {
         match self.parameter().growth {
             Growth::Linear => difference,
             Growth::Square => difference * difference,
         }
     }
 
-    /// The fitted number of a parameter's value.
+    /// Returns the coordinate of a value of the parameter.
     pub(crate) fn coordinate(&self, value: f64) -> f64 {
-        self.grown(value - self.parameter().neutral) / self.scale()
+        self.unscaled(value - self.parameter().neutral) / self.scale()
     }
 
-    /// The parameter's value of a fitted number, within its range.
+    /// Returns the parameter's value at a coordinate, clamped to its range.
     pub(crate) fn value(&self, coordinate: f64) -> f64 {
         let parameter = self.parameter();
         let scaled = coordinate * self.scale();
@@ -53,7 +57,7 @@ impl FittedParameter {
         (parameter.neutral + difference).clamp(parameter.range[0], parameter.range[1])
     }
 
-    /// Distance from the neutral value, whatever its sign, of a fitted number above zero.
+    /// Returns the distance from the neutral value at a positive coordinate.
     pub(crate) fn size(&self, coordinate: f64) -> f64 {
         let scaled = coordinate * self.scale();
         match self.parameter().growth {
@@ -62,7 +66,8 @@ impl FittedParameter {
         }
     }
 
-    /// Standard deviation of the parameter's value, of that of the fitted number.
+    /// Returns the standard deviation of the parameter's value at a coordinate with the standard deviation `sigma`, to first
+    /// order.
     pub(crate) fn value_sigma(&self, coordinate: f64, sigma: f64) -> f64 {
         let scaled = sigma * self.scale();
         match self.parameter().growth {
@@ -74,7 +79,7 @@ impl FittedParameter {
         }
     }
 
-    /// Where this parameter is now.
+    /// Returns the coordinate of this parameter in a model; that of the neutral value if the model lacks the effect.
     pub(crate) fn coordinate_in(&self, model: &Model) -> f64 {
         let value = model
             .values(self.effect().id())
@@ -83,8 +88,8 @@ impl FittedParameter {
     }
 }
 
-/// Every parameter that can be fitted, effect by effect.
-pub(crate) fn columns(excluded: &[String]) -> Vec<FittedParameter> {
+/// Returns every parameter that can be fitted, effect by effect, without those of the effects whose ids are excluded.
+pub(crate) fn fitted_parameters(excluded: &[String]) -> Vec<FittedParameter> {
     EffectIndex::all()
         .filter(|effect| !excluded.iter().any(|id| id == effect.effect().id()))
         .flat_map(|effect| {

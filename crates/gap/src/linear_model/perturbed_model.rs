@@ -1,4 +1,4 @@
-//! A model with one parameter changed by a small step, for forward differences.
+//! Models with one parameter changed by a small step, for forward differences.
 
 use reality_sim_sensor::{Chain, Model, ModelError};
 
@@ -10,10 +10,10 @@ use crate::{
     recording::Recording,
 };
 
-/// The model with one parameter changed by a small step.
+/// Camera chain of a model with one parameter changed by a small step.
 pub(super) struct PerturbedModel {
     pub(super) chain: Chain,
-    /// Change of the parameter's fitted coordinate.
+    /// Change of the parameter's coordinate.
     pub(super) step: f64,
 }
 
@@ -28,7 +28,7 @@ impl PerturbedModel {
             .values(fitted.effect().id())
             .map_or_else(|| starting_values(fitted.effect(), recording), <[f64]>::to_vec);
         let value = values[fitted.parameter];
-        // At the end of the range the step goes inwards.
+        // At the upper end of the range the step goes inwards.
         let step = if value + parameter.step > parameter.range[1] { -parameter.step } else { parameter.step };
         let perturbed = with_value(model, fitted.effect(), &values, fitted.parameter, value + step);
         let chain = Chain::new(&recording.sequence.setup, &recording.sequence.field, &perturbed)?;

@@ -1,7 +1,7 @@
-//! Predictions of single measurements by a model.
+//! Prediction of measurements by a model.
 //!
-//! [`Predictor::predict`] computes what is shared by all numbers of one piece of line or one block of carpet once, and
-//! gives each measurement the prediction of its own quantity: no order of measurements is assumed.
+//! [`Predictor::predict`] predicts all quantities of a piece of line or of a block of carpet at once and picks that of each
+//! measurement. It assumes no order of the measurements.
 
 use reality_sim_core::pose::Motion2;
 use reality_sim_sensor::Chain;
@@ -20,12 +20,12 @@ use crate::{
     recording::NominalReflectance,
 };
 
-/// What the camera's file gives to predict from.
+/// Nominal values that the camera's file gives.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Nominal<'a> {
     /// Exponent of the camera's nominal encoding.
     pub(crate) gamma: f64,
-    /// Reflectance of lines and carpet, where it is given.
+    /// Reflectance of lines and carpet, if it is given.
     pub(crate) reflectance: Option<&'a NominalReflectance>,
     /// Whether the sensor's noise is given.
     pub(crate) noise: bool,
@@ -44,7 +44,7 @@ pub(crate) struct Predictor<'a> {
 }
 
 impl Predictor<'_> {
-    /// Predicted value of each measurement, in the order given; not a number where the model predicts none.
+    /// Returns the predicted value of each measurement, in the given order; not a number if the model predicts none.
     pub(crate) fn predict(&self, measurements: &[Measurement]) -> Vec<f64> {
         let mut predicted = Vec::with_capacity(measurements.len());
         for of_one in measurements.chunk_by(|one, next| one.subject == next.subject) {
@@ -63,7 +63,7 @@ impl Predictor<'_> {
         .unwrap_or(Prediction::None)
     }
 
-    /// The prediction of one quantity of a subject.
+    /// Returns the prediction of one quantity of a subject.
     fn value(&self, prediction: &Prediction, quantity: Quantity) -> f64 {
         let log_level = |level: f64| log_linear(level, self.nominal.gamma);
         match (prediction, quantity) {
@@ -83,7 +83,7 @@ impl Predictor<'_> {
         }
     }
 
-    /// `None` where the model does not show the line in the picture.
+    /// Predicts a piece of line. None if the model does not show it in the picture.
     fn line(&self, line: &Line) -> Option<LinePrediction> {
         let chain = self.camera.chain;
         let ground = self.camera.curves.get(line.curve)?.at(line.fraction).0;
@@ -116,7 +116,7 @@ impl Predictor<'_> {
         })
     }
 
-    /// `None` where the camera's file does not give the carpet's reflectance.
+    /// Predicts a block of carpet. None if the camera's file does not give the reflectance of carpet.
     fn block(&self, block: &CarpetBlock) -> Option<CarpetPrediction> {
         let reflectance = self.nominal.reflectance?;
         let chain = self.camera.chain;
@@ -131,7 +131,7 @@ impl Predictor<'_> {
         })
     }
 
-    /// What the odometry reports of the way to the next frame by the reference trajectory.
+    /// Predicts the odometry's report of the motion to the next frame, from the reference trajectory.
     fn step(&self) -> Option<Motion2> {
         let until_s = self.step_until_s?;
         let FrameCamera { chain, trajectory, time_s, .. } = self.camera;
@@ -145,7 +145,7 @@ enum Prediction {
     Line(LinePrediction),
     Carpet(CarpetPrediction),
     OdometryStep(Motion2),
-    /// The model predicts nothing of it.
+    /// Nothing is predicted.
     None,
 }
 
@@ -159,7 +159,7 @@ struct LinePrediction {
     blue_offset_px: f64,
     /// Variance of the blur, pixels squared.
     variance_px2: f64,
-    /// Mean encoded values (0–1) by colour channel, where the line's inner part was measured.
+    /// Mean encoded values (0–1) by colour channel, if the line's inner part was measured.
     level: Option<[f64; 3]>,
 }
 
@@ -171,15 +171,15 @@ struct CarpetPrediction {
     noise: f64,
 }
 
-/// Mean encoded value over the noise, by Gauss–Hermite quadrature with three nodes.
+/// Returns the mean encoded value over the noise, by Gauss–Hermite quadrature with three nodes.
 fn mean_encoded(chain: &Chain, linear: f64) -> f64 {
     let encoded = |linear: f64| chain.encode(chain.respond(linear));
     let spread = (3.0 * chain.noise().variance(linear)).sqrt();
     (4.0 * encoded(linear) + encoded(linear - spread) + encoded(linear + spread)) / 6.0
 }
 
-/// Standard deviation of encoded values, grey levels: half the difference of the encoding one standard deviation to either
-/// side.
+/// Returns the standard deviation of encoded values in grey levels: half the difference between the encoded values one
+/// standard deviation above and below.
 fn noise_sigma(chain: &Chain, linear: f64) -> f64 {
     let encoded = |linear: f64| chain.encode(chain.respond(linear));
     let sigma = chain.noise().variance(linear).sqrt();

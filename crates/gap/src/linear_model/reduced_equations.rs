@@ -1,74 +1,77 @@
-//! Sums over some frames, the tolerances solved for once: fits of any set of effects are then small.
+//! Normal equations of the fitted parameters alone, with the nuisance parameters eliminated by a Schur complement, so that
+//! the fit of any set of effects is small.
 //!
-//! With the columns in two blocks, effects `p` and tolerances `t`, the tolerances of a fit are `δt = y − X δp` with
-//! `X = (A_tt + I)⁻¹ A_tp` and `y = (A_tt + I)⁻¹ g_t`; what is left for the effects is the Schur complement
-//! `A_pp − A_pt X` and `g_p − A_pt y`.
+//! With the columns in two blocks, fitted parameters `p` and nuisance parameters `n`, a fit has `δn = y − X δp` with
+//! `X = (A_nn + I)⁻¹ A_np` and `y = (A_nn + I)⁻¹ g_n`. The reduced equations are `A_pp − A_pn X` and `g_p − A_pn y`.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::{
-    linear_model::column::ColumnIndex,
-    linear_model::normal_equations::{NormalEquations, PRIOR},
+    linear_model::{
+        column::ColumnIndex,
+        normal_equations::{NormalEquations, PRIOR},
+    },
     thresholds::Thresholds,
 };
 
-/// Largest part of a column's prior variance that a fit may leave where the recording shows the column at all.
-pub(crate) const UNSEEN: f64 = Thresholds::DEFAULT.linear_model.most_prior_share;
+/// Largest ratio of a column's posterior variance to its prior variance at which the recording counts as informative on it.
+pub(crate) const MOST_PRIOR_SHARE: f64 = Thresholds::DEFAULT.linear_model.most_prior_share;
 
-/// A set of columns fitted to some frames; the other effects are held where they vanish.
+/// Fit of a set of columns to some frames, with the other fitted parameters held.
 #[derive(Debug, Clone)]
 pub(crate) struct Fit {
-    /// The effects' columns that are free.
+    /// Columns of fitted parameters that are free.
     pub(crate) free: Vec<ColumnIndex>,
-    /// Change of every column from where the model is.
+    /// Change of every column from the present model.
     pub(crate) delta: DVector<f64>,
-    /// Inverse of the information on the free columns.
+    /// Posterior covariance of the free columns: the inverse of their information.
     pub(crate) inverse: DMatrix<f64>,
 }
 
 impl Fit {
-    /// Whether a free column is hardly better known than before.
-    pub(crate) fn tells_nothing(&self, column: ColumnIndex) -> bool {
-        self.place(column).is_some() && self.prior_share(column) > UNSEEN
+    /// Whether the fit tells hardly more of a free column than its prior.
+    pub(crate) fn is_prior_dominated(&self, column: ColumnIndex) -> bool {
+        self.position(column).is_some() && self.prior_share(column) > MOST_PRIOR_SHARE
     }
 
-    /// Where a column is among those that are free.
-    pub(crate) fn place(&self, column: ColumnIndex) -> Option<usize> {
+    /// Returns the position of a column among the free ones.
+    pub(crate) fn position(&self, column: ColumnIndex) -> Option<usize> {
         self.free.iter().position(|&free| free == column)
     }
 
-    /// What a fit leaves of what was known of a free column before, as a part of its variance: 1 where it tells nothing.
+    /// Returns the ratio of a column's posterior variance to its prior variance; 1 if the column is not free.
     pub(crate) fn prior_share(&self, column: ColumnIndex) -> f64 {
-        self.place(column).map_or(1.0, |place| self.inverse[(place, place)] * PRIOR)
+        self.position(column).map_or(1.0, |position| self.inverse[(position, position)] * PRIOR)
     }
 }
 
-/// Sums over some frames.
+/// Normal equations of the fitted parameters, with the nuisance parameters eliminated.
 #[derive(Debug, Clone)]
 pub(crate) struct ReducedEquations {
-    /// Left for the effects.
+    /// Schur complement `A_pp − A_pn X`.
     a: DMatrix<f64>,
     g: DVector<f64>,
-    /// The tolerances that follow from the effects.
+    /// `X` and `y` of the nuisance parameters, see the module.
     x: DMatrix<f64>,
     y: DVector<f64>,
 }
 
 impl ReducedEquations {
-    /// Of frames, with `parameters` columns of effects before those of the tolerances.
+    /// Reduces the sum of these equations, which have `size` columns: first those of the fitted parameters, `parameters` in
+    /// number, then those of the nuisance parameters.
     pub(crate) fn of<'a>(
-        sums: impl Iterator<Item = &'a NormalEquations>,
+        equations: impl Iterator<Item = &'a NormalEquations>,
         size: usize,
         parameters: usize,
     ) -> Self {
         let (mut a, mut g) = (DMatrix::zeros(size, size), DVector::zeros(size));
-        sums.for_each(|sums| sums.add_to(&mut a, &mut g));
+        equations.for_each(|equations| equations.add_to(&mut a, &mut g));
         let count = size - parameters;
         let across = a.view((0, parameters), (parameters, count)).clone_owned();
-        let mut tolerances = a.view((parameters, parameters), (count, count)).clone_owned();
-        tolerances += DMatrix::identity(count, count) * PRIOR;
-        // Sums of squares and a prior: positive definite but for rounding.
-        let solve = |right: &DMatrix<f64>| match tolerances.clone().cholesky() {
+        let mut nuisances = a.view((parameters, parameters), (count, count)).clone_owned();
+        nuisances += DMatrix::identity(count, count) * PRIOR;
+        // A sum of squares and a prior precision is positive definite, except for rounding.
+        let solve = |right: &DMatrix<f64>| match nuisances.clone().cholesky() {
             Some(cholesky) => cholesky.solve(right),
             None => right * 0.0,
         };
@@ -83,56 +86,58 @@ impl ReducedEquations {
         }
     }
 
-    /// Least squares over the free columns. `base` is where the model is, in the effects' coordinates.
+    /// Fits the free columns by least squares; the other fitted parameters become neutral. `base` is the present model in the
+    /// coordinates of the fitted parameters. None if the equations are singular.
     pub(crate) fn fit(&self, free: &[ColumnIndex], base: &DVector<f64>) -> Option<Fit> {
         self.fit_beside(free, base, &-base)
     }
 
-    /// Least squares over the free columns, the others changed by what is held.
+    /// Fits the free columns by least squares while the other fitted parameters change by `held`.
     pub(crate) fn fit_beside(
         &self,
         free: &[ColumnIndex],
         base: &DVector<f64>,
         held: &DVector<f64>,
     ) -> Option<Fit> {
-        let mut effects = held.clone();
+        let mut parameters = held.clone();
         for &column in free {
-            effects[column.0] = 0.0;
+            parameters[column.0] = 0.0;
         }
-        let held = &self.g - &self.a * &effects;
+        let score = &self.g - &self.a * &parameters;
         let count = free.len();
         let information = DMatrix::from_fn(count, count, |i, j| {
-            let both = 0.5 * (self.a[(free[i].0, free[j].0)] + self.a[(free[j].0, free[i].0)]);
-            both + if i == j { PRIOR } else { 0.0 }
+            let symmetric = 0.5 * (self.a[(free[i].0, free[j].0)] + self.a[(free[j].0, free[i].0)]);
+            symmetric + if i == j { PRIOR } else { 0.0 }
         });
-        let right = DVector::from_fn(count, |i, _| held[free[i].0] - PRIOR * base[free[i].0]);
+        let right = DVector::from_fn(count, |i, _| score[free[i].0] - PRIOR * base[free[i].0]);
         let inverse = information.try_inverse()?;
         let solved = &inverse * right;
         for (i, &column) in free.iter().enumerate() {
-            effects[column.0] = solved[i];
+            parameters[column.0] = solved[i];
         }
-        let tolerances = &self.y - &self.x * &effects;
+        let nuisances = &self.y - &self.x * &parameters;
         let delta = DVector::from_iterator(
-            effects.len() + tolerances.len(),
-            effects.iter().chain(tolerances.iter()).copied(),
+            parameters.len() + nuisances.len(),
+            parameters.iter().chain(nuisances.iter()).copied(),
         );
         Some(Fit { free: free.to_vec(), delta, inverse })
     }
 
-    /// What moving by this gains, the tolerances solved for; up to a constant.
+    /// Returns the gain in log-likelihood by a change of the fitted parameters, with the nuisance parameters refitted, up to a
+    /// constant.
     pub(crate) fn gain(&self, delta: &DVector<f64>) -> f64 {
-        let effects = delta.rows(0, self.g.len());
-        self.g.dot(&effects) - 0.5 * effects.dot(&(&self.a * effects))
+        let parameters = delta.rows(0, self.g.len());
+        self.g.dot(&parameters) - 0.5 * parameters.dot(&(&self.a * parameters))
     }
 
-    /// The free effects' part of scores of all columns, the tolerances projected out.
+    /// Returns the free columns' part of a score of all columns, with the nuisance parameters projected out.
     pub(crate) fn projected(&self, scores: &DVector<f64>, free: &[ColumnIndex]) -> DVector<f64> {
         let parameters = self.g.len();
-        let tolerances = scores.rows(parameters, scores.len() - parameters);
-        DVector::from_fn(free.len(), |i, _| scores[free[i].0] - self.x.column(free[i].0).dot(&tolerances))
+        let nuisances = scores.rows(parameters, scores.len() - parameters);
+        DVector::from_fn(free.len(), |i, _| scores[free[i].0] - self.x.column(free[i].0).dot(&nuisances))
     }
 
-    /// What the tolerances' own prior adds to the scatter of scores: no frame shows it.
+    /// Returns the contribution of the nuisance parameters' priors to the scatter of scores, which no frame shows.
     pub(crate) fn nuisance_scatter(&self, free: &[ColumnIndex]) -> DMatrix<f64> {
         DMatrix::from_fn(free.len(), free.len(), |i, j| {
             PRIOR * self.x.column(free[i].0).dot(&self.x.column(free[j].0))
@@ -146,7 +151,7 @@ mod tests {
 
     const BOTH: [ColumnIndex; 2] = [ColumnIndex(0), ColumnIndex(1)];
 
-    /// A well-conditioned system: two effects and two tolerances.
+    /// Returns a well-conditioned system of two fitted and two nuisance parameters.
     fn equations() -> (DMatrix<f64>, DVector<f64>) {
         let factor = DMatrix::from_row_slice(
             5,
@@ -160,56 +165,56 @@ mod tests {
         (factor.transpose() * &factor, factor.transpose() * residuals)
     }
 
-    fn sums() -> NormalEquations {
+    fn normal_equations() -> NormalEquations {
         let (a, g) = equations();
-        NormalEquations::whole(a, g)
+        NormalEquations::dense(a, g)
     }
 
-    /// All four columns solved for at once.
+    /// Solves for all four columns at once.
     fn at_once(base: &DVector<f64>) -> DVector<f64> {
         let (a, g) = equations();
-        let held = a + DMatrix::identity(4, 4) * PRIOR;
+        let information = a + DMatrix::identity(4, 4) * PRIOR;
         let prior = DVector::from_vec(vec![base[0], base[1], 0.0, 0.0]) * PRIOR;
-        held.try_inverse().unwrap() * (g - prior)
+        information.try_inverse().unwrap() * (g - prior)
     }
 
     #[test]
-    fn tolerances_solved_for_once_give_the_fit_of_all_at_once() {
+    fn a_reduced_fit_equals_the_fit_of_all_columns_at_once() {
         let base = DVector::from_vec(vec![0.3, -0.2]);
-        let total = ReducedEquations::of([sums()].iter(), 4, 2);
-        let fit = total.fit(&BOTH, &base).unwrap();
+        let reduced = ReducedEquations::new([normal_equations()].iter(), 4, 2);
+        let fit = reduced.fit(&BOTH, &base).unwrap();
         assert!((fit.delta - at_once(&base)).norm() < 1e-12);
     }
 
     #[test]
-    fn an_effect_that_is_not_free_goes_to_where_it_vanishes() {
+    fn a_parameter_that_is_not_free_becomes_neutral() {
         let base = DVector::from_vec(vec![0.3, -0.2]);
-        let fit = ReducedEquations::of([sums()].iter(), 4, 2).fit(&BOTH[1..], &base).unwrap();
+        let fit = ReducedEquations::new([normal_equations()].iter(), 4, 2).fit(&BOTH[1..], &base).unwrap();
         assert_eq!(fit.delta[0], -0.3);
         assert!(fit.prior_share(BOTH[1]) < 1.0 && fit.prior_share(BOTH[0]) == 1.0);
     }
 
     #[test]
-    fn what_is_held_stays_there_and_the_others_are_best_beside_it() {
+    fn a_held_parameter_keeps_its_value_and_the_free_ones_are_optimal_beside_it() {
         let base = DVector::from_vec(vec![0.3, -0.2]);
-        let total = ReducedEquations::of([sums()].iter(), 4, 2);
+        let reduced = ReducedEquations::new([normal_equations()].iter(), 4, 2);
         let held = DVector::from_vec(vec![0.25, 7.0]);
-        let fit = total.fit_beside(&BOTH[1..], &base, &held).unwrap();
+        let fit = reduced.fit_beside(&BOTH[1..], &base, &held).unwrap();
         assert_eq!(fit.delta[0], 0.25);
         let gain = |second: f64| {
             let delta = DVector::from_vec(vec![0.25, second]);
-            total.gain(&delta) - 0.5 * PRIOR * (base[1] + second).powi(2)
+            reduced.gain(&delta) - 0.5 * PRIOR * (base[1] + second).powi(2)
         };
         let best = fit.delta[1];
         assert!(gain(best) > gain(best + 0.05) && gain(best) > gain(best - 0.05));
     }
 
     #[test]
-    fn a_fit_gains_most() {
+    fn a_fit_has_the_largest_gain() {
         let base = DVector::zeros(2);
-        let total = ReducedEquations::of([sums()].iter(), 4, 2);
-        let gain = |delta: &DVector<f64>| total.gain(delta) - 0.5 * PRIOR * delta.rows(0, 2).norm_squared();
-        let best = total.fit(&BOTH, &base).unwrap().delta;
+        let reduced = ReducedEquations::new([normal_equations()].iter(), 4, 2);
+        let gain = |delta: &DVector<f64>| reduced.gain(delta) - 0.5 * PRIOR * delta.rows(0, 2).norm_squared();
+        let best = reduced.fit(&BOTH, &base).unwrap().delta;
         for step in [[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1], [0.0, -0.1]] {
             let mut other = best.clone();
             (other[0], other[1]) = (other[0] + step[0], other[1] + step[1]);

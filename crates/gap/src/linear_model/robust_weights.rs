@@ -11,31 +11,31 @@ use crate::{
 };
 
 /// Cut-off of Tukey's biweight, standard deviations.
-const TUKEY: f64 = Thresholds::DEFAULT.linear_model.tukey_sigmas;
-/// Information of a picture's measurements, as a part of that of as many independent ones.
+const CUTOFF: f64 = Thresholds::DEFAULT.linear_model.tukey_sigmas;
+/// Information of a picture's measurements as a fraction of that of as many independent ones.
 pub(crate) const INDEPENDENT: f64 = Thresholds::DEFAULT.linear_model.independent_share;
-/// Standard deviation of a normal distribution by its median absolute deviation.
+/// Ratio of the standard deviation of a normal distribution to its median absolute deviation.
 pub(super) const SIGMA_BY_MAD: f64 = 1.4826;
 
-/// Weights of measurements by Tukey's biweight of their residuals (Huber & Ronchetti 2009, section 4.8), divided by the
-/// residual's variance.
+/// Returns the weights of a frame's measurements: Tukey's biweight of their residuals (Huber and Ronchetti 2009,
+/// section 4.8), divided by the residual's variance. The weight is 0 for outliers and missing residuals.
 pub(crate) fn weigh(
     frame: &LinearizedFrame,
     residuals: &[f64],
     sigmas: &BTreeMap<Quantity, f64>,
 ) -> Vec<f64> {
-    let weight = |(row, residual): (&Measurement, &f64)| {
-        let Some(&sigma) = sigmas.get(&row.quantity) else { return 0.0 };
-        let variance = sigma * sigma + row.sigma * row.sigma;
-        let outlying = (residual * residual / (TUKEY * TUKEY * variance)).min(1.0);
-        let independent = if row.quantity.is_odometry() { 1.0 } else { INDEPENDENT };
+    let weight = |(measurement, residual): (&Measurement, &f64)| {
+        let Some(&sigma) = sigmas.get(&measurement.quantity) else { return 0.0 };
+        let variance = sigma * sigma + measurement.sigma * measurement.sigma;
+        let outlying = (residual * residual / (CUTOFF * CUTOFF * variance)).min(1.0);
+        let independent = if measurement.quantity.is_odometry() { 1.0 } else { INDEPENDENT };
         if residual.is_finite() { independent * (1.0 - outlying).powi(2) / variance } else { 0.0 }
     };
     frame.measurements.iter().zip(residuals).map(weight).collect()
 }
 
-/// Residuals of all frames with their measurements.
-pub(super) fn all_of<'a>(
+/// Iterates over the measurements of all frames, each with its residual.
+pub(super) fn with_residuals<'a>(
     frames: &'a [&'a LinearizedFrame],
     residuals: impl Iterator<Item = &'a Vec<f64>>,
 ) -> impl Iterator<Item = (&'a Measurement, f64)> {
@@ -45,29 +45,37 @@ pub(super) fn all_of<'a>(
         .flat_map(|(frame, values)| frame.measurements.iter().zip(values.iter().copied()))
 }
 
-/// Residuals that the first weights come from: those of the odometry are taken about their medians. Else an effect that
-/// lengthens all steps forward would take their weight, and leave it to the steps aside, which show little but the
-/// reference's errors.
+/// Returns the residuals that give the initial weights.
+///
+/// Residuals of the odometry are taken about their medians. Otherwise an effect that lengthens all steps forward would make
+/// outliers of them, and only the steps to the side would keep their weights, which show little but errors of the reference.
 pub(super) fn first_residuals(frames: &[&LinearizedFrame]) -> Vec<Vec<f64>> {
-    let mut groups: BTreeMap<Quantity, Vec<f64>> = BTreeMap::new();
-    for (row, value) in all_of(frames, frames.iter().map(|frame| &frame.residuals)) {
-        if row.quantity.is_odometry() && value.is_finite() {
-            groups.entry(row.quantity).or_default().push(value);
+    let mut by_quantity: BTreeMap<Quantity, Vec<f64>> = BTreeMap::new();
+    for (measurement, value) in with_residuals(frames, frames.iter().map(|frame| &frame.residuals)) {
+        if measurement.quantity.is_odometry() && value.is_finite() {
+            by_quantity.entry(measurement.quantity).or_default().push(value);
         }
     }
     let medians: BTreeMap<Quantity, f64> =
-        groups.into_iter().map(|(group, values)| (group, median(values))).collect();
-    let about = |(row, value): (&Measurement, &f64)| value - medians.get(&row.quantity).unwrap_or(&0.0);
-    frames.iter().map(|frame| frame.measurements.iter().zip(&frame.residuals).map(about).collect()).collect()
+        by_quantity.into_iter().map(|(quantity, values)| (quantity, median(values))).collect();
+    let centred = |(measurement, value): (&Measurement, &f64)| {
+        value - medians.get(&measurement.quantity).unwrap_or(&0.0)
+    };
+    let of_frame =
+        |frame: &&LinearizedFrame| frame.measurements.iter().zip(&frame.residuals).map(centred).collect();
+    frames.iter().map(of_frame).collect()
 }
 
-/// Standard deviation of each quantity's residuals about zero, by the median absolute deviation.
+/// Returns the standard deviation of each quantity's residuals about zero, from their median absolute deviation.
 pub(super) fn sigmas_by_quantity<'a>(
-    rows: impl Iterator<Item = (&'a Measurement, f64)>,
+    residuals: impl Iterator<Item = (&'a Measurement, f64)>,
 ) -> BTreeMap<Quantity, f64> {
-    let mut groups: BTreeMap<Quantity, Vec<f64>> = BTreeMap::new();
-    for (row, residual) in rows.filter(|(_, residual)| residual.is_finite()) {
-        groups.entry(row.quantity).or_default().push(residual.abs());
+    let mut by_quantity: BTreeMap<Quantity, Vec<f64>> = BTreeMap::new();
+    for (measurement, residual) in residuals.filter(|(_, residual)| residual.is_finite()) {
+        by_quantity.entry(measurement.quantity).or_default().push(residual.abs());
     }
-    groups.into_iter().map(|(group, values)| (group, (SIGMA_BY_MAD * median(values)).max(1e-6))).collect()
+    by_quantity
+        .into_iter()
+        .map(|(quantity, values)| (quantity, (SIGMA_BY_MAD * median(values)).max(1e-6)))
+        .collect()
 }

@@ -1,4 +1,4 @@
-//! Variance of noise after a file's quantisation.
+//! Variance of noise after quantisation in a file.
 
 use crate::measurement::{luma::LUMA, quantization::rounded_variance};
 
@@ -14,20 +14,20 @@ impl Rounding {
     const STEP: f64 = 0.1;
     const COUNT: usize = 400;
 
-    /// Tabulates the mean over coefficients with these quantisation steps (grey levels).
+    /// Tabulates the mean square over coefficients with these quantisation steps (grey levels).
     pub(crate) fn new(steps: &[f64]) -> Self {
         let mean = |sigma: f64| {
             let sum: f64 = steps.iter().map(|&step| rounded_variance(sigma, step)).sum();
-            // Pixel values are whole numbers in three colours: their rounding adds to luma.
+            // Rounding of the three colours to whole pixel values adds to the variance of luma.
             sum / steps.len().max(1) as f64 + LUMA.map(|weight| weight * weight / 12.0).iter().sum::<f64>()
         };
         Self { table: (0..=Self::COUNT).map(|i| mean((i as f64 * Self::STEP).max(1e-6))).collect() }
     }
 
-    /// Mean square for noise of this standard deviation, by linear interpolation.
+    /// Returns the mean square for noise of this standard deviation, by linear interpolation.
     pub(super) fn mean_square(&self, sigma: f64) -> f64 {
-        let place = (sigma / Self::STEP).clamp(0.0, Self::COUNT as f64 - 1e-9);
-        let index = place as usize;
-        self.table[index] + (place - index as f64) * (self.table[index + 1] - self.table[index])
+        let position = (sigma / Self::STEP).clamp(0.0, Self::COUNT as f64 - 1e-9);
+        let index = position as usize;
+        self.table[index] + (position - index as f64) * (self.table[index + 1] - self.table[index])
     }
 }

@@ -1,9 +1,9 @@
-//! The linearised model of a recording as normal equations, frame by frame, with the poses' errors marginalised.
+//! The linearised model of a recording as normal equations, frame by frame, with the pose errors marginalised.
 //!
-//! In a frame, residuals are `r = J δ + P b + ε`: `J` is the Jacobian of the predictions in the parameters, `P` that of the
-//! lines' offsets in the pose, and `b ~ N(0, Λ⁻¹)` the reference pose's error. Marginalising `b` leaves `J̃ᵀ W r = A δ`
-//! with `J̃ = J − P (Pᵀ W P + Λ)⁻¹ Pᵀ W J` and `A = J̃ᵀ W J`. All later fits, tests and comparisons need no more than the
-//! sums of `A` and `g = J̃ᵀ W r` over some frames, or over some part of the field.
+//! The residuals of a frame are `r = J δ + P b + ε`, where `J` is the Jacobian of the predictions in the columns, `P` that
+//! of the line offsets in the pose, and `b ~ N(0, Λ⁻¹)` the error of the reference pose. Marginalising `b` gives
+//! `J̃ᵀ W r = A δ` with `J̃ = J − P (Pᵀ W P + Λ)⁻¹ Pᵀ W J` and `A = J̃ᵀ W J`. Sums of `A` and `g = J̃ᵀ W r` over frames, or
+//! over a part of the field, suffice for all later fits, tests and comparisons.
 
 use std::collections::BTreeMap;
 
@@ -16,31 +16,33 @@ use crate::{
         linearized_frame::LinearizedFrame,
         normal_equations::{NormalEquations, PRIOR},
         pose_error::pose_sigmas,
-        robust_weights::{all_of, first_residuals, sigmas_by_quantity, weigh},
+        robust_weights::{first_residuals, sigmas_by_quantity, weigh, with_residuals},
     },
     measurement::quantity::Quantity,
     recording::ReferenceKind,
     thresholds::Thresholds,
 };
 
-const ROUNDS: usize = Thresholds::DEFAULT.linear_model.reweighting_rounds;
+/// Number of iterations of reweighted least squares.
+const ITERATIONS: usize = Thresholds::DEFAULT.linear_model.reweighting_rounds;
 
-/// Normal equations of a recording.
+/// Normal equations of a recording's training frames.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearSystem {
-    /// Number of columns: the fitted parameters' and, behind them, the nuisance parameters'.
+    /// Number of columns: those of the fitted parameters, followed by those of the nuisance parameters.
     pub(crate) size: usize,
+    /// Normal equations by frame.
     pub(crate) frames: Vec<NormalEquations>,
-    /// Normal equations by view: successive frames from one place repeat the same errors, and form one cluster.
+    /// Normal equations by view. Successive frames from one place share their errors and form one cluster.
     pub(crate) views: Vec<NormalEquations>,
     /// Normal equations by cell of the field.
     pub(crate) cells: Vec<NormalEquations>,
-    /// Standard deviations of residuals.
+    /// Standard deviations of the residuals.
     pub(crate) sigmas: BTreeMap<Quantity, f64>,
-    /// Standard deviations of the poses' errors, in the order of
+    /// Standard deviations of the pose errors, in the order of
     /// [`crate::linear_model::pose_gradient::pose_gradient`].
     pub(crate) pose_sigmas: [f64; 6],
-    /// Weights of all measurements, frame by frame; 0 for outliers and what was not measured.
+    /// Weights of the measurements of each frame; 0 for outliers and missing residuals.
     pub(crate) weights: Vec<Vec<f64>>,
 }
 
@@ -53,7 +55,7 @@ impl LinearSystem {
         views: &[usize],
     ) -> Self {
         let mut estimate = Weighting::new(frames, &first_residuals(frames), pose_sigmas(None, reference));
-        for _ in 0..ROUNDS {
+        for _ in 0..ITERATIONS {
             estimate = estimate.improved(frames, size, reference);
         }
         let Weighting { sigmas, weights, pose_sigmas } = estimate;
@@ -64,7 +66,7 @@ impl LinearSystem {
     }
 }
 
-/// Standard deviations and weights, found in turn with the fit that they are used in.
+/// Standard deviations and weights, estimated in turn with the fit that uses them.
 struct Weighting {
     sigmas: BTreeMap<Quantity, f64>,
     weights: Vec<Vec<f64>>,
@@ -72,15 +74,15 @@ struct Weighting {
 }
 
 impl Weighting {
-    /// Weights by the residuals of each frame.
+    /// Estimates standard deviations and weights from the residuals of each frame.
     fn new(frames: &[&LinearizedFrame], residuals: &[Vec<f64>], pose_sigmas: [f64; 6]) -> Self {
-        let sigmas = sigmas_by_quantity(all_of(frames, residuals.iter()));
+        let sigmas = sigmas_by_quantity(with_residuals(frames, residuals.iter()));
         let weights =
             frames.iter().zip(residuals).map(|(frame, residuals)| weigh(frame, residuals, &sigmas)).collect();
         Self { sigmas, weights, pose_sigmas }
     }
 
-    /// Weights by the residuals of a fit with these ones.
+    /// Estimates them anew from the residuals of a fit with these weights.
     fn improved(&self, frames: &[&LinearizedFrame], size: usize, reference: ReferenceKind) -> Self {
         let (equations, _) = by_frame(frames, &self.weights, &self.pose_sigmas);
         let delta = solve(&equations, size);
@@ -95,11 +97,11 @@ impl Weighting {
     }
 }
 
-/// Least squares over all columns, each with its prior `N(0, 1 / PRIOR)`.
+/// Solves for all columns by least squares, each with the prior `N(0, 1 / PRIOR)`.
 fn solve(equations: &[NormalEquations], size: usize) -> DVector<f64> {
     let (mut a, mut g) = (DMatrix::identity(size, size) * PRIOR, DVector::zeros(size));
     equations.iter().for_each(|equations| equations.add_to(&mut a, &mut g));
-    a.cholesky().map_or_else(|| DVector::zeros(size), |held| held.solve(&g))
+    a.cholesky().map_or_else(|| DVector::zeros(size), |factor| factor.solve(&g))
 }
 
 #[cfg(test)]
@@ -112,26 +114,26 @@ mod tests {
         testing::{Noise, measurement},
     };
 
-    /// Frames of lines seen from a pose that is wrong by its own amount in each. The first column looks like a turn of the
-    /// camera in all of them; the second does not; neither is at work but for `size` of the second.
+    /// Returns frames of lines, each with a pose error of its own. The first column moves lines as a rotation of the camera
+    /// does; the second, which has the true value `size`, does not.
     fn frames(seed: u64, pose_sigma: f64, size: f64) -> Vec<LinearizedFrame> {
         let mut noise = Noise(seed);
         (0..30)
             .map(|_| {
-                let wrong = Vector6::from_fn(|_, _| pose_sigma * noise.next());
+                let pose_error = Vector6::from_fn(|_, _| pose_sigma * noise.next());
                 let mut frame = LinearizedFrame {
                     measurements: Vec::new(),
                     residuals: Vec::new(),
                     jacobian: Vec::new(),
-                    pose: Vec::new(),
+                    pose_gradients: Vec::new(),
                 };
                 for _ in 0..60 {
-                    let pose = Vector6::from_fn(|_, _| 100.0 * noise.next());
+                    let pose_gradient = Vector6::from_fn(|_, _| 100.0 * noise.next());
                     let other = noise.next();
                     frame.measurements.push(measurement(Quantity::LineOffset));
-                    frame.residuals.push(pose.dot(&wrong) + size * other + 0.3 * noise.next());
-                    frame.jacobian.push(vec![(ColumnIndex(0), pose[0]), (ColumnIndex(1), other)]);
-                    frame.pose.push(pose);
+                    frame.residuals.push(pose_gradient.dot(&pose_error) + size * other + 0.3 * noise.next());
+                    frame.jacobian.push(vec![(ColumnIndex(0), pose_gradient[0]), (ColumnIndex(1), other)]);
+                    frame.pose_gradients.push(pose_gradient);
                 }
                 frame
             })
@@ -143,26 +145,26 @@ mod tests {
         LinearSystem::new(&frames.iter().collect::<Vec<_>>(), 2, ReferenceKind::Whole, &views)
     }
 
-    /// All sums added up, of all columns.
-    fn whole(sums: &[NormalEquations]) -> (DMatrix<f64>, DVector<f64>) {
+    /// Returns the dense sum of normal equations.
+    fn total(equations: &[NormalEquations]) -> (DMatrix<f64>, DVector<f64>) {
         let (mut a, mut g) = (DMatrix::zeros(2, 2), DVector::zeros(2));
-        sums.iter().for_each(|sums| sums.add_to(&mut a, &mut g));
+        equations.iter().for_each(|equations| equations.add_to(&mut a, &mut g));
         (a, g)
     }
 
     #[test]
-    fn what_a_pose_can_imitate_tells_little_and_what_it_cannot_tells_all() {
+    fn a_column_that_pose_errors_can_imitate_has_little_information_and_another_keeps_its_own() {
         let system = system(&frames(1, 0.01, 0.0));
-        let whole = whole(&system.frames).0;
-        let total = |i: usize| whole[(i, i)];
-        // Without a pose's error both columns would have 1800 rows' information, in their own units 100² and 1.
-        let kept = [total(0) / 1e4, total(1)].map(|information| information / (INDEPENDENT * 1800.0 / 0.09));
+        let information = total(&system.frames).0;
+        // Without pose errors both columns would have the information of 1800 measurements, in their units 100² and 1.
+        let kept =
+            [information[(0, 0)] / 1e4, information[(1, 1)]].map(|kept| kept / (INDEPENDENT * 1800.0 / 0.09));
         assert!(kept[0] < 0.05, "{kept:?}");
         assert!(kept[1] > 0.7, "{kept:?}");
     }
 
     #[test]
-    fn the_poses_scatter_is_found_and_effects_are_measured_through_it() {
+    fn the_size_of_pose_errors_is_estimated_and_effects_are_measured_in_spite_of_them() {
         for seed in 0..8 {
             let system = system(&frames(seed, 0.005, 0.2));
             let mean = system.pose_sigmas.iter().sum::<f64>() / 6.0;
@@ -175,12 +177,12 @@ mod tests {
     }
 
     #[test]
-    fn steps_ahead_tell_of_the_odometrys_scale_and_the_references_errors_aside_do_not() {
+    fn errors_of_the_reference_to_the_side_do_not_bias_the_odometrys_scale() {
         let mut noise = Noise(5);
         let truth = 0.5;
         let frames: Vec<LinearizedFrame> = (0..40)
             .map(|_| {
-                // The reference's own error is in what is expected of a step, and with it in the step's change with scale.
+                // The error of the reference is in the predicted step and hence in its derivative by the scale.
                 let [ahead_m, aside_m] = [0.05 + 0.003 * noise.next(), 0.006 * noise.next()];
                 LinearizedFrame {
                     measurements: vec![
@@ -189,7 +191,7 @@ mod tests {
                     ],
                     residuals: vec![(1.0 + truth) * 0.05 - ahead_m, -aside_m],
                     jacobian: vec![vec![(ColumnIndex(0), ahead_m)], vec![(ColumnIndex(0), aside_m)]],
-                    pose: vec![Vector6::zeros(); 2],
+                    pose_gradients: vec![Vector6::zeros(); 2],
                 }
             })
             .collect();
@@ -200,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn outliers_do_not_decide() {
+    fn outliers_do_not_bias_the_fit() {
         let mut frames = frames(3, 0.005, 0.2);
         for frame in &mut frames {
             for residual in frame.residuals.iter_mut().step_by(9) {
@@ -215,9 +217,9 @@ mod tests {
     }
 
     #[test]
-    fn sums_by_frame_view_and_cell_are_of_the_same_rows() {
+    fn equations_by_frame_by_view_and_by_cell_have_the_same_sum() {
         let system = system(&frames(4, 0.005, 0.1));
-        let sum = |sums: &[NormalEquations]| whole(sums).1;
+        let sum = |equations: &[NormalEquations]| total(equations).1;
         let (of_frames, of_views, of_cells) = (sum(&system.frames), sum(&system.views), sum(&system.cells));
         assert!((&of_frames - of_views).norm() < 1e-9 * of_frames.norm());
         assert!((&of_frames - of_cells).norm() < 1e-9 * of_frames.norm());

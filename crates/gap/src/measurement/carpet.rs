@@ -10,7 +10,7 @@ use crate::{
         camera::FrameCamera,
         luma::LUMA,
         quantization::{BLOCK, cosines},
-        visibility::Surroundings,
+        visibility::Visibility,
     },
     thresholds::{CarpetThresholds, Thresholds},
 };
@@ -82,12 +82,12 @@ pub(crate) fn measure_carpet(
     spectrum: &Spectrum,
 ) -> Vec<CarpetBlock> {
     let side = block_side(picture);
-    let surroundings = Surroundings::new(camera);
+    let visibility = Visibility::new(camera);
     let mut blocks = Vec::new();
     for row in 0..picture.height() / side {
         for column in 0..picture.width() / side {
             let corner = [column * side, row * side];
-            if let Some(point) = surroundings.plain_carpet(corner, side) {
+            if let Some(point) = visibility.plain_carpet(corner, side) {
                 blocks.push(measure_block(picture, spectrum, corner, side, point));
             }
         }

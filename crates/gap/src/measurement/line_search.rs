@@ -15,7 +15,7 @@ const HALF_HEIGHT: f64 = 1.177;
 
 /// A piece of line that the coarse search found.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Coarse {
+pub(crate) struct CoarseMatch {
     pub(crate) visible: VisibleSample,
     /// Offset from the predicted pixel along its normal, pixels.
     pub(crate) offset_px: f64,
@@ -29,7 +29,7 @@ pub(crate) fn search<T>(
     texture: &Texture,
     expected: &[VisibleSample],
     search_px: f64,
-    accepts: impl Fn(&Coarse) -> Option<T>,
+    accepts: impl Fn(&CoarseMatch) -> Option<T>,
 ) -> Vec<T> {
     let mut left = expected.to_vec();
     let mut found = Vec::with_capacity(expected.len());
@@ -40,7 +40,7 @@ pub(crate) fn search<T>(
             let offset = measure_offsets(texture, &[wide], config);
             let accepted = offset.first().and_then(|offset| {
                 let (visible, offset_px) = (*visible, offset.offset_px);
-                accepts(&Coarse { visible, offset_px, extra_px2: extra_px * extra_px })
+                accepts(&CoarseMatch { visible, offset_px, extra_px2: extra_px * extra_px })
             });
             let is_left = accepted.is_none();
             found.extend(accepted);
@@ -98,7 +98,7 @@ mod tests {
         }
     }
 
-    fn found(texture: &Texture, half_width_px: f64) -> Option<Coarse> {
+    fn found(texture: &Texture, half_width_px: f64) -> Option<CoarseMatch> {
         search(texture, &[expected(half_width_px)], 6.0, |found| Some(*found)).first().copied()
     }
 

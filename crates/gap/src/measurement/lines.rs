@@ -12,8 +12,8 @@ use crate::{
         camera::{FrameCamera, PixelVelocity},
         carpet::{self, CarpetBlock},
         line_profile::{self, LinePiece, Profile},
-        line_search::{Coarse, search},
-        visibility::Surroundings,
+        line_search::{CoarseMatch, search},
+        visibility::Visibility,
     },
     thresholds::{LineThresholds, Thresholds},
 };
@@ -58,12 +58,12 @@ pub(crate) struct Line {
 /// Returns the pieces of line that the model predicts in the picture with nothing else in their profiles.
 pub(crate) fn expected_lines(camera: &FrameCamera<'_>) -> Vec<VisibleSample> {
     let field = camera.chain.field();
-    let surroundings = Surroundings::new(camera);
+    let visibility = Visibility::new(camera);
     let samples = sample_lines(field, THRESHOLDS.spacing_m);
     let visible = visible_samples(field, &samples, camera.chain.camera(), camera.pose, THRESHOLDS.spacing_px);
     let [thinnest, widest] = THRESHOLDS.half_width_px;
     let alone = visible.into_iter().filter(|visible| {
-        (thinnest..=widest).contains(&visible.half_width_px) && surroundings.stands_alone(visible)
+        (thinnest..=widest).contains(&visible.half_width_px) && visibility.stands_alone(visible)
     });
     let placed = alone.filter_map(|visible| {
         Some(VisibleSample { pixel: camera.project(visible.sample.point_in_world, 1)?, ..visible })
@@ -113,7 +113,7 @@ impl LineFinder<'_> {
     }
 
     /// The piece's measurements; `None` where it is too thin for its blur or its profile cannot be fitted.
-    fn line(&self, found: &Coarse) -> Option<Line> {
+    fn line(&self, found: &CoarseMatch) -> Option<Line> {
         let visible = &found.visible;
         let ground = visible.sample.point_in_world;
         let (pixel, normal) = (visible.pixel, visible.normal_in_image);

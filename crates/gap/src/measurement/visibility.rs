@@ -11,7 +11,7 @@ use crate::{
 const THRESHOLDS: VisibilityThresholds = Thresholds::DEFAULT.measurement.visibility;
 
 /// Everything on the field that can be in the way of a measurement, as one camera sees it.
-pub(crate) struct Surroundings<'a> {
+pub(crate) struct Visibility<'a> {
     view: &'a FrameCamera<'a>,
     /// Projection centre in the world, metres.
     camera: DVec3,
@@ -25,7 +25,7 @@ pub(crate) struct Surroundings<'a> {
     posts: Vec<GoalPost>,
 }
 
-impl<'a> Surroundings<'a> {
+impl<'a> Visibility<'a> {
     pub(crate) fn new(view: &'a FrameCamera<'a>) -> Self {
         let field = view.chain.field();
         Self {

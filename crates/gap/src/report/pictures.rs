@@ -6,7 +6,7 @@ use reality_sim_core::sequence::SequenceError;
 use reality_sim_sensor::{Chain, Model, ModelError, RenderError, Renderer, SceneColors};
 
 use crate::{
-    measurement::camera::FrameCamera, measurement::visibility::Surroundings, recording::Recording,
+    measurement::camera::FrameCamera, measurement::visibility::Visibility, recording::Recording,
     report::analysis::Analysis,
 };
 
@@ -59,9 +59,9 @@ impl Pictures {
         let measured = sequence.load_image(index)?;
         let chain = Chain::new(&sequence.setup, &sequence.field, &analysis.model)?;
         let view = FrameCamera::new(&chain, &recording.trajectory, time_s);
-        let surroundings = Surroundings::new(&view);
+        let visibility = Visibility::new(&view);
         let field = GrayImage::from_fn(measured.width(), measured.height(), |x, y| {
-            let shows_field = surroundings.shows_field(DVec2::new(f64::from(x), f64::from(y)));
+            let shows_field = visibility.shows_field(DVec2::new(f64::from(x), f64::from(y)));
             Luma([if shows_field { u8::MAX } else { 0 }])
         });
         Ok(Self { measured, before: drawn(given)?, after: drawn(&analysis.model)?, field })

@@ -280,7 +280,7 @@ fn frame_residuals<'a>(
                 measurements: &frame.measurements,
                 values: FittedResiduals::new(frame, weights, delta, &system.pose_sigmas).residuals,
                 time_s: recording.frames[index].time_s,
-                camera: found.linearized.measurements[index].camera.truncate(),
+                camera: found.linearized.measurements[index].camera_in_world.truncate(),
                 size: [camera.width, camera.height],
             }
         })

@@ -37,7 +37,7 @@ pub(crate) fn find(
     progress: &dyn Fn(Progress),
 ) -> Result<SelectedModel, MeasureError> {
     check(recording, model)?;
-    let columns = columns(&options.without);
+    let columns = fitted_parameters(&options.without);
     let split = HeldOutSplit::new(recording.frames.len(), options.seed);
     let given = effects_of(model);
     let source = FittedRecording { recording, columns: &columns, split: &split };
@@ -104,7 +104,7 @@ pub(crate) fn as_given(
     options: &Options,
 ) -> Result<SelectedModel, MeasureError> {
     check(recording, model)?;
-    let columns = columns(&options.without);
+    let columns = fitted_parameters(&options.without);
     let split = HeldOutSplit::new(recording.frames.len(), options.seed);
     let linearized = LinearizedRecording::new(recording, model.clone(), &columns, &split, SEARCH_AGAIN)?;
     let (given, named, p_values, confusable) = Default::default();

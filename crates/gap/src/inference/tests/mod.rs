@@ -83,7 +83,7 @@ impl World {
                     measurements: Vec::new(),
                     residuals: Vec::new(),
                     jacobian: Vec::new(),
-                    pose: vec![Vector6::zeros(); ROWS],
+                    pose_gradients: vec![Vector6::zeros(); ROWS],
                 };
                 for row in 0..ROWS {
                     let numbers: Vec<f64> = (0..4).map(|_| noise.next()).collect();

@@ -8,7 +8,7 @@ use reality_sim_sensor::Trajectory;
 
 use super::sequence;
 use crate::{
-    linear_model::odometry_steps::around,
+    linear_model::odometry_steps::instrumental_motions,
     recording::{Frame, OdometryStep, Recording, ReferenceSource},
 };
 
@@ -48,7 +48,7 @@ fn walk<'a>(sequence: &'a Sequence, steps_m: &[f64], gaps: &[usize]) -> Recordin
         trajectory,
         frames,
         source: ReferenceSource::Measured,
-        scene: None,
+        reflectance: None,
         left_out: Vec::new(),
     }
 }
@@ -57,7 +57,7 @@ fn forward_m(steps_m: &[f64], gaps: &[usize]) -> Vec<Option<f64>> {
     let sequence = sequence();
     let recording = walk(&sequence, steps_m, gaps);
     let frames: Vec<&Frame> = recording.frames.iter().collect();
-    let about = around(&recording, &frames);
+    let about = instrumental_motions(&recording, &frames);
     about.into_iter().map(|step| step.map(|step| step.forward_m)).collect()
 }
 

@@ -12,7 +12,7 @@ use crate::{
         initial_values::starting_values,
         linearization::{linearise, measure_frames},
         linearized_frame::LinearizedFrame,
-        parameters::{FittedParameter, columns},
+        parameters::{FittedParameter, fitted_parameters},
     },
     measurement::{
         frame::FrameMeasurements,
@@ -129,7 +129,7 @@ fn each_parameter_changes_what_is_seen_as_its_column_says() {
     let sequence = sequence();
     let recording = recording(&sequence);
     let measurements = measure_frames(&recording, &Model::default(), 20.0).unwrap();
-    for column in columns(&[]).into_iter().filter(|column| !is_of_odometry(column)) {
+    for column in fitted_parameters(&[]).into_iter().filter(|column| !is_of_odometry(column)) {
         // Noise moves the mean of dark places a little: its columns are for the noise only.
         let is_left_out = |row: &Measurement| {
             column.effect().id() == "sensor_noise" && row.quantity.channel() != Channel::Noise
@@ -149,7 +149,7 @@ fn at_neutral_values_columns_are_the_predictions_slopes_too() {
     let has_slope = |column: &FittedParameter| {
         column.parameter().growth == Growth::Linear && column.is_size() && !is_of_odometry(column)
     };
-    for column in columns(&[]).into_iter().filter(has_slope) {
+    for column in fitted_parameters(&[]).into_iter().filter(has_slope) {
         let is_left_out = |row: &Measurement| {
             is_bent(&column, row)
                 || column.effect().id() == "sensor_noise" && row.quantity.channel() != Channel::Noise
@@ -175,14 +175,14 @@ fn while_a_robot_walks_steadily_the_odometrys_columns_are_those_of_its_own_steps
         times_s.into_iter().chain([until_s]).map(|time_s| (time_s, pose(time_s))).collect();
     recording.trajectory = Trajectory::new(&poses).unwrap();
     let nothing = FrameMeasurements {
-        camera: DVec3::ZERO,
+        camera_in_world: DVec3::ZERO,
         lines: Vec::new(),
         expected_lines: Vec::new(),
         blocks: Vec::new(),
         noise_steps: Vec::new(),
     };
     let measurements = vec![nothing; recording.frames.len()];
-    for column in columns(&[]).into_iter().filter(is_of_odometry) {
+    for column in fitted_parameters(&[]).into_iter().filter(is_of_odometry) {
         for part in [0.0, 0.1] {
             let values = values_at(&recording, &column, part);
             let compared = Compared::new(&recording, &measurements, column, &values);
