@@ -10,5 +10,5 @@ pub enum Progress {
     /// Fitting all effects of the extended model together.
     Fitting,
     /// Evaluating the model on held-out frames.
-    Judging,
+    Evaluating,
 }

@@ -1,4 +1,4 @@
-//! Recording as the workflow uses it: frames with reference poses, in order of time.
+//! Recordings as the workflow uses them: frames with reference poses, in order of time.
 
 use std::{ops::Range, path::PathBuf};
 
@@ -107,7 +107,8 @@ pub struct Recording<'a> {
     pub(crate) trajectory: Trajectory,
     pub(crate) frames: Vec<Frame>,
     pub(crate) source: ReferenceSource,
-    pub(crate) scene: Option<NominalReflectance>,
+    /// Reflectance of lines and carpet, if the camera's file gives it.
+    pub(crate) reflectance: Option<NominalReflectance>,
     /// Picture files that are broken or missing; their frames are left out.
     pub(crate) left_out: Vec<PathBuf>,
 }
@@ -141,9 +142,9 @@ impl<'a> Recording<'a> {
         if posed.len() < LEAST_FRAMES {
             return Err(RecordingError::TooFewFrames { name: name(), found: posed.len(), frames });
         }
-        let way: Vec<(f64, CameraPose)> = posed.iter().map(|&(_, time_s, pose)| (time_s, pose)).collect();
-        let trajectory =
-            Trajectory::new(&way).map_err(|source| RecordingError::Trajectory { name: name(), source })?;
+        let stamped: Vec<(f64, CameraPose)> = posed.iter().map(|&(_, time_s, pose)| (time_s, pose)).collect();
+        let trajectory = Trajectory::new(&stamped)
+            .map_err(|source| RecordingError::Trajectory { name: name(), source })?;
         let every = posed.len().div_ceil(THRESHOLDS.most_frames);
         let frame = |&(index, time_s, _): &(usize, f64, CameraPose)| Frame {
             index,
@@ -151,7 +152,7 @@ impl<'a> Recording<'a> {
             step: step(sequence, index),
         };
         let frames = posed.iter().step_by(every).map(frame).collect();
-        Ok(Self { sequence, trajectory, frames, source, scene: scene(sequence), left_out })
+        Ok(Self { sequence, trajectory, frames, source, reflectance: reflectance(sequence), left_out })
     }
 
     /// Returns each frame's view number. Successive frames belong to one view while their poses differ so little that they
@@ -172,20 +173,21 @@ impl<'a> Recording<'a> {
         views
     }
 
-    /// Whether the camera's poses change by more than their errors over the recording.
+    /// Whether the camera moves by more than the errors of its poses, on average from the first frame.
     pub(crate) fn moves(&self) -> bool {
         let poses: Vec<CameraPose> =
             self.frames.iter().map(|frame| self.trajectory.at(frame.time_s)).collect();
         let (Some(first), count) = (poses.first(), poses.len() as f64) else { return false };
-        let far = poses
+        let distance_m = poses
             .iter()
             .map(|pose| (pose.position_in_world() - first.position_in_world()).length())
             .sum::<f64>();
-        let turned =
+        let turned_rad =
             poses.iter().map(|pose| first.planar().motion_to(pose.planar()).turn_rad.abs()).sum::<f64>();
-        far / count > THRESHOLDS.moves_m || turned / count > THRESHOLDS.moves_rad
+        distance_m / count > THRESHOLDS.moves_m || turned_rad / count > THRESHOLDS.moves_rad
     }
 
+    /// Returns the exponent of the camera's nominal encoding.
     pub(crate) fn gamma(&self) -> f64 {
         self.sequence.setup.photometry.map_or(2.2, |photometry| photometry.gamma)
     }
@@ -211,18 +213,19 @@ fn readable(
     sequence: &Sequence,
     posed: Vec<(usize, f64, CameraPose)>,
 ) -> (Vec<(usize, f64, CameraPose)>, Vec<PathBuf>) {
-    let whole: Vec<bool> = posed.par_iter().map(|(index, ..)| sequence.load_image(*index).is_ok()).collect();
+    let is_readable: Vec<bool> =
+        posed.par_iter().map(|(index, ..)| sequence.load_image(*index).is_ok()).collect();
     let mut left_out = Vec::new();
-    let kept = posed.into_iter().zip(whole).filter_map(|(frame, whole)| {
-        if !whole {
+    let kept = posed.into_iter().zip(is_readable).filter_map(|(frame, is_readable)| {
+        if !is_readable {
             left_out.push(sequence.frames[frame.0].image.clone());
         }
-        whole.then_some(frame)
+        is_readable.then_some(frame)
     });
     (kept.collect(), left_out)
 }
 
-/// Whether two poses are so close that their pictures show the same.
+/// Whether two poses are so close that their pictures belong to one view.
 fn is_same_view(a: &CameraPose, b: CameraPose) -> bool {
     let moved_m = (a.position_in_world() - b.position_in_world()).length();
     let turned = a.rotation_world_from_camera().transpose() * b.rotation_world_from_camera();
@@ -232,7 +235,7 @@ fn is_same_view(a: &CameraPose, b: CameraPose) -> bool {
 }
 
 /// Returns the reflectance of lines and carpet in the camera's file, if it gives both.
-fn scene(sequence: &Sequence) -> Option<NominalReflectance> {
+fn reflectance(sequence: &Sequence) -> Option<NominalReflectance> {
     let photometry = sequence.setup.photometry?;
     Some(NominalReflectance {
         line_linear_rgb: photometry.line_linear_rgb?,

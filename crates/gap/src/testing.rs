@@ -8,10 +8,11 @@ use reality_sim_core::field::FieldDimensions;
 use reality_sim_sensor::{Parameter, effect};
 
 use crate::{
-    linear_model::normal_equations::NormalEquations,
-    linear_model::system::LinearSystem,
-    measurement::quantity::{ColorChannel, Quantity},
-    measurement::scalar::{Measurement, Subject},
+    linear_model::{normal_equations::NormalEquations, system::LinearSystem},
+    measurement::{
+        quantity::{ColorChannel, Quantity},
+        scalar::{Measurement, Subject},
+    },
     recording::ReferenceSource,
     report::data::{EffectReport, Estimate, Gap, PosesReport, Report, Verdict},
 };

@@ -59,7 +59,7 @@ pub(crate) struct ReducedEquations {
 impl ReducedEquations {
     /// Reduces the sum of these equations, which have `size` columns: first those of the fitted parameters, `parameters` in
     /// number, then those of the nuisance parameters.
-    pub(crate) fn of<'a>(
+    pub(crate) fn new<'a>(
         equations: impl Iterator<Item = &'a NormalEquations>,
         size: usize,
         parameters: usize,

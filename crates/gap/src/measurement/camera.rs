@@ -1,4 +1,4 @@
-//! The simulated camera during one frame: where it sees points of the ground, and how fast they move in the picture.
+//! Camera of a model during one frame: pixels of points on the ground, and their velocities in the picture.
 
 use glam::DVec2;
 use reality_sim_core::{field::Curve, pose::CameraPose};
@@ -7,7 +7,7 @@ use reality_sim_sensor::{Chain, Frame, Trajectory};
 /// Half the interval of the central difference that gives a pixel's velocity, seconds.
 const VELOCITY_STEP_S: f64 = 2e-3;
 
-/// The model's camera during one frame.
+/// Camera of a model during one frame.
 #[derive(Debug)]
 pub(crate) struct FrameCamera<'a> {
     pub(crate) chain: &'a Chain,
@@ -32,15 +32,15 @@ impl<'a> FrameCamera<'a> {
         }
     }
 
-    /// Pixel at which a colour channel (0 red, 1 green, 2 blue) shows a point of the ground; `None` outside the picture.
+    /// Returns the pixel at which a colour channel (0 red, 1 green, 2 blue) shows a point on the ground. None outside the picture.
     pub(crate) fn project(&self, ground: DVec2, channel: usize) -> Option<DVec2> {
         self.frame.project(ground.extend(0.0), channel)
     }
 }
 
-/// Velocities of points of the ground in the picture, by central differences in time.
+/// Velocities of points on the ground in the picture, by central differences in time.
 pub(crate) struct PixelVelocity<'a> {
-    /// Cameras a moment before and a moment after; `None` where the trajectory stands still.
+    /// Cameras shortly before and after the frame. None if the trajectory is still.
     around: Option<[FrameCamera<'a>; 2]>,
 }
 
@@ -52,7 +52,7 @@ impl<'a> PixelVelocity<'a> {
         Self { around }
     }
 
-    /// Component along a direction in the picture, pixels a second.
+    /// Returns the component of a point's velocity along a direction in the picture, pixels per second.
     pub(crate) fn along_px_s(&self, ground: DVec2, direction: DVec2) -> f64 {
         let Some([before, after]) = &self.around else { return 0.0 };
         match (before.project(ground, 1), after.project(ground, 1)) {

@@ -1,4 +1,4 @@
-//! Blocks of plain carpet: their mean colour, and the variance of the noise on them.
+//! Blocks of plain carpet: mean colour and variance of the noise.
 
 use glam::DVec2;
 use image::RgbImage;
@@ -17,31 +17,33 @@ use crate::{
 
 const THRESHOLDS: CarpetThresholds = Thresholds::DEFAULT.measurement.carpet;
 
-/// Measurements of a square of plain carpet.
+/// Measurements of a square block of plain carpet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CarpetBlock {
-    /// Centre.
+    /// Pixel at the centre.
     pub(crate) pixel: DVec2,
     /// Point on the ground at the centre, world axes, metres.
     pub(crate) ground: DVec2,
-    /// Mean encoded values, 0–1.
+    /// Mean encoded values of the colours, 0–1.
     pub(crate) level: [f64; 3],
     /// Sum of squares of the coefficients of [`Spectrum`], grey levels squared.
     pub(crate) energy: f64,
-    /// Number of those coefficients.
+    /// Number of these coefficients.
     pub(crate) coefficients: usize,
 }
 
-/// Coefficients of luma's cosine transform in which noise is measured.
+/// Coefficients of the cosine transform of luma in which noise is measured.
 #[derive(Debug, Clone)]
 pub(crate) struct Spectrum {
     cosines: [[f64; BLOCK]; BLOCK],
+    /// Rows (vertical frequencies) and columns of the chosen coefficients.
     chosen: Vec<(usize, usize)>,
-    /// The file's quantisation step of each chosen coefficient, grey levels.
+    /// Quantisation steps of the chosen coefficients in the file, grey levels.
     pub(crate) steps: Vec<f64>,
 }
 
 impl Spectrum {
+    /// Chooses coefficients by frequency and by their quantisation steps (grey levels).
     pub(crate) fn new(steps: &[[f64; BLOCK]; BLOCK]) -> Self {
         let all = (0..BLOCK).flat_map(|row| (0..BLOCK).map(move |column| (row, column)));
         let [lowest, highest] = THRESHOLDS.noise_frequencies;
@@ -55,16 +57,16 @@ impl Spectrum {
         Self { cosines: cosines(), chosen, steps: kept }
     }
 
-    /// Sum of squares of the chosen coefficients of the 8 × 8 pixels from a corner.
+    /// Returns the sum of squares of the chosen coefficients of 8 × 8 pixels.
     fn energy(&self, luma: &[[f64; BLOCK]; BLOCK]) -> f64 {
-        let mut half = [[0.0; BLOCK]; BLOCK];
+        let mut by_row = [[0.0; BLOCK]; BLOCK];
         for (row, values) in luma.iter().enumerate() {
             for (frequency, waves) in self.cosines.iter().enumerate() {
-                half[row][frequency] = values.iter().zip(waves).map(|(value, wave)| value * wave).sum();
+                by_row[row][frequency] = values.iter().zip(waves).map(|(value, wave)| value * wave).sum();
             }
         }
         let coefficient = |&(vertical, horizontal): &(usize, usize)| -> f64 {
-            half.iter().zip(&self.cosines[vertical]).map(|(row, wave)| row[horizontal] * wave).sum()
+            by_row.iter().zip(&self.cosines[vertical]).map(|(row, wave)| row[horizontal] * wave).sum()
         };
         self.chosen.iter().map(|place| coefficient(place).powi(2)).sum()
     }
@@ -131,14 +133,14 @@ fn measure_block(
     }
 }
 
-/// Returns the medians of the blocks' encoded values, which stand for the carpet; `None` without blocks.
-pub(crate) fn usual(blocks: &[CarpetBlock]) -> Option<[f64; 3]> {
+/// Returns the median encoded value of each colour over the blocks. None without blocks.
+pub(crate) fn median_level(blocks: &[CarpetBlock]) -> Option<[f64; 3]> {
     (!blocks.is_empty())
         .then(|| [0, 1, 2].map(|channel| median(blocks.iter().map(|block| block.level[channel]))))
 }
 
-/// Returns whether the pixels around a point have the carpet's colour.
-pub(crate) fn is_carpet(picture: &RgbImage, pixel: DVec2, usual: [f64; 3]) -> bool {
+/// Whether the pixels around a point have the colour of carpet, whose encoded values are given.
+pub(crate) fn is_carpet(picture: &RgbImage, pixel: DVec2, carpet_level: [f64; 3]) -> bool {
     let around_px = THRESHOLDS.averaged_half_side_px;
     let mut sums = [0.0; 3];
     for dv in -around_px..=around_px {
@@ -150,7 +152,7 @@ pub(crate) fn is_carpet(picture: &RgbImage, pixel: DVec2, usual: [f64; 3]) -> bo
         }
     }
     let within = |ratio: f64, factor: f64| (1.0 / factor..=factor).contains(&ratio);
-    let [red, green, blue] = [0, 1, 2].map(|channel| sums[channel] / usual[channel].max(1e-3));
+    let [red, green, blue] = [0, 1, 2].map(|channel| sums[channel] / carpet_level[channel].max(1e-3));
     let pixels = 255.0 * ((2 * around_px + 1) * (2 * around_px + 1)) as f64;
     within(red / green, THRESHOLDS.same_hue_factor)
         && within(blue / green, THRESHOLDS.same_hue_factor)
@@ -171,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn carpet_in_a_dark_corner_is_carpet_and_what_stands_on_it_is_not() {
+    fn darker_carpet_is_carpet_and_objects_on_it_are_not() {
         assert!(is_carpet_of(CARPET) && is_carpet_of([33, 78, 37]));
         for (what, color) in [
             ("line", [205, 210, 204]),
@@ -184,13 +186,13 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_picture_is_no_carpet() {
+    fn a_point_outside_the_picture_shows_no_carpet() {
         let picture = RgbImage::from_pixel(20, 20, Rgb(CARPET));
         assert!(!is_carpet(&picture, DVec2::new(-3.0, 5.0), [0.2, 0.47, 0.23]));
     }
 
     #[test]
-    fn most_of_the_carpet_decides_what_it_looks_like() {
+    fn the_median_level_is_that_of_most_blocks() {
         let block = |green: f64| CarpetBlock {
             pixel: DVec2::ZERO,
             ground: DVec2::ZERO,
@@ -198,7 +200,7 @@ mod tests {
             energy: 0.0,
             coefficients: 0,
         };
-        assert_eq!(usual(&[block(0.5), block(0.48), block(0.05)]).unwrap()[1], 0.48);
-        assert!(usual(&[]).is_none());
+        assert_eq!(median_level(&[block(0.5), block(0.48), block(0.05)]).unwrap()[1], 0.48);
+        assert!(median_level(&[]).is_none());
     }
 }

@@ -1,4 +1,4 @@
-//! Everything that is measured in one picture: pieces of white line and blocks of plain carpet.
+//! Measurements of one picture: pieces of white line and blocks of plain carpet.
 
 use glam::{DVec2, DVec3};
 use image::RgbImage;
@@ -16,25 +16,25 @@ use crate::measurement::{
 #[derive(Debug, Clone)]
 pub(crate) struct FrameMeasurements {
     /// Projection centre in the world, metres.
-    pub(crate) camera: DVec3,
+    pub(crate) camera_in_world: DVec3,
     pub(crate) lines: Vec<Line>,
-    /// All pieces of line that the model predicts in the picture, found or not.
+    /// Pieces of line that the model predicts in the picture, found or not.
     pub(crate) expected_lines: Vec<ExpectedLine>,
     pub(crate) blocks: Vec<CarpetBlock>,
-    /// Quantisation steps of the coefficients that noise was measured in, grey levels.
+    /// Quantisation steps of the coefficients in which noise was measured, grey levels.
     pub(crate) noise_steps: Vec<f64>,
 }
 
-/// How a picture is measured.
+/// Settings of the measurement of a picture.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MeasurementConfig {
-    /// Lines are searched this far from where the model predicts them, pixels.
+    /// Largest distance at which lines are searched for from where the model predicts them, pixels.
     pub(crate) search_px: f64,
     /// Exponent of the camera's nominal encoding.
     pub(crate) gamma: f64,
 }
 
-/// Measures a picture, given decoded and as the bytes of its file.
+/// Measures a picture. `bytes` is its encoded file, of which the quantisation is read.
 pub(crate) fn measure_frame(
     camera: &FrameCamera<'_>,
     picture: &RgbImage,
@@ -45,7 +45,7 @@ pub(crate) fn measure_frame(
     let blocks = measure_carpet(camera, picture, &spectrum);
     let (lines, expected_lines) = measure_lines(camera, picture, &blocks, config.search_px, config.gamma);
     FrameMeasurements {
-        camera: camera.pose.position_in_world(),
+        camera_in_world: camera.pose.position_in_world(),
         lines,
         expected_lines,
         blocks,
@@ -54,14 +54,17 @@ pub(crate) fn measure_frame(
 }
 
 impl FrameMeasurements {
-    /// The measured numbers one by one: those of each line, then those of each block of carpet.
+    /// Returns the scalar measurements: those of each piece of line, then those of each block of carpet.
     pub(crate) fn measurements(&self, gamma: f64) -> Vec<Measurement> {
-        let lines = (0..).zip(&self.lines).flat_map(|(index, line)| self.of_line(index, line, gamma));
-        let blocks = (0..).zip(&self.blocks).flat_map(|(index, block)| self.of_block(index, block, gamma));
+        let lines =
+            (0..).zip(&self.lines).flat_map(|(index, line)| self.of_line(Subject::Line(index), line, gamma));
+        let blocks = (0..)
+            .zip(&self.blocks)
+            .flat_map(|(index, block)| self.of_block(Subject::Carpet(index), block, gamma));
         lines.chain(blocks).collect()
     }
 
-    fn of_line(&self, index: usize, line: &Line, gamma: f64) -> [Measurement; 7] {
+    fn of_line(&self, subject: Subject, line: &Line, gamma: f64) -> [Measurement; 7] {
         let profile = &line.profile;
         let [red, blue] = profile.color_offset_px.unwrap_or([f64::NAN; 2]);
         let level = profile.level.unwrap_or([f64::NAN; 3]).map(|level| log_linear(level, gamma));
@@ -72,7 +75,7 @@ impl FrameMeasurements {
             speed_px_s: line.speed_px_s,
             half_width_px: line.half_width_px,
             cos_incidence: self.cos_incidence(line.ground),
-            ..Measurement::nowhere(Subject::Line(index), quantity, measured, sigma)
+            ..Measurement::without_covariates(subject, quantity, measured, sigma)
         };
         [
             at_line(Quantity::LineOffset, profile.offset_px, profile.offset_sigma_px),
@@ -85,16 +88,16 @@ impl FrameMeasurements {
         ]
     }
 
-    fn of_block(&self, index: usize, block: &CarpetBlock, gamma: f64) -> [Measurement; 4] {
+    fn of_block(&self, subject: Subject, block: &CarpetBlock, gamma: f64) -> [Measurement; 4] {
         let level = block.level.map(|level| log_linear(level, gamma));
         let count = block.coefficients as f64;
-        // The logarithm of a mean square of n normal numbers is below that of its expectation by 1/n in the mean.
+        // The expected logarithm of the mean square of n normal variables is 1/n below the logarithm of their variance.
         let log_variance = (block.energy / count).ln() + 1.0 / count;
         let at_block = |quantity, measured, sigma| Measurement {
             pixel: block.pixel,
             ground: block.ground,
             cos_incidence: self.cos_incidence(block.ground),
-            ..Measurement::nowhere(Subject::Carpet(index), quantity, measured, sigma)
+            ..Measurement::without_covariates(subject, quantity, measured, sigma)
         };
         [
             at_block(Quantity::CarpetLevel(ColorChannel::Red), level[0], 0.0),
@@ -104,15 +107,15 @@ impl FrameMeasurements {
         ]
     }
 
-    /// Cosine of the angle of incidence at which the camera sees a point of the ground.
+    /// Returns the cosine of the angle of incidence at which the camera sees a point on the ground.
     fn cos_incidence(&self, ground: DVec2) -> f64 {
-        (self.camera.z / self.camera.distance(ground.extend(0.0))).clamp(0.0, 1.0)
+        (self.camera_in_world.z / self.camera_in_world.distance(ground.extend(0.0))).clamp(0.0, 1.0)
     }
 }
 
-/// Natural logarithm of the linear value that the nominal encoding `linear = encoded^gamma` gives a mean value; not a
-/// number for a missing one.
+/// Returns the natural logarithm of the linear value of a mean encoded value, by the nominal encoding
+/// `linear = encoded^gamma`; not a number for a missing value.
 pub(crate) fn log_linear(encoded: f64, gamma: f64) -> f64 {
-    // `max` of a missing value and a number would be the number.
+    // `max` ignores missing values.
     if encoded.is_nan() { encoded } else { gamma * encoded.max(1e-3).ln() }
 }

@@ -1,4 +1,4 @@
-//! Coarse search of a piece of line along its normal: as wide as predicted, or else as wide as a blur makes it.
+//! Coarse search for pieces of line along their normals, first with the predicted width and then with that after more blur.
 
 use reality_sim_core::{
     field::VisibleSample,
@@ -10,31 +10,31 @@ use statrs::function::erf::erf;
 use crate::thresholds::{LineThresholds, Thresholds};
 
 const THRESHOLDS: LineThresholds = Thresholds::DEFAULT.measurement.line;
-/// Half the width of a Gaussian at half its height, in standard deviations: √(2 ln 2).
+/// Half the width of a Gaussian at half its maximum, in standard deviations: √(2 ln 2).
 const HALF_HEIGHT: f64 = 1.177;
 
-/// A piece of line that the coarse search found.
+/// Piece of line that the coarse search found.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CoarseMatch {
     pub(crate) visible: VisibleSample,
     /// Offset from the predicted pixel along its normal, pixels.
     pub(crate) offset_px: f64,
-    /// Variance of the blur with which it was found, beside the predicted one, pixels squared.
+    /// Variance of the blur, in addition to the predicted one, with which it was found, pixels squared.
     pub(crate) extra_px2: f64,
 }
 
-/// Searches pieces of line up to `search_px` from where they are predicted. A piece that `accepts` rejects is searched again
-/// with more blur.
+/// Searches for pieces of line up to `search_px` from where they are predicted. A piece that `accepts` rejects is searched for
+/// again with more blur.
 pub(crate) fn search<T>(
     texture: &Texture,
     expected: &[VisibleSample],
     search_px: f64,
     accepts: impl Fn(&CoarseMatch) -> Option<T>,
 ) -> Vec<T> {
-    let mut left = expected.to_vec();
+    let mut remaining = expected.to_vec();
     let mut found = Vec::with_capacity(expected.len());
     for extra_px in THRESHOLDS.extra_blur_px {
-        left.retain(|visible| {
+        remaining.retain(|visible| {
             let wide = widened(visible, extra_px);
             let config = MeasureConfig { search_px, min_contrast: min_contrast(visible, extra_px) };
             let offset = measure_offsets(texture, &[wide], config);
@@ -42,24 +42,24 @@ pub(crate) fn search<T>(
                 let (visible, offset_px) = (*visible, offset.offset_px);
                 accepts(&CoarseMatch { visible, offset_px, extra_px2: extra_px * extra_px })
             });
-            let is_left = accepted.is_none();
+            let is_missing = accepted.is_none();
             found.extend(accepted);
-            is_left
+            is_missing
         });
     }
     found
 }
 
-/// Widens a line to the width that a blur has at half its height.
+/// Widens a line to the width of a blur at half its maximum.
 fn widened(visible: &VisibleSample, extra_px: f64) -> VisibleSample {
     VisibleSample { half_width_px: visible.half_width_px.max(HALF_HEIGHT * extra_px), ..*visible }
 }
 
-/// Least contrast that a line has to have after a blur, grey levels.
+/// Returns the least contrast that a line must have after a blur, grey levels.
 fn min_contrast(visible: &VisibleSample, extra_px: f64) -> f64 {
-    let left =
+    let contrast_ratio =
         if extra_px > 0.0 { erf(visible.half_width_px / (extra_px * std::f64::consts::SQRT_2)) } else { 1.0 };
-    (left * THRESHOLDS.least_sharp_contrast).max(THRESHOLDS.least_blurred_contrast)
+    (contrast_ratio * THRESHOLDS.least_sharp_contrast).max(THRESHOLDS.least_blurred_contrast)
 }
 
 #[cfg(test)]
@@ -72,7 +72,7 @@ mod tests {
 
     const WIDTH: f64 = 61.0;
 
-    /// A bar across the picture's rows, its middle at a column, blurred by a Gaussian, on carpet with a little texture.
+    /// Returns a vertical bar, its middle at a column, blurred by a Gaussian, on carpet with a little texture.
     fn bar(middle: f64, half_width_px: f64, sigma_px: f64, contrast: f64) -> Texture {
         let edge = |distance: f64| 0.5 * (1.0 + erf(distance / (sigma_px * std::f64::consts::SQRT_2)));
         Texture::pack(&GrayImage::from_fn(WIDTH as u32, 41, |u, v| {
@@ -103,14 +103,14 @@ mod tests {
     }
 
     #[test]
-    fn a_sharp_line_is_found_as_it_is() {
+    fn a_sharp_line_is_found_without_extra_blur() {
         let coarse = found(&bar(32.3, 2.0, 0.6, 110.0), 2.0).unwrap();
         assert!((coarse.offset_px - 2.3).abs() < 0.3, "{}", coarse.offset_px);
         assert_eq!(coarse.extra_px2, 0.0);
     }
 
     #[test]
-    fn a_line_spread_over_four_times_its_width_is_found_as_a_wider_one() {
+    fn a_line_blurred_to_four_times_its_width_is_found_with_extra_blur() {
         for middle in [27.0, 30.5, 33.0] {
             let coarse = found(&bar(middle, 1.2, 3.0, 110.0), 1.2).unwrap();
             assert!((coarse.offset_px - (middle - 30.0)).abs() < 1.0, "{} for {middle}", coarse.offset_px);
@@ -119,12 +119,12 @@ mod tests {
     }
 
     #[test]
-    fn carpet_alone_is_no_line_however_wide_one_looks() {
+    fn no_line_is_found_in_plain_carpet() {
         assert!(found(&bar(30.0, 1.2, 3.0, 0.0), 1.2).is_none());
     }
 
     #[test]
-    fn what_is_turned_down_is_looked_for_wider_and_wider() {
+    fn a_rejected_piece_is_searched_for_again_with_more_blur() {
         let texture = bar(30.0, 1.2, 3.0, 110.0);
         let tried = std::cell::RefCell::new(Vec::new());
         let none = search(&texture, &[expected(1.2)], 6.0, |found| {

@@ -1,4 +1,4 @@
-//! White lines in one picture: the pieces that a model predicts, and what is measured of each.
+//! White lines in one picture: the pieces that a model predicts, and their measurements.
 
 use glam::DVec2;
 use image::RgbImage;
@@ -22,34 +22,34 @@ const THRESHOLDS: LineThresholds = Thresholds::DEFAULT.measurement.line;
 /// Variance of the blur by a pixel's own square aperture of side 1, pixels squared.
 pub(crate) const APERTURE_PX2: f64 = 1.0 / 12.0;
 
-/// A piece of line that the model predicts in the picture.
+/// Piece of line that the model predicts in the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ExpectedLine {
-    /// The field's curve it is a piece of.
+    /// Curve of the field that it is a piece of.
     pub(crate) curve: usize,
-    /// Half its width in the picture, pixels.
+    /// Half the width in the picture, pixels.
     pub(crate) half_width_px: f64,
-    /// Whether something occludes it: its pixels show neither a line nor carpet.
+    /// Whether it is occluded: its pixels show neither a line nor carpet.
     pub(crate) is_hidden: bool,
 }
 
-/// A piece of line that was measured.
+/// Piece of line that was measured.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Line {
-    /// The field's curve it is a piece of.
+    /// Curve of the field that it is a piece of.
     pub(crate) curve: usize,
     /// Position on the curve as a fraction of its length.
     pub(crate) fraction: f64,
     /// Point on the ground, world axes, metres.
     pub(crate) ground: DVec2,
-    /// Predicted pixel of its middle.
+    /// Predicted pixel of the middle.
     pub(crate) pixel: DVec2,
-    /// Unit vector across it in the picture.
+    /// Unit vector across the line in the picture.
     pub(crate) normal: DVec2,
-    /// Speed of its image along the normal, pixels a second.
+    /// Speed of the image along the normal, pixels per second.
     pub(crate) speed_px_s: f64,
     pub(crate) profile: Profile,
-    /// Half its width in the picture, pixels.
+    /// Half the width in the picture, pixels.
     pub(crate) half_width_px: f64,
     /// Whether it is far enough from the picture's border to count among the expected pieces.
     pub(crate) is_expected: bool,
@@ -65,14 +65,14 @@ pub(crate) fn expected_lines(camera: &FrameCamera<'_>) -> Vec<VisibleSample> {
     let alone = visible.into_iter().filter(|visible| {
         (thinnest..=widest).contains(&visible.half_width_px) && visibility.stands_alone(visible)
     });
-    let placed = alone.filter_map(|visible| {
+    let projected = alone.filter_map(|visible| {
         Some(VisibleSample { pixel: camera.project(visible.sample.point_in_world, 1)?, ..visible })
     });
-    placed.collect()
+    projected.collect()
 }
 
-/// Measures the predicted pieces of line within `search_px` of where they are predicted; also returns all predicted pieces
-/// that are clear of the picture's border.
+/// Measures pieces of line within `search_px` of where they are predicted. Also returns all predicted pieces that are clear of
+/// the picture's border.
 pub(crate) fn measure_lines(
     camera: &FrameCamera<'_>,
     picture: &RgbImage,
@@ -83,8 +83,8 @@ pub(crate) fn measure_lines(
     let finder = LineFinder { camera, picture, velocity: PixelVelocity::new(camera), search_px, gamma };
     let predicted = expected_lines(camera);
     let lines = search(&Texture::pack(&luma(picture)), &predicted, search_px, |found| finder.line(found));
-    let usual = carpet::usual(blocks);
-    let is_carpet = |pixel: DVec2| usual.is_some_and(|usual| carpet::is_carpet(picture, pixel, usual));
+    let carpet_level = carpet::median_level(blocks);
+    let is_carpet = |pixel: DVec2| carpet_level.is_some_and(|level| carpet::is_carpet(picture, pixel, level));
     let is_found = |visible: &VisibleSample| lines.iter().any(|line| line.pixel == visible.pixel);
     let piece = |visible: &VisibleSample| ExpectedLine {
         curve: visible.sample.curve,
@@ -105,14 +105,14 @@ struct LineFinder<'a> {
 }
 
 impl LineFinder<'_> {
-    /// Whether a profile has room between the piece and the picture's border.
+    /// Whether a profile fits between the piece and the picture's border.
     fn has_room(&self, visible: &VisibleSample) -> bool {
         let size = DVec2::new(f64::from(self.picture.width()), f64::from(self.picture.height()));
         let room = visible.pixel.min(size - 1.0 - visible.pixel).min_element();
         room > self.search_px + 2.0 * visible.half_width_px + THRESHOLDS.border_margin_px
     }
 
-    /// The piece's measurements; `None` where it is too thin for its blur or its profile cannot be fitted.
+    /// Measures a piece of line. None if it is too thin for its blur or its profile cannot be fitted.
     fn line(&self, found: &CoarseMatch) -> Option<Line> {
         let visible = &found.visible;
         let ground = visible.sample.point_in_world;
@@ -141,7 +141,7 @@ impl LineFinder<'_> {
     }
 }
 
-/// Position of a point on its curve, as a fraction of the curve's length.
+/// Returns the position of a point on its curve as a fraction of the curve's length.
 fn fraction(curve: &Curve, point: DVec2) -> f64 {
     match curve {
         Curve::Segment { from, to } => (point - *from).dot(*to - *from) / from.distance_squared(*to),

@@ -1,4 +1,4 @@
-//! What is measured in a picture: pieces of white line and blocks of plain carpet, where a model predicts them.
+//! Measurements of pictures: pieces of white line and blocks of plain carpet, where a model predicts them.
 
 pub(crate) mod camera;
 pub(crate) mod carpet;

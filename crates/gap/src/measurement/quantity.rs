@@ -1,8 +1,8 @@
-//! The quantities that are measured and compared with a model.
+//! Quantities that are measured and compared with a model.
 
 use serde::{Deserialize, Serialize};
 
-/// A kind of measurement, as reports tell them apart. Maps by channel are in the order of the channels' names.
+/// Group of quantities that reports combine. Maps by channel are in the order of the channels' names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Channel {
@@ -21,11 +21,11 @@ pub enum Channel {
 }
 
 impl Channel {
-    /// All of them, from the most to the least telling.
+    /// All channels, from the most to the least informative.
     pub const ALL: [Self; 6] =
         [Self::Geometry, Self::Photometry, Self::Sharpness, Self::Color, Self::Noise, Self::Motion];
 
-    /// Name in reports.
+    /// Returns the name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Geometry => "geometry",
@@ -37,7 +37,7 @@ impl Channel {
         }
     }
 
-    /// Unit of its residuals.
+    /// Returns the unit of the residuals.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Geometry | Self::Color => "px",
@@ -48,7 +48,7 @@ impl Channel {
     }
 }
 
-/// A colour channel of a picture, in the order in which pixels store them.
+/// Colour channel of a picture, in the order in which pixels store them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ColorChannel {
@@ -60,9 +60,9 @@ pub enum ColorChannel {
     Blue,
 }
 
-/// A measured quantity. Measurements of one quantity share a unit and a standard deviation.
+/// Measured quantity. Measurements of one quantity share a unit and a standard deviation.
 ///
-/// The order of the variants is that in which sums over quantities run.
+/// Sums over quantities run in the order of the variants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) enum Quantity {
     /// Offset of a line's middle along its normal, in luma, pixels.
@@ -88,10 +88,10 @@ pub(crate) enum Quantity {
 }
 
 impl Quantity {
-    /// The three numbers of a step of the odometry.
+    /// Three quantities of an odometry step.
     pub(crate) const ODOMETRY: [Self; 3] = [Self::OdometryForward, Self::OdometryLeft, Self::OdometryTurn];
 
-    /// All of them.
+    /// All quantities.
     #[cfg(test)]
     pub(crate) const ALL: [Self; 14] = [
         Self::LineOffset,
@@ -121,12 +121,12 @@ impl Quantity {
         }
     }
 
-    /// Whether it comes from the odometry, not from the picture.
+    /// Whether the odometry measures it, not a picture.
     pub(crate) fn is_odometry(self) -> bool {
         self.channel() == Channel::Motion
     }
 
-    /// Whether it is how bright a block of carpet is.
+    /// Whether it is the level of a block of carpet in some colour.
     pub(crate) fn is_carpet_level(self) -> bool {
         matches!(self, Self::CarpetLevel(_))
     }
@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_quantities_are_listed_in_order_and_channel_by_channel() {
+    fn quantities_are_listed_in_order_and_grouped_by_channel() {
         assert!(Quantity::ALL.is_sorted());
         let mut channels = Quantity::ALL.map(Quantity::channel).to_vec();
         channels.dedup();

@@ -1,13 +1,13 @@
-//! What a JPEG file keeps of noise: its quantisation tables.
+//! Quantisation of a JPEG file, which limits the noise that can be measured in its picture.
 
 use std::f64::consts::PI;
 
 use statrs::function::erf::erf;
 
-/// Side of a block, pixels.
+/// Side of a block of the cosine transform, pixels.
 pub(crate) const BLOCK: usize = 8;
 
-/// Places of a block's coefficients in the order in which a file lists them (ITU-T T.81, figure 5): row, column.
+/// Iterates over the coefficients of a block, as (row, column), in zigzag order (ITU-T T.81, figure 5).
 fn zigzag() -> impl Iterator<Item = (usize, usize)> {
     (0..2 * BLOCK - 1).flat_map(|sum| {
         let range = sum.saturating_sub(BLOCK - 1)..=sum.min(BLOCK - 1);
@@ -17,14 +17,15 @@ fn zigzag() -> impl Iterator<Item = (usize, usize)> {
     })
 }
 
-/// Steps to which a file rounds the coefficients of luma, by row (vertical frequency) and column; 1 where the file is
-/// no JPEG: as fine as pixel values.
+/// Returns the quantisation steps of the coefficients of luma in grey levels, by row (vertical frequency) and column. Files
+/// that are not JPEG have steps of 1, like pixel values.
 pub(crate) fn luma_steps(bytes: &[u8]) -> [[f64; BLOCK]; BLOCK] {
-    table_zero(bytes).unwrap_or([[1.0; BLOCK]; BLOCK])
+    luma_table(bytes).unwrap_or([[1.0; BLOCK]; BLOCK])
 }
 
-/// The first quantisation table, which all encoders use for luma.
-fn table_zero(bytes: &[u8]) -> Option<[[f64; BLOCK]; BLOCK]> {
+/// Returns the quantisation table with destination 0, which encoders use for luma (ITU-T T.81, section B.2.4.1). None if the
+/// bytes are not a whole JPEG header.
+fn luma_table(bytes: &[u8]) -> Option<[[f64; BLOCK]; BLOCK]> {
     let mut rest = bytes.strip_prefix(&[0xFF, 0xD8])?;
     loop {
         let &[0xFF, marker, high, low, ..] = rest else { return None };
@@ -45,6 +46,7 @@ fn table_zero(bytes: &[u8]) -> Option<[[f64; BLOCK]; BLOCK]> {
     }
 }
 
+/// Arranges a table of 8-bit values, or 16-bit values if `wide`, by row and column.
 fn in_rows(values: &[u8], wide: bool) -> [[f64; BLOCK]; BLOCK] {
     let mut table = [[1.0; BLOCK]; BLOCK];
     for (index, (row, column)) in zigzag().enumerate() {
@@ -58,10 +60,10 @@ fn in_rows(values: &[u8], wide: bool) -> [[f64; BLOCK]; BLOCK] {
     table
 }
 
-/// Variance of a normally distributed coefficient after rounding to multiples of a step.
+/// Returns the mean square of a normally distributed coefficient after rounding to multiples of a step.
 pub(crate) fn rounded_variance(sigma: f64, step: f64) -> f64 {
     if sigma > 2.0 * step {
-        // Sheppard: rounding adds a twelfth of the step's square.
+        // Sheppard's correction.
         return sigma * sigma + step * step / 12.0;
     }
     let beyond = |edge: f64| 1.0 - erf(edge / (sigma * std::f64::consts::SQRT_2));
@@ -69,13 +71,13 @@ pub(crate) fn rounded_variance(sigma: f64, step: f64) -> f64 {
     (1..=20).map(|k| f64::from(2 * k - 1) * beyond((f64::from(k) - 0.5) * step)).sum::<f64>() * step * step
 }
 
-/// The cosines of the transform, orthonormal: by frequency, then place.
+/// Returns the orthonormal basis of the cosine transform (DCT-II), by frequency and position.
 pub(crate) fn cosines() -> [[f64; BLOCK]; BLOCK] {
     let mut table = [[0.0; BLOCK]; BLOCK];
     for (frequency, row) in table.iter_mut().enumerate() {
         let scale: f64 = if frequency == 0 { 1.0 / 8.0 } else { 2.0 / 8.0 };
-        for (place, value) in row.iter_mut().enumerate() {
-            *value = scale.sqrt() * (PI * (place as f64 + 0.5) * frequency as f64 / 8.0).cos();
+        for (position, value) in row.iter_mut().enumerate() {
+            *value = scale.sqrt() * (PI * (position as f64 + 0.5) * frequency as f64 / 8.0).cos();
         }
     }
     table
@@ -88,19 +90,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_steps_of_a_file_are_those_of_its_quality() {
+    fn the_steps_of_a_file_are_read_from_its_quantisation_table() {
         let mut bytes = Vec::new();
         let picture = DynamicImage::ImageRgb8(RgbImage::new(16, 16));
         picture.write_with_encoder(JpegEncoder::new_with_quality(&mut bytes, 50)).unwrap();
         let steps = luma_steps(&bytes);
-        // ITU-T T.81, table K.1, which quality 50 is: first row, first column, last coefficient.
+        // Quality 50 uses table K.1 of ITU-T T.81: first row, first column, last coefficient.
         assert_eq!(steps[0], [16.0, 11.0, 10.0, 16.0, 24.0, 40.0, 51.0, 61.0]);
         assert_eq!(steps.map(|row| row[0]), [16.0, 12.0, 14.0, 14.0, 18.0, 24.0, 49.0, 72.0]);
         assert_eq!(steps[7][7], 99.0);
     }
 
     #[test]
-    fn what_is_no_whole_jpeg_has_the_steps_of_pixel_values() {
+    fn a_file_that_is_not_a_whole_jpeg_has_steps_of_one() {
         for bytes in
             [&b""[..], b"\x89PNG", b"\xFF\xD8", b"\xFF\xD8\xFF\xDB\x00\x43\x00", b"\xFF\xD8\xFF\xDB\xFF"]
         {
@@ -109,9 +111,9 @@ mod tests {
     }
 
     #[test]
-    fn rounded_noise_has_the_variance_that_sums_over_its_values_give() {
+    fn the_variance_of_rounded_noise_equals_its_numerical_integral() {
         for (sigma, step) in [(0.5, 3.0), (1.0, 1.0), (3.4, 5.0), (3.4, 12.0), (10.0, 4.0)] {
-            // The density summed over a fine grid.
+            // Numerical integral of the density over a fine grid.
             let mut expected = 0.0;
             for i in -20_000..=20_000 {
                 let z = f64::from(i) * 4e-4;

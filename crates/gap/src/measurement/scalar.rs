@@ -1,46 +1,52 @@
-//! One scalar measurement with the covariates that predictions of it depend on.
+//! Scalar measurements, with the covariates that their predictions depend on.
 
 use glam::DVec2;
 use reality_sim_core::pose::Motion2;
 
 use crate::measurement::quantity::Quantity;
 
-/// What a number was measured of.
+/// Subject of a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Subject {
-    /// A piece of line, by its index in the frame's measurements.
+    /// Piece of line, by its index in the frame's measurements.
     Line(usize),
-    /// A block of carpet, by its index in the frame's measurements.
+    /// Block of carpet, by its index in the frame's measurements.
     Carpet(usize),
-    /// The step of the odometry to the next frame.
+    /// Odometry step to the next frame.
     OdometryStep,
 }
 
-/// One measured number.
+/// Scalar measurement.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Measurement {
     pub(crate) subject: Subject,
     pub(crate) quantity: Quantity,
-    /// Measured value in the quantity's unit; not a number where it could not be measured.
+    /// Measured value in the quantity's unit; not a number if it could not be measured.
     pub(crate) measured: f64,
-    /// Standard deviation by the measurement alone.
+    /// Standard deviation by the fit of this measurement alone, in the quantity's unit.
     pub(crate) sigma: f64,
+    /// Pixel of the predicted position.
     pub(crate) pixel: DVec2,
     /// Point on the ground, world axes, metres.
     pub(crate) ground: DVec2,
-    /// Unit vector across the line.
+    /// Unit vector across the line in the picture.
     pub(crate) normal: DVec2,
-    /// Speed along the normal of the line's image, pixels a second.
+    /// Speed of the line's image along the normal, pixels per second.
     pub(crate) speed_px_s: f64,
-    /// Half the line's width in the picture, pixels.
+    /// Half the width of the line in the picture, pixels.
     pub(crate) half_width_px: f64,
-    /// Cosine of the angle of incidence at which the ground is seen, 1 from straight above.
+    /// Cosine of the angle of incidence at which the ground is seen; 1 from straight above.
     pub(crate) cos_incidence: f64,
 }
 
 impl Measurement {
-    /// A measurement without covariates.
-    pub(crate) fn nowhere(subject: Subject, quantity: Quantity, measured: f64, sigma: f64) -> Self {
+    /// Creates a measurement whose covariates are all neutral.
+    pub(crate) fn without_covariates(
+        subject: Subject,
+        quantity: Quantity,
+        measured: f64,
+        sigma: f64,
+    ) -> Self {
         Self {
             subject,
             quantity,
@@ -55,14 +61,15 @@ impl Measurement {
         }
     }
 
-    /// The three numbers of a step of the odometry.
+    /// Returns the three measurements of an odometry step.
     pub(crate) fn of_odometry(step: Motion2) -> [Self; 3] {
-        Quantity::ODOMETRY
-            .map(|quantity| Self::nowhere(Subject::OdometryStep, quantity, component(step, quantity), 0.0))
+        Quantity::ODOMETRY.map(|quantity| {
+            Self::without_covariates(Subject::OdometryStep, quantity, component(step, quantity), 0.0)
+        })
     }
 }
 
-/// The component of a planar motion that a quantity of the odometry stands for; not a number for any other quantity.
+/// Returns the component of a planar motion that a quantity of the odometry measures; not a number for other quantities.
 pub(crate) fn component(motion: Motion2, quantity: Quantity) -> f64 {
     match quantity {
         Quantity::OdometryForward => motion.forward_m,

@@ -45,7 +45,7 @@ pub fn analyse(
     progress: &dyn Fn(Progress),
 ) -> Result<Analysis, MeasureError> {
     let found = find(recording, model, options, progress)?;
-    progress(Progress::Judging);
+    progress(Progress::Evaluating);
     let tests = found.effect_tests();
     let before = HeldOutResiduals::new(recording, &found, model)?;
     let after = HeldOutResiduals::new(recording, &found, &found.linearized.model)?;

@@ -10,7 +10,7 @@ use crate::{
     inference::selected_model::SelectedModel,
     inference::split::HeldOutSplit,
     linear_model::linearization::{MeasureError, check},
-    linear_model::parameters::columns,
+    linear_model::parameters::fitted_parameters,
     progress::Progress,
     recording::Recording,
     thresholds::Thresholds,

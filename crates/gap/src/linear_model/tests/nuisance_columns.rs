@@ -1,4 +1,4 @@
-//! Every nuisance's column against a central difference of the prediction with what the nuisance stands for.
+//! Columns of the nuisance parameters against central differences of a prediction with each of them.
 
 use reality_sim_sensor::Model;
 
@@ -6,46 +6,44 @@ use super::{recording, sequence};
 use crate::{
     linear_model::{
         linearization::{linearise, measure_frames},
-        nuisance::{Nuisance, cell_of, nuisances},
+        nuisance::{Nuisance, nuisances, patch_at},
     },
     measurement::{quantity::Quantity, scalar::Measurement},
 };
 
-/// Half the width of a central difference, in the nuisance's standard deviations.
+/// Half the width of a central difference, in standard deviations of the nuisance parameter.
 const STEP: f64 = 1e-4;
-/// A column may be off by this part of its value.
+/// Allowed relative error of a derivative.
 const TOLERANCE: f64 = 1e-6;
 
-/// A prediction with a nuisance that is this many of its standard deviations off.
-fn predicted(nuisance: &Nuisance, measurement: &Measurement, expected: f64, deviations: f64) -> f64 {
+/// Returns the prediction for a nuisance parameter that is `deviations` standard deviations from its nominal value.
+fn predicted(nuisance: &Nuisance, measurement: &Measurement, nominal: f64, deviations: f64) -> f64 {
     let is_blur = measurement.quantity == Quantity::LineBlur;
     let is_carpet = measurement.quantity.is_carpet_level();
     match *nuisance {
         Nuisance::Offset { quantity, sigma } if quantity == measurement.quantity => {
-            expected + deviations * sigma
+            nominal + deviations * sigma
         }
-        Nuisance::Width { sigma } if is_blur => {
-            expected + deviations * sigma * measurement.half_width_px.ln()
-        }
-        Nuisance::Kernel { sigma } if is_blur => expected * (1.0 + deviations * sigma),
+        Nuisance::Width { sigma } if is_blur => nominal + deviations * sigma * measurement.half_width_px.ln(),
+        Nuisance::Kernel { sigma } if is_blur => nominal * (1.0 + deviations * sigma),
         Nuisance::ThinKernel { sigma } if is_blur => {
-            let widths = measurement.half_width_px / expected.sqrt();
-            expected * (1.0 + deviations * sigma / widths.exp())
+            let widths = measurement.half_width_px / nominal.sqrt();
+            nominal * (1.0 + deviations * sigma / widths.exp())
         }
         // Levels are logarithms of linear values.
-        Nuisance::Patch { cell, sigma } if is_carpet && cell_of(measurement.ground) == cell => {
-            (expected.exp() * (deviations * sigma).exp()).ln()
+        Nuisance::Patch { cell, sigma } if is_carpet && patch_at(measurement.ground) == cell => {
+            (nominal.exp() * (deviations * sigma).exp()).ln()
         }
         Nuisance::Sheen { power, sigma } if is_carpet => {
             let reflected = sigma * (1.0 - measurement.cos_incidence).powi(power);
-            (expected.exp() + deviations * reflected).ln()
+            (nominal.exp() + deviations * reflected).ln()
         }
-        _ => expected,
+        _ => nominal,
     }
 }
 
 #[test]
-fn each_nuisance_changes_what_is_expected_as_its_column_says() {
+fn every_nuisance_column_is_the_derivative_of_the_prediction() {
     let sequence = sequence();
     let recording = recording(&sequence);
     let model = Model::default();
@@ -56,9 +54,9 @@ fn each_nuisance_changes_what_is_expected_as_its_column_says() {
     for frame in &frames {
         let rows = frame.measurements.iter().zip(&frame.residuals).zip(&frame.jacobian);
         for ((measurement, residual), derivatives) in rows.filter(|((_, residual), _)| residual.is_finite()) {
-            let expected = measurement.measured - residual;
+            let nominal = measurement.measured - residual;
             for (column, nuisance) in nuisances.iter().enumerate() {
-                let at = |deviations: f64| predicted(nuisance, measurement, expected, deviations);
+                let at = |deviations: f64| predicted(nuisance, measurement, nominal, deviations);
                 let difference = (at(STEP) - at(-STEP)) / (2.0 * STEP);
                 let derivative =
                     derivatives.iter().find(|(of, _)| of.0 == column).map_or(0.0, |entry| entry.1);
@@ -68,5 +66,5 @@ fn each_nuisance_changes_what_is_expected_as_its_column_says() {
             }
         }
     }
-    assert!(seen.iter().all(|seen| *seen), "a nuisance changes nothing that is measured");
+    assert!(seen.iter().all(|seen| *seen), "every nuisance parameter must change some measurement");
 }

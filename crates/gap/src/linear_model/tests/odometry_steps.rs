@@ -1,4 +1,4 @@
-//! `around`: what a step of the odometry is compared with when a scale is fitted.
+//! `instrumental_motions`: motions that stand for those of the odometry's steps when a scale is fitted.
 
 use reality_sim_core::{
     pose::{CameraPose, Motion2, Pose2},
@@ -12,10 +12,10 @@ use crate::{
     recording::{Frame, OdometryStep, Recording, ReferenceSource},
 };
 
-/// Seconds from frame to frame.
+/// Time between frames, seconds.
 const INTERVAL_S: f64 = 0.2;
 
-/// A walk straight ahead along x, in these steps (metres); frames named by `gaps` have no odometry to the next one.
+/// Returns a walk along x with steps of these lengths. Frames with an index in `gaps` have no odometry to the next one.
 fn walk<'a>(sequence: &'a Sequence, steps_m: &[f64], gaps: &[usize]) -> Recording<'a> {
     let mut x_m = 0.0;
     let places = std::iter::once(0.0).chain(steps_m.iter().map(|step| {
@@ -33,7 +33,7 @@ fn walk<'a>(sequence: &'a Sequence, steps_m: &[f64], gaps: &[usize]) -> Recordin
         .map(|index| {
             let until_s = INTERVAL_S * (index + 1) as f64;
             let has_step = index < steps_m.len() && !gaps.contains(&index);
-            // What the odometry says plays no part.
+            // The odometry itself must not matter.
             let odometry = Motion2 { forward_m: 99.0, left_m: 99.0, turn_rad: 1.0 };
             Frame {
                 index,
@@ -57,8 +57,8 @@ fn forward_m(steps_m: &[f64], gaps: &[usize]) -> Vec<Option<f64>> {
     let sequence = sequence();
     let recording = walk(&sequence, steps_m, gaps);
     let frames: Vec<&Frame> = recording.frames.iter().collect();
-    let about = instrumental_motions(&recording, &frames);
-    about.into_iter().map(|step| step.map(|step| step.forward_m)).collect()
+    let motions = instrumental_motions(&recording, &frames);
+    motions.into_iter().map(|motion| motion.map(|motion| motion.forward_m)).collect()
 }
 
 fn assert_steps(found: &[Option<f64>], wanted: &[Option<f64>]) {
@@ -72,7 +72,7 @@ fn assert_steps(found: &[Option<f64>], wanted: &[Option<f64>]) {
 }
 
 #[test]
-fn a_step_is_the_mean_of_those_two_and_three_before_and_after_it() {
+fn a_motion_is_the_mean_of_the_second_and_third_neighbours_on_both_sides() {
     let steps_m = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8];
     let mean = |indices: &[usize]| {
         Some(indices.iter().map(|&index| steps_m[index]).sum::<f64>() / indices.len() as f64)
@@ -92,7 +92,7 @@ fn a_step_is_the_mean_of_those_two_and_three_before_and_after_it() {
 }
 
 #[test]
-fn steps_without_odometry_have_none_and_stand_for_no_other() {
+fn a_frame_without_odometry_has_no_motion_and_is_no_neighbour() {
     let steps_m = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2];
     let wanted =
         [Some(0.8), Some((0.8 + 1.6) / 2.0), None, Some((0.1 + 0.2 + 3.2) / 3.0), Some(0.2), Some(0.8), None];
@@ -100,7 +100,7 @@ fn steps_without_odometry_have_none_and_stand_for_no_other() {
 }
 
 #[test]
-fn a_step_with_no_other_near_stands_for_itself() {
+fn a_step_without_neighbours_keeps_its_own_motion() {
     assert_steps(&forward_m(&[0.3, 0.5], &[]), &[Some(0.3), Some(0.5), None]);
     assert_steps(&forward_m(&[0.3, 0.5, 0.7], &[2]), &[Some(0.3), Some(0.5), None, None]);
 }

@@ -1,4 +1,4 @@
-//! Every column of the linearised model against a central difference of the full prediction.
+//! Columns of the fitted parameters against central differences of the full prediction.
 
 use std::collections::BTreeMap;
 
@@ -22,18 +22,18 @@ use crate::{
     recording::Recording,
 };
 
-/// Half the width of a central difference, as a part of the step that the column itself is found with.
+/// Half the width of a central difference, as a fraction of the step of the forward difference in the column.
 const WIDTH: f64 = 0.05;
-/// A column may be off by this part of the largest change that it makes in rows of the same quantity: it is a difference to
-/// one side.
+/// Allowed error of a derivative, as a fraction of the largest derivative of the same quantity: columns are forward
+/// differences.
 const TOLERANCE: f64 = 0.04;
-/// The same where a change of either sign does alike, so that at zero it has no slope: luma is blurred by red and blue that
-/// are apart, and noise grows with the steepness of the tone curve here and shrinks there.
+/// The same where a change of either sign has the same result, so that the slope at zero vanishes: red and blue that are
+/// apart blur luma, and the tone curve amplifies noise at some levels and attenuates it at others.
 const BENT_TOLERANCE: f64 = 0.12;
-/// Rounding, in the rows' units for a whole range of the parameter.
+/// Rounding error, in the unit of the measurement per range of the parameter.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether a column is one of those that [`BENT_TOLERANCE`] is for.
+/// Whether a column has the tolerance [`BENT_TOLERANCE`] at a measurement.
 fn is_bent(column: &FittedParameter, measurement: &Measurement) -> bool {
     match column.effect().id() {
         "chromatic_aberration" => measurement.quantity == Quantity::LineBlur,
@@ -42,7 +42,7 @@ fn is_bent(column: &FittedParameter, measurement: &Measurement) -> bool {
     }
 }
 
-/// An effect's values with all parameters at this part of the way from neutral to the end of their range.
+/// Returns values of an effect, all parameters at this fraction of the way from neutral to the upper end of their range.
 fn values_at(recording: &Recording<'_>, column: &FittedParameter, part: f64) -> Vec<f64> {
     let parameters = column.effect().parameters().iter().zip(starting_values(column.effect(), recording));
     parameters
@@ -53,11 +53,11 @@ fn values_at(recording: &Recording<'_>, column: &FittedParameter, part: f64) -> 
         .collect()
 }
 
-/// What is measured, linearised in one column at some values of its effect, and how the prediction changes there.
+/// Recording linearised in one column at some values of its effect, with the central differences there.
 struct Compared {
     column: FittedParameter,
-    own: Vec<LinearizedFrame>,
-    /// For each frame and row.
+    frames: Vec<LinearizedFrame>,
+    /// Central differences by frame and measurement.
     differences: Vec<Vec<f64>>,
 }
 
@@ -78,30 +78,34 @@ impl Compared {
         };
         let [minus, plus] = [value - half, value + half].map(|value| linearised(value, &[]));
         let width = column.coordinate(value + half) - column.coordinate(value - half);
-        // Residuals are measured minus expected.
+        // Residuals are measured minus predicted.
         let change = |(minus, plus): (&LinearizedFrame, &LinearizedFrame)| {
             let residuals = minus.residuals.iter().zip(&plus.residuals);
             residuals.map(|(minus, plus)| (minus - plus) / width).collect()
         };
         let differences = minus.iter().zip(&plus).map(change).collect();
-        Self { column, own: linearised(value, &[column]), differences }
+        Self { column, frames: linearised(value, &[column]), differences }
     }
 
-    /// Rows that are compared with their derivative and difference. The last frame's step ends where the trajectory does.
+    /// Iterates over the measurements that are compared, with derivative and difference. The odometry step of the last frame,
+    /// which ends where the trajectory ends, is left out.
     fn rows(&self) -> impl Iterator<Item = (&Measurement, f64, f64)> {
-        let last = self.own.len() - 1;
-        self.own.iter().zip(&self.differences).enumerate().flat_map(move |(frame, (own, differences))| {
-            let derivatives = own.jacobian.iter().map(|row| row.first().map_or(0.0, |entry| entry.1));
-            let all = own.measurements.iter().zip(derivatives).zip(differences);
-            all.map(|((row, derivative), difference)| (row, derivative, *difference)).filter(
-                move |(row, _, difference)| {
-                    difference.is_finite() && !(frame == last && row.quantity.channel() == Channel::Motion)
-                },
-            )
-        })
+        let last = self.frames.len() - 1;
+        self.frames.iter().zip(&self.differences).enumerate().flat_map(
+            move |(index, (frame, differences))| {
+                let derivatives = frame.jacobian.iter().map(|row| row.first().map_or(0.0, |entry| entry.1));
+                let all = frame.measurements.iter().zip(derivatives).zip(differences);
+                all.map(|((row, derivative), difference)| (row, derivative, *difference)).filter(
+                    move |(row, _, difference)| {
+                        difference.is_finite()
+                            && !(index == last && row.quantity.channel() == Channel::Motion)
+                    },
+                )
+            },
+        )
     }
 
-    /// Asserts that derivatives are the differences, but for rows that are left out.
+    /// Asserts that the derivatives equal the differences, except for measurements that are left out.
     fn assert_same(&self, is_left_out: impl Fn(&Measurement) -> bool) {
         let mut largest: BTreeMap<Quantity, f64> = BTreeMap::new();
         for (row, _, difference) in self.rows() {
@@ -125,16 +129,16 @@ fn is_of_odometry(column: &FittedParameter) -> bool {
 }
 
 #[test]
-fn each_parameter_changes_what_is_seen_as_its_column_says() {
+fn every_column_is_the_derivative_of_the_prediction() {
     let sequence = sequence();
     let recording = recording(&sequence);
     let measurements = measure_frames(&recording, &Model::default(), 20.0).unwrap();
     for column in fitted_parameters(&[]).into_iter().filter(|column| !is_of_odometry(column)) {
-        // Noise moves the mean of dark places a little: its columns are for the noise only.
+        // Noise changes the mean of dark pixels a little; its columns are limited to the noise channel.
         let is_left_out = |row: &Measurement| {
             column.effect().id() == "sensor_noise" && row.quantity.channel() != Channel::Noise
         };
-        // The colours have to be clearly apart for a slope; a lens or a lamp that is far off leaves no camera or clips.
+        // Colours must be clearly apart for a slope. Large changes of a lens or a lamp make the camera invalid or clip.
         let part = if column.effect().id() == "chromatic_aberration" { 0.1 } else { 0.02 };
         let values = values_at(&recording, &column, part);
         Compared::new(&recording, &measurements, column, &values).assert_same(is_left_out);
@@ -142,7 +146,7 @@ fn each_parameter_changes_what_is_seen_as_its_column_says() {
 }
 
 #[test]
-fn at_neutral_values_columns_are_the_predictions_slopes_too() {
+fn every_column_is_the_derivative_of_the_prediction_at_neutral_values() {
     let sequence = sequence();
     let recording = recording(&sequence);
     let measurements = measure_frames(&recording, &Model::default(), 20.0).unwrap();
@@ -160,10 +164,10 @@ fn at_neutral_values_columns_are_the_predictions_slopes_too() {
 }
 
 #[test]
-fn while_a_robot_walks_steadily_the_odometrys_columns_are_those_of_its_own_steps() {
+fn during_a_steady_walk_the_columns_of_the_odometry_are_the_derivatives_of_its_own_steps() {
     let sequence = sequence();
     let mut recording = recording(&sequence);
-    // A circle: every step is like every other, so that those around one stand for it exactly.
+    // A walk in a circle: all steps are alike, so that the neighbours of a step stand for it exactly.
     let pose = |time_s: f64| {
         let yaw_rad = 0.4 * time_s;
         let place = Pose2::new(1.5 * yaw_rad.sin(), -1.5 * yaw_rad.cos(), yaw_rad);

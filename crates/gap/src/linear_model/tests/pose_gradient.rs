@@ -13,7 +13,7 @@ use crate::{linear_model::pose_gradient::pose_gradient, measurement::camera::Fra
 
 /// Half the width of a central difference, radians or metres.
 const STEP: f64 = 1e-5;
-/// Pixels per radian or metre that a gradient may be off by, as a part of the largest of the six.
+/// Allowed error of a component, as a fraction of the largest of the six.
 const TOLERANCE: f64 = 1e-6;
 
 /// Unit vectors across lines.
@@ -40,7 +40,7 @@ fn poses() -> [CameraPose; 3] {
     ]
 }
 
-/// Points of the ground to the left of a camera, to its right and ahead of it, metres from below it.
+/// Returns points on the ground ahead of a camera and to both sides, in the world.
 fn points(pose: CameraPose) -> Vec<DVec2> {
     let ahead = [[0.7, 0.3], [1.2, -0.4], [2.5, 0.0], [3.5, 1.1]];
     ahead
@@ -51,7 +51,7 @@ fn points(pose: CameraPose) -> Vec<DVec2> {
         .to_vec()
 }
 
-/// Runs a check on every camera, pose and point that is seen, and returns how many there were.
+/// Runs a check on every camera, pose and visible point. Returns the number of checks.
 fn for_every_point(check: impl Fn(&Camera, CameraPose, DVec2, &dyn Fn(DVec2) -> [f64; 6])) -> usize {
     let sequence = sequence();
     let mut seen = 0;
@@ -60,27 +60,27 @@ fn for_every_point(check: impl Fn(&Camera, CameraPose, DVec2, &dyn Fn(DVec2) -> 
         let chain = Chain::nominal(&setup, &sequence.field);
         for pose in poses() {
             let trajectory = Trajectory::still(pose);
-            let view = FrameCamera::new(&chain, &trajectory, 0.0);
+            let frame_camera = FrameCamera::new(&chain, &trajectory, 0.0);
             for ground in points(pose) {
                 if camera.project(pose.camera_from_world(ground.extend(0.0))).is_err() {
                     continue;
                 }
                 seen += 1;
-                check(&camera, pose, ground, &|normal| pose_gradient(&view, ground, normal).unwrap());
+                check(&camera, pose, ground, &|normal| pose_gradient(&frame_camera, ground, normal).unwrap());
             }
         }
     }
     seen
 }
 
-/// Where a point of the ground is seen along a normal by a camera at this place, turned like this.
+/// Returns the pixel of a point on the ground, along a normal, for a camera with this position and rotation in the world.
 fn offset_px(camera: &Camera, position: DVec3, rotation: DMat3, ground: DVec2, normal: DVec2) -> f64 {
     let point_in_camera = rotation.transpose() * (ground.extend(0.0) - position);
     normal.dot(camera.project_unbounded(point_in_camera).unwrap())
 }
 
 #[test]
-fn a_lines_place_changes_with_all_six_numbers_of_the_pose_as_the_projection_does() {
+fn all_six_components_equal_differences_of_the_projection() {
     let seen = for_every_point(|camera, pose, ground, gradient| {
         let (position, rotation) = (pose.position_in_world(), pose.rotation_world_from_camera());
         let (sin, cos) = pose.yaw_rad.sin_cos();
@@ -105,24 +105,24 @@ fn a_lines_place_changes_with_all_six_numbers_of_the_pose_as_the_projection_does
             }
         }
     });
-    assert!(seen >= 24, "only {seen} points are seen");
+    assert!(seen >= 24, "only {seen} points are visible");
 }
 
 #[test]
-fn of_a_level_camera_the_three_rotations_are_pitch_up_yaw_to_the_right_and_roll() {
+fn the_rotations_of_a_level_camera_are_pitch_up_yaw_right_and_roll_clockwise() {
     let sequence = sequence();
     let [camera, ..] = cameras();
     let setup = CameraSetup { camera: camera.clone(), ..sequence.setup.clone() };
     let chain = Chain::nominal(&setup, &sequence.field);
     let pose = CameraPose::new(Pose2::new(0.3, -0.2, 0.7), 0.5, 0.0, 0.0);
     let trajectory = Trajectory::still(pose);
-    let view = FrameCamera::new(&chain, &trajectory, 0.0);
+    let frame_camera = FrameCamera::new(&chain, &trajectory, 0.0);
     let ground = pose.planar().position_in_world() + DVec2::from_angle(0.7).rotate(DVec2::new(1.6, 0.4));
     let offset = |pose: CameraPose, normal: DVec2| {
         offset_px(&camera, pose.position_in_world(), pose.rotation_world_from_camera(), ground, normal)
     };
     for normal in NORMALS {
-        let [pitch, yaw, roll, ..] = pose_gradient(&view, ground, normal).unwrap();
+        let [pitch, yaw, roll, ..] = pose_gradient(&frame_camera, ground, normal).unwrap();
         let slope = |change: fn(CameraPose, f64) -> CameraPose| {
             (offset(change(pose, STEP), normal) - offset(change(pose, -STEP), normal)) / (2.0 * STEP)
         };
