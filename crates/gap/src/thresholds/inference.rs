@@ -1,80 +1,94 @@
 //! Which effects are supported, and which set of them is selected.
 
+use super::LinearModelThresholds;
+
 /// Which effects are supported, which set of them is selected, and what can be said of the others.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct InferenceThresholds {
-    /// Frames in a row that are held out together, as neighbours see the same things. Fewer in short recordings. Chosen.
+    /// Frames in a row that are held out together, as neighbours see the same things. Fewer in short recordings. Chosen; no
+    /// measurement.
     pub(crate) held_out_run_frames: usize,
     /// One run of so many is held out. Chosen: a quarter of the recording.
     pub(crate) held_out_every: usize,
 
-    /// Folds of the cross-validation. Chosen.
+    /// Folds of the cross-validation. Chosen: between five and ten, as is usual (Hastie, Tibshirani and Friedman 2009,
+    /// section 7.10).
     pub(crate) folds: usize,
     /// Frames in a row that are left out together where an effect changes over time: few, so that it is seen before and
-    /// after. Chosen.
+    /// after. Chosen; no measurement.
     pub(crate) fold_run_frames: usize,
     /// Neighbouring views whose scores are taken to be correlated: the bandwidth of Bartlett's kernel (Newey and West 1987).
-    /// Chosen; the test of even p-values in `evidence.rs` measures it on errors that frames share.
+    /// Derived: the rule of thumb 4 (n / 100)^(2/9) (Newey and West 1994) gives 3 for 28 to 99 views. A test in `evidence.rs`
+    /// has p-values held to their level with it, on errors that frames share.
     pub(crate) correlated_clusters: usize,
     /// A column has no scatter over the field where its variance by places is below this part of that by views: the odometry.
-    /// Chosen.
+    /// Chosen: far above rounding, and far below what any measurement with a place has.
     pub(crate) least_field_variance_ratio: f64,
 
     /// Largest p-value of a supported effect, corrected for all effects tested. Chosen, for a rate of wrong names below 2 %
-    /// where nothing is missing; the study measures 0 of 220.
+    /// where nothing is missing; measured on draw 3: 0 of 220.
     pub(crate) significance: f64,
-    /// Smallest gain on held-out frames of a supported effect, log-likelihood: a factor of e⁴ ≈ 55. Chosen.
+    /// Smallest gain on held-out frames of a supported effect, log-likelihood. Chosen: a likelihood ratio of e⁴ ≈ 55, "strong
+    /// evidence" by Kass and Raftery (1995).
     pub(crate) least_gain: f64,
-    /// Smallest gain on held-out frames of a supported effect, in its standard deviations. Chosen.
+    /// Smallest gain on held-out frames of a supported effect, in its standard deviations. Chosen: chance in one of 160
+    /// cases, if gains were normally distributed.
     pub(crate) least_gain_score: f64,
-    /// Largest p-value of sizes that matter: those above the material size of their parameter. Chosen.
+    /// Largest p-value of sizes that matter: those above the material size of their parameter. Set on draw 0: without it, one
+    /// of two names given in 220 recordings with nothing hidden came from a size that mattered by chance.
     pub(crate) material_significance: f64,
-    /// Sizes of an effect are tested one by one where it has no more than this. Chosen: the knots of the exposure, the effect
-    /// of most sizes.
+    /// Sizes of an effect are tested one by one where it has no more than this. Derived: the knots of the exposure, the
+    /// effect of most sizes.
     pub(crate) most_sizes_tested_alone: usize,
 
-    /// Standard deviations of the difference of two gains from which on one set of effects is better than another. Chosen.
+    /// Standard deviations of the difference of two gains from which on one set of effects is better than another. Chosen: as
+    /// [`Self::least_gain_score`].
     pub(crate) distinguishable_score: f64,
-    /// A supported effect may stand for the best one where it gains this part of what that one gains. Set on the study, on
-    /// effects so large that the linearised model is far off.
+    /// A supported effect may stand for the best one where it gains this part of what that one gains: the linearised model is
+    /// far off for large effects. Chosen; no measurement.
     pub(crate) least_gain_ratio: f64,
     /// Number of effects beside the best one that are fitted until they converge. Chosen for the time that it takes.
     pub(crate) most_alternatives: usize,
-    /// Largest p-value, corrected, of an effect that is tried beside every other one where none is supported alone. Chosen.
+    /// Largest p-value, corrected, of an effect that is tried beside every other one where none is supported alone. Chosen,
+    /// when in two recordings of draw 0 with two large effects nothing was named; both are named since.
     pub(crate) lead_p_value: f64,
     /// Number of effects that are tried so. Chosen for the time that it takes.
     pub(crate) most_leads: usize,
 
-    /// Distance at which lines are looked for from where the first model has them, as a part of the picture's width. Chosen.
+    /// Distance at which lines are looked for from where the first model has them, as a part of the picture's width. Chosen:
+    /// lines farther off, as of a field that is a third of a metre too large, are left to the coarse alignment.
     pub(crate) search_first: f64,
-    /// The same from where a fitted model has them. Chosen.
+    /// The same from where a fitted model has them. Chosen: half of [`Self::search_first`].
     pub(crate) search_again: f64,
-    /// Largest number of steps of Gauss and Newton's method. Chosen.
+    /// Largest number of steps of Gauss and Newton's method. Chosen, when parameters came to be held at the ends of their
+    /// ranges: six before.
     pub(crate) most_gauss_newton_steps: usize,
-    /// A fit has converged when a step gains less than this, log-likelihood. Chosen.
+    /// A fit has converged when a step gains less than this, log-likelihood. Chosen: a change by 1.4 standard deviations of
+    /// one parameter.
     pub(crate) converged_gain: f64,
     /// Part of what a model explains by which two fitted models may differ, in log-likelihood, and still leave as little as
-    /// each other. Set on the study. Not [`Self::model_error`], which is of residuals and decides what is unknown.
+    /// each other. Set on draw 0, where a black level was called a tone curve that left as little. Not [`Self::model_error`],
+    /// which is of residuals and decides what is unknown.
     pub(crate) compared_model_error: f64,
     /// Standard deviations at which residuals are cut off where fitted models are compared: beyond, they are no measurements.
-    /// The same as Tukey's constant in [`crate::linear_model::system`], but as a bound and not as a weight.
+    /// Derived: [`super::LinearModelThresholds::tukey_sigmas`], as a bound and not as a weight.
     pub(crate) compared_residual_sigmas: f64,
     /// Measurements that the mean residual of a quantity of the pictures stands for where fitted models are compared, as
-    /// models find different numbers of lines. Chosen.
+    /// models find different numbers of lines. Chosen: 50 in each of 60 frames.
     pub(crate) picture_rows: f64,
-    /// The same of a quantity of the odometry. Chosen.
+    /// The same of a quantity of the odometry. Chosen: one for each of 60 frames.
     pub(crate) odometry_rows: f64,
 
-    /// A gap has changed where it differs by more than this part of what it was: measuring the lines anew changes it by less.
-    /// Chosen.
+    /// A gap has changed where it differs by more than this part of what it was. Chosen: measuring the lines anew changes it
+    /// by less.
     pub(crate) least_gap_change: f64,
-    /// Part of recordings in which an effect at its detection limit is found. Chosen.
+    /// Part of recordings in which an effect at its detection limit is found. Chosen: it defines the limit.
     pub(crate) power: f64,
     /// Part of what a model explains that its residuals may be off by: discs are no Gaussians, clipped colours no gains. Set
-    /// on the study. Not [`Self::compared_model_error`], which is of log-likelihoods and decides ties.
+    /// on draw 0. Not [`Self::compared_model_error`], which is of log-likelihoods and decides ties.
     pub(crate) model_error: f64,
-    /// Standard deviations beyond which a measurement of a held-out frame is something else than what it should be. As
-    /// Tukey's constant in the fits.
+    /// Standard deviations beyond which a measurement of a held-out frame is something else than what it should be. Derived:
+    /// [`super::LinearModelThresholds::tukey_sigmas`].
     pub(crate) outlying_sigmas: f64,
 }
 
@@ -101,12 +115,12 @@ impl InferenceThresholds {
         most_gauss_newton_steps: 8,
         converged_gain: 1.0,
         compared_model_error: 0.03,
-        compared_residual_sigmas: 5.0,
+        compared_residual_sigmas: LinearModelThresholds::DEFAULT.tukey_sigmas,
         picture_rows: 3000.0,
         odometry_rows: 60.0,
         least_gap_change: 0.02,
         power: 0.9,
         model_error: 0.04,
-        outlying_sigmas: 5.0,
+        outlying_sigmas: LinearModelThresholds::DEFAULT.tukey_sigmas,
     };
 }

@@ -1,7 +1,19 @@
 //! All numbers that decide something, each with what it is, its unit, and where it comes from.
 //!
-//! "Chosen" means that nothing was measured for it. "Set on the study" means that it was chosen with the results of the study
-//! in `docs/gap.md` in view, on its draws 0 to 2; the figures of that page are from a draw that no number was set on.
+//! | word | what stands behind the number |
+//! |---|---|
+//! | Derived | it follows from the equation, the literature or the other number that is named |
+//! | Measured | it is the result of the measurement that is named |
+//! | Set on | other values were tried on the recordings that are named, and the results decided |
+//! | Chosen: … | a judgement. What follows is the reason that was given, or what the number amounts to; it is no evidence |
+//! | Chosen, when … | a judgement, made for a case that is named. No other value is known to have been tried |
+//! | Chosen; no measurement | a judgement, and nothing else is known of it |
+//!
+//! Draws are those of the study in `docs/gap.md`, draw 0 with the recordings of its first runs. No number was set on draw 3, whose
+//! figures that page has.
+//!
+//! Numbers of the arithmetic (steps of differences, ends of iterations, guards against division by zero) stand where they are
+//! used; sizes from which on an effect matters stand with the effect, in `reality_sim_sensor`.
 
 mod diagnostics;
 mod inference;
