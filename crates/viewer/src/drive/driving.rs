@@ -11,7 +11,7 @@ use reality_sim_core::{
 };
 
 use super::{
-    kind::{PictureKind, View},
+    kind::{Pane, PictureKind},
     layout::Layout,
     map::{Map, MapContent},
     painter::{Answer, Around, Painted, Painter, Wish},
@@ -41,7 +41,7 @@ pub struct Driving {
     map: Map,
     pictures: Pictures,
     around: Option<Around>,
-    painted: BTreeMap<View, Painted>,
+    painted: BTreeMap<Pane, Painted>,
     /// Width of the panel in the last frame, points.
     width: f32,
     /// Width of the field's panel in the last frame, points.
@@ -118,8 +118,8 @@ impl Driving {
         while let Some(answer) = self.painter.as_mut().and_then(Painter::answer) {
             match answer {
                 Answer::Around(around) => self.around = Some(around),
-                Answer::Painted(view, painted) => {
-                    self.painted.insert(view, painted);
+                Answer::Painted(pane, painted) => {
+                    self.painted.insert(pane, painted);
                 }
                 Answer::Problem(problem) => problems.add(problem),
             }
@@ -130,7 +130,7 @@ impl Driving {
         let painter = self.painter.get_or_insert_with(|| Painter::spawn(ui.ctx(), self.source.clone()));
         painter.wish(Wish {
             pose: self.robot.pose(),
-            views: settings.views(),
+            panes: settings.panes(),
             is_best_effort: settings.is_best_effort,
             edges_in: settings.layers.triangulation.then(|| self.map.seen()),
             probes: self.probes.clone(),
@@ -175,8 +175,8 @@ impl Driving {
     fn map_ui(&mut self, ui: &mut Ui, settings: &mut DriveSettings, devices: &[Device]) -> bool {
         self.pose_ui(ui);
         let made = match settings.layout {
-            Layout::All => View::picture(PictureKind::Blend),
-            _ => View { kind: settings.left, shown: settings.shown },
+            Layout::All => Pane::picture(PictureKind::Blend),
+            _ => Pane { kind: settings.left, aspect: settings.aspect },
         };
         let drawn = self.painted.get(&made).and_then(|painted| painted.result.as_ref().ok());
         let used_by = made.kind.name();

@@ -1,4 +1,4 @@
-//! Kinds of pictures at a pose, and their views.
+//! Kinds of pictures at a pose, and the panes that show them.
 
 use reality_sim_synthesis::MethodKind;
 use serde::{Deserialize, Serialize};
@@ -69,7 +69,7 @@ pub enum MadeBy {
 /// Aspect of a picture to show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Shown {
+pub enum Aspect {
     /// The picture.
     #[default]
     Picture,
@@ -79,16 +79,16 @@ pub enum Shown {
     Trust,
 }
 
-/// Kind of picture and the aspect to show.
+/// Pane on the screen: the kind of picture that it shows, and which aspect of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct View {
+pub struct Pane {
     pub kind: PictureKind,
-    pub shown: Shown,
+    pub aspect: Aspect,
 }
 
-impl View {
+impl Pane {
     /// Shows the picture of a kind.
     pub fn picture(kind: PictureKind) -> Self {
-        Self { kind, shown: Shown::Picture }
+        Self { kind, aspect: Aspect::Picture }
     }
 }

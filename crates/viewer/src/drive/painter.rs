@@ -23,7 +23,7 @@ use reality_sim_synthesis::{
 
 use super::{
     edges::{Edges, Region, edges},
-    kind::{MadeBy, PictureKind, Shown, View},
+    kind::{Aspect, MadeBy, Pane, PictureKind},
     source::{NearProbe, Probes, Source},
 };
 use crate::{
@@ -42,7 +42,7 @@ const SAME_POSE_PX: f64 = 0.5;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wish {
     pub pose: CameraPose,
-    pub views: Vec<View>,
+    pub panes: Vec<Pane>,
     /// Whether pictures are also drawn where little was recorded.
     pub is_best_effort: bool,
     /// Region in which the triangulation's edges are requested.
@@ -55,7 +55,7 @@ pub struct Wish {
 impl Wish {
     /// Whether the pictures of another request are equally valid.
     fn has_pictures_of(&self, other: &Self) -> bool {
-        let Self { pose, is_best_effort, probes, device, views: _, edges_in: _ } = self;
+        let Self { pose, is_best_effort, probes, device, panes: _, edges_in: _ } = self;
         *pose == other.pose
             && *is_best_effort == other.is_best_effort
             && *probes == other.probes
@@ -100,7 +100,7 @@ pub struct Facts {
     pub probe: Option<NearProbe>,
 }
 
-/// View at a pose, or the reason why there is none.
+/// Picture of a pane at a pose, or the reason why there is none.
 #[derive(Debug, Clone)]
 pub struct Painted {
     pub pose: CameraPose,
@@ -110,7 +110,7 @@ pub struct Painted {
 /// Answer of the drawing thread.
 pub enum Answer {
     Around(Around),
-    Painted(View, Painted),
+    Painted(Pane, Painted),
     /// Problem to show to the user.
     Problem(String),
 }
@@ -201,20 +201,20 @@ impl Wishes {
     }
 }
 
-/// Order of drawing: the view drawn the longest ago comes first, so that each has its turn while requests change faster than
-/// all views can be drawn.
+/// Order of drawing: the pane painted the longest ago comes first, so that each has its turn while requests change faster than
+/// all panes can be drawn.
 #[derive(Default)]
 struct Turns {
     count: u64,
-    /// Number of each view's last turn.
-    last: BTreeMap<View, u64>,
-    /// Last request, and the views already drawn for it.
+    /// Number of each pane's last turn.
+    last: BTreeMap<Pane, u64>,
+    /// Last request, and the panes already drawn for it.
     wish: Option<Wish>,
-    drawn: BTreeSet<View>,
+    drawn: BTreeSet<Pane>,
 }
 
 impl Turns {
-    /// Begins a request, keeping the views drawn for the previous one if they are equally valid.
+    /// Begins a request, keeping the panes drawn for the previous one if they are equally valid.
     fn begin(&mut self, wish: &Wish) {
         let before = self.wish.replace(wish.clone());
         if !before.is_some_and(|before| before.has_pictures_of(wish)) {
@@ -222,14 +222,14 @@ impl Turns {
         }
     }
 
-    /// Returns the next view to draw; `None` when all are drawn.
-    fn next(&mut self, wish: &Wish) -> Option<View> {
-        let left = wish.views.iter().filter(|view| !self.drawn.contains(view));
-        let view = *left.min_by_key(|view| self.last.get(view).copied())?;
+    /// Returns the next pane to draw; `None` when all are drawn.
+    fn next(&mut self, wish: &Wish) -> Option<Pane> {
+        let left = wish.panes.iter().filter(|pane| !self.drawn.contains(pane));
+        let pane = *left.min_by_key(|pane| self.last.get(pane).copied())?;
         self.count += 1;
-        self.last.insert(view, self.count);
-        self.drawn.insert(view);
-        Some(view)
+        self.last.insert(pane, self.count);
+        self.drawn.insert(pane);
+        Some(pane)
     }
 }
 
@@ -287,7 +287,7 @@ impl Studio {
         [self.strict, self.best_effort] = synthesizers(self.strict.archive(), &warper);
     }
 
-    /// Draws the requested views until the request changes, at least one picture. Returns false when the receiver is gone.
+    /// Draws the requested panes until the request changes, at least one picture. Returns false when the receiver is gone.
     fn fulfil(
         &mut self,
         wish: &Wish,
@@ -302,13 +302,13 @@ impl Studio {
         }
         let mut made: BTreeMap<PictureKind, Result<Made, String>> = BTreeMap::new();
         turns.begin(wish);
-        while let Some(view) = turns.next(wish) {
-            let made = made.entry(view.kind).or_insert_with(|| self.make(view.kind, wish, probe));
+        while let Some(pane) = turns.next(wish) {
+            let made = made.entry(pane.kind).or_insert_with(|| self.make(pane.kind, wish, probe));
             let result = match made {
-                Ok(made) => drawn(made, view),
+                Ok(made) => drawn(made, pane),
                 Err(reason) => Err(reason.clone()),
             };
-            if !say(Answer::Painted(view, Painted { pose: wish.pose, result })) {
+            if !say(Answer::Painted(pane, Painted { pose: wish.pose, result })) {
                 return false;
             }
             if wishes.have_changed() {
@@ -400,11 +400,11 @@ impl Made {
     }
 }
 
-fn drawn(made: &Made, view: View) -> Result<Drawn, String> {
-    let picture = match (view.shown, &made.reconstruction) {
-        (Shown::Picture, _) => color_image(&made.picture),
-        (Shown::Origins, Some(reconstruction)) => color_image(&reconstruction.origin_picture()),
-        (Shown::Trust, Some(reconstruction)) => gray_image(&reconstruction.trust_picture()),
+fn drawn(made: &Made, pane: Pane) -> Result<Drawn, String> {
+    let picture = match (pane.aspect, &made.reconstruction) {
+        (Aspect::Picture, _) => color_image(&made.picture),
+        (Aspect::Origins, Some(reconstruction)) => color_image(&reconstruction.origin_picture()),
+        (Aspect::Trust, Some(reconstruction)) => gray_image(&reconstruction.trust_picture()),
         (_, None) => {
             let words = "This picture is not made of recorded ones: choose another method, or show the picture itself.";
             return Err(words.to_owned());

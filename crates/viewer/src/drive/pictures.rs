@@ -10,7 +10,7 @@ use reality_sim_core::pose::CameraPose;
 use reality_sim_synthesis::Archive;
 
 use super::{
-    kind::{PictureKind, Shown, View},
+    kind::{Aspect, Pane, PictureKind},
     layout::Layout,
     painter::{Facts, Painted},
     settings::DriveSettings,
@@ -31,7 +31,7 @@ const LEAST_SHARE: f64 = 0.005;
 /// Data to show.
 pub struct Gallery<'a> {
     pub archive: &'a Archive,
-    pub painted: &'a BTreeMap<View, Painted>,
+    pub painted: &'a BTreeMap<Pane, Painted>,
     pub probe: Option<NearProbe>,
     /// Pose of the robot: pictures may still belong to an earlier pose.
     pub pose: CameraPose,
@@ -40,7 +40,7 @@ pub struct Gallery<'a> {
 /// Pictures on the screen.
 #[derive(Default)]
 pub struct Pictures {
-    uploaded: BTreeMap<View, Uploaded>,
+    uploaded: BTreeMap<Pane, Uploaded>,
     black: Uploaded,
 }
 
@@ -66,7 +66,7 @@ impl Pictures {
         });
         ui.horizontal_wrapped(|ui| {
             if settings.layout != Layout::All {
-                shown_box(ui, settings);
+                aspect_box(ui, settings);
             }
             ui.checkbox(&mut settings.is_best_effort, "Best effort").on_hover_text(
                 "A picture also where little was recorded: what no recorded picture shows is filled in smoothly",
@@ -76,39 +76,39 @@ impl Pictures {
 
     /// Shows the pictures; returns the pose to go to if the user asks for one.
     pub fn ui(&mut self, ui: &mut Ui, settings: &mut DriveSettings, gallery: &Gallery) -> Option<CameraPose> {
-        let views = settings.views();
+        let panes = settings.panes();
         let legend = if settings.layout == Layout::All { 0.0 } else { 44.0 };
         let room = (ui.available_size() - vec2(0.0, legend)).max(Vec2::splat(60.0));
-        let there = match (settings.layout, &views[..]) {
+        let there = match (settings.layout, &panes[..]) {
             (Layout::Wipe, &[left, right]) => {
                 self.wipe(ui, [left, right], room, &mut settings.wipe_share, gallery)
             }
-            _ => self.grid(ui, &views, room, gallery),
+            _ => self.grid(ui, &panes, room, gallery),
         };
         if settings.layout != Layout::All {
-            legend_ui(ui, views[0], gallery);
+            legend_ui(ui, panes[0], gallery);
         }
         there
     }
 
-    /// Shows all views, in the number of columns that makes them largest.
-    fn grid(&mut self, ui: &mut Ui, views: &[View], room: Vec2, gallery: &Gallery) -> Option<CameraPose> {
+    /// Shows all panes, in the number of columns that makes them largest.
+    fn grid(&mut self, ui: &mut Ui, panes: &[Pane], room: Vec2, gallery: &Gallery) -> Option<CameraPose> {
         let gap = ui.spacing().item_spacing;
         let pixels = size_of(gallery.archive);
         let cell = |columns: usize| {
-            let rows = views.len().div_ceil(columns);
+            let rows = panes.len().div_ceil(columns);
             let [columns, rows] = [columns as f32, rows as f32];
             vec2((room.x - gap.x * columns) / columns, (room.y - gap.y * rows) / rows - HEAD - gap.y)
         };
         let scale = |columns: usize| (cell(columns) / vec2(pixels[0] as f32, pixels[1] as f32)).min_elem();
-        let largest = (1..=views.len()).max_by(|&a, &b| scale(a).total_cmp(&scale(b))).unwrap_or(1);
+        let largest = (1..=panes.len()).max_by(|&a, &b| scale(a).total_cmp(&scale(b))).unwrap_or(1);
         // Two pictures are easier to compare side by side.
-        let columns = if views.len() == 2 && scale(2) > 0.7 * scale(1) { 2 } else { largest };
+        let columns = if panes.len() == 2 && scale(2) > 0.7 * scale(1) { 2 } else { largest };
         let mut there = None;
-        for row in views.chunks(columns) {
+        for row in panes.chunks(columns) {
             ui.horizontal_top(|ui| {
-                for &view in row {
-                    ui.vertical(|ui| there = self.pane(ui, view, cell(columns), gallery).or(there));
+                for &pane in row {
+                    ui.vertical(|ui| there = self.pane(ui, pane, cell(columns), gallery).or(there));
                 }
             });
         }
@@ -116,20 +116,20 @@ impl Pictures {
     }
 
     /// Shows one picture under its name, or the reason why there is none.
-    fn pane(&mut self, ui: &mut Ui, view: View, room: Vec2, gallery: &Gallery) -> Option<CameraPose> {
-        let painted = gallery.painted.get(&view);
+    fn pane(&mut self, ui: &mut Ui, pane: Pane, room: Vec2, gallery: &Gallery) -> Option<CameraPose> {
+        let painted = gallery.painted.get(&pane);
         let pixels = size_of(gallery.archive);
         let width = (room / vec2(pixels[0] as f32, pixels[1] as f32)).min_elem() * pixels[0] as f32;
         ui.set_width(width.max(40.0));
-        head(ui, view, painted, gallery.pose);
-        let canvas = PictureCanvas::allocate(ui, pixels, room, &described(view, painted));
+        head(ui, pane, painted, gallery.pose);
+        let canvas = PictureCanvas::allocate(ui, pixels, room, &described(pane, painted));
         match painted.map(|painted| &painted.result) {
             Some(Ok(drawn)) => {
-                let texture = self.texture(ui, view, &drawn.picture);
+                let texture = self.texture(ui, pane, &drawn.picture);
                 canvas.draw(texture, Color32::WHITE);
                 None
             }
-            Some(Err(reason)) => words(ui, canvas.rect, view, reason, gallery.probe),
+            Some(Err(reason)) => words(ui, canvas.rect, pane, reason, gallery.probe),
             None => waiting(ui, canvas.rect),
         }
     }
@@ -138,27 +138,27 @@ impl Pictures {
     fn wipe(
         &mut self,
         ui: &mut Ui,
-        views: [View; 2],
+        panes: [Pane; 2],
         room: Vec2,
         share: &mut f32,
         gallery: &Gallery,
     ) -> Option<CameraPose> {
-        let painted = views.map(|view| gallery.painted.get(&view));
+        let painted = panes.map(|pane| gallery.painted.get(&pane));
         let pixels = size_of(gallery.archive);
         let room = room - vec2(0.0, 2.0 * (HEAD + ui.spacing().item_spacing.y));
-        for (side, (view, painted)) in
-            ["left of the line:", "right of it:"].iter().zip(views.iter().zip(painted))
+        for (side, (pane, painted)) in
+            ["left of the line:", "right of it:"].iter().zip(panes.iter().zip(painted))
         {
             ui.horizontal(|ui| {
                 ui.weak(*side);
-                head(ui, *view, painted, gallery.pose);
+                head(ui, *pane, painted, gallery.pose);
             });
         }
-        let names = [0, 1].map(|side| described(views[side], painted[side]));
+        let names = [0, 1].map(|side| described(panes[side], painted[side]));
         let name = format!("{}, {:.0} % of the width; then {}", names[0], 100.0 * *share, names[1]);
         let canvas = PictureCanvas::allocate(ui, pixels, room.max(Vec2::splat(40.0)), &name);
         let textures = [0, 1].map(|side| match painted[side].map(|painted| &painted.result) {
-            Some(Ok(drawn)) => self.texture(ui, views[side], &drawn.picture),
+            Some(Ok(drawn)) => self.texture(ui, panes[side], &drawn.picture),
             _ => self.no_picture(ui),
         });
         canvas.draw_wipe(ui, textures[0], textures[1], share);
@@ -169,14 +169,14 @@ impl Pictures {
             if let Some(Err(reason)) = painted[side].map(|painted| &painted.result)
                 && halves[side].width() > 100.0
             {
-                there = words(ui, halves[side], views[side], reason, gallery.probe).or(there);
+                there = words(ui, halves[side], panes[side], reason, gallery.probe).or(there);
             }
         }
         there
     }
 
-    fn texture(&mut self, ui: &Ui, view: View, picture: &Arc<ColorImage>) -> TextureId {
-        self.uploaded.entry(view).or_default().texture(ui.ctx(), picture)
+    fn texture(&mut self, ui: &Ui, pane: Pane, picture: &Arc<ColorImage>) -> TextureId {
+        self.uploaded.entry(pane).or_default().texture(ui.ctx(), picture)
     }
 
     fn no_picture(&mut self, ui: &Ui) -> TextureId {
@@ -201,34 +201,34 @@ fn kind_box(ui: &mut Ui, name: &str, kind: &mut PictureKind) {
     chosen.response.labelled_by(label.id).on_hover_text(kind.meaning());
 }
 
-fn shown_box(ui: &mut Ui, settings: &mut DriveSettings) {
-    let words = |shown: Shown| match shown {
-        Shown::Picture => "the picture",
-        Shown::Origins => "where each pixel came from",
-        Shown::Trust => "how far to trust each pixel",
+fn aspect_box(ui: &mut Ui, settings: &mut DriveSettings) {
+    let words = |aspect: Aspect| match aspect {
+        Aspect::Picture => "the picture",
+        Aspect::Origins => "where each pixel came from",
+        Aspect::Trust => "how far to trust each pixel",
     };
     let name = if settings.layout == Layout::One { "Show" } else { "Show on the left" };
     let label = ui.add(egui::Label::new(name).extend());
-    let chosen = ComboBox::from_id_salt("shown").width(180.0).selected_text(words(settings.shown));
+    let chosen = ComboBox::from_id_salt("shown").width(180.0).selected_text(words(settings.aspect));
     let chosen = chosen.show_ui(ui, |ui| {
-        for shown in [Shown::Picture, Shown::Origins, Shown::Trust] {
-            ui.selectable_value(&mut settings.shown, shown, words(shown));
+        for aspect in [Aspect::Picture, Aspect::Origins, Aspect::Trust] {
+            ui.selectable_value(&mut settings.aspect, aspect, words(aspect));
         }
     });
     chosen.response.labelled_by(label.id);
 }
 
 /// Shows a picture's name and facts, and whether it belongs to another pose than the robot's.
-fn head(ui: &mut Ui, view: View, painted: Option<&Painted>, pose: CameraPose) {
+fn head(ui: &mut Ui, pane: Pane, painted: Option<&Painted>, pose: CameraPose) {
     let is_old = painted.is_some_and(|painted| painted.pose != pose);
     let has_room = !is_old || ui.available_width() > ROOM_FOR_FACTS;
     let drawn = painted.and_then(|painted| painted.result.as_ref().ok());
     let facts = drawn.map(|drawn| &drawn.facts).filter(|_| has_room);
     let names = |ui: &mut Ui| {
-        ui.add(egui::Label::new(RichText::new(view.kind.name()).strong()).truncate())
-            .on_hover_text(view.kind.meaning());
+        ui.add(egui::Label::new(RichText::new(pane.kind.name()).strong()).truncate())
+            .on_hover_text(pane.kind.meaning());
         if let Some(facts) = facts {
-            let text = facts_in_words(view.kind, facts);
+            let text = facts_in_words(pane.kind, facts);
             ui.add(egui::Label::new(RichText::new(&text).weak()).truncate())
                 .on_hover_text(format!("{text}\n{FACTS_MEAN}"));
         }
@@ -263,12 +263,12 @@ fn facts_in_words(kind: PictureKind, facts: &Facts) -> String {
 }
 
 /// Describes a picture in words, for screen readers.
-fn described(view: View, painted: Option<&Painted>) -> String {
-    let name = view.kind.name();
-    let shown = match view.shown {
-        Shown::Picture => "",
-        Shown::Origins => ", where each pixel came from,",
-        Shown::Trust => ", how far to trust it,",
+fn described(pane: Pane, painted: Option<&Painted>) -> String {
+    let name = pane.kind.name();
+    let shown = match pane.aspect {
+        Aspect::Picture => "",
+        Aspect::Origins => ", where each pixel came from,",
+        Aspect::Trust => ", how far to trust it,",
     };
     match painted {
         Some(Painted { pose, result: Ok(_) }) => {
@@ -287,16 +287,16 @@ fn waiting(ui: &mut Ui, rect: Rect) -> Option<CameraPose> {
 }
 
 /// Shows why there is no picture, and a button that leads to one.
-fn words(ui: &mut Ui, rect: Rect, view: View, reason: &str, probe: Option<NearProbe>) -> Option<CameraPose> {
+fn words(ui: &mut Ui, rect: Rect, pane: Pane, reason: &str, probe: Option<NearProbe>) -> Option<CameraPose> {
     let inside = rect.shrink(0.06 * rect.width()).round_ui();
     let mut child = ui.new_child(
-        UiBuilder::new().max_rect(inside).layout(Flow::top_down(Align::Center)).id_salt(view.kind.name()),
+        UiBuilder::new().max_rect(inside).layout(Flow::top_down(Align::Center)).id_salt(pane.kind.name()),
     );
     child.set_clip_rect(rect.intersect(ui.clip_rect()));
     // In a small picture every line counts; what does not fit can be scrolled to.
     let is_small = inside.height() < 140.0;
     child.add_space(if is_small { 0.0 } else { 0.28 * inside.height() });
-    let probe = probe.filter(|_| view.kind == PictureKind::Truth);
+    let probe = probe.filter(|_| pane.kind == PictureKind::Truth);
     egui::ScrollArea::vertical()
         .show(&mut child, |ui| {
             let text = RichText::new(reason).color(Color32::from_gray(205));
@@ -312,11 +312,11 @@ fn words(ui: &mut Ui, rect: Rect, view: View, reason: &str, probe: Option<NearPr
 }
 
 /// Shows the meaning of the colours.
-fn legend_ui(ui: &mut Ui, view: View, gallery: &Gallery) {
-    let drawn = gallery.painted.get(&view).and_then(|painted| painted.result.as_ref().ok());
+fn legend_ui(ui: &mut Ui, pane: Pane, gallery: &Gallery) {
+    let drawn = gallery.painted.get(&pane).and_then(|painted| painted.result.as_ref().ok());
     let Some(drawn) = drawn else { return };
-    ui.horizontal_wrapped(|ui| match view.shown {
-        Shown::Trust => {
+    ui.horizontal_wrapped(|ui| match pane.aspect {
+        Aspect::Trust => {
             ui.weak("white: fully · black: not at all");
         }
         _ if drawn.facts.used.is_empty() => {
@@ -332,7 +332,7 @@ fn legend_ui(ui: &mut Ui, view: View, gallery: &Gallery) {
                     swatched(ui, hue(number), &text);
                 }
             }
-            if view.shown == Shown::Origins {
+            if pane.aspect == Aspect::Origins {
                 swatched(ui, Color32::BLACK, "no recorded picture shows it");
             }
         }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    kind::{PictureKind, Shown, View},
+    kind::{Aspect, Pane, PictureKind},
     layout::Layout,
     map::Layers,
 };
@@ -17,7 +17,7 @@ pub struct DriveSettings {
     pub left: PictureKind,
     pub right: PictureKind,
     /// Aspect of the left picture to show.
-    pub shown: Shown,
+    pub aspect: Aspect,
     /// Position of the line of a wipe, 0 to 1 from the left.
     pub wipe_share: f32,
     pub is_best_effort: bool,
@@ -34,7 +34,7 @@ impl Default for DriveSettings {
             layout: Layout::default(),
             left: PictureKind::Auto,
             right: PictureKind::Simulated,
-            shown: Shown::default(),
+            aspect: Aspect::default(),
             wipe_share: 0.5,
             is_best_effort: false,
             layers: Layers::default(),
@@ -45,15 +45,15 @@ impl Default for DriveSettings {
 }
 
 impl DriveSettings {
-    /// Returns the views of the chosen arrangement, from left to right.
-    pub fn views(&self) -> Vec<View> {
-        let left = View { kind: self.left, shown: self.shown };
-        let right = View::picture(self.right);
+    /// Returns the panes of the chosen arrangement, from left to right.
+    pub fn panes(&self) -> Vec<Pane> {
+        let left = Pane { kind: self.left, aspect: self.aspect };
+        let right = Pane::picture(self.right);
         match self.layout {
             Layout::One => vec![left],
             Layout::Side | Layout::Wipe => vec![left, right],
             // Auto repeats one of the other methods.
-            Layout::All => PictureKind::ALL[1..].iter().map(|&kind| View::picture(kind)).collect(),
+            Layout::All => PictureKind::ALL[1..].iter().map(|&kind| Pane::picture(kind)).collect(),
         }
     }
 }

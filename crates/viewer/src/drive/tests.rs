@@ -25,7 +25,7 @@ use reality_sim_core::{
 use super::{
     DrivePanel, DriveSettings,
     driving::Driving,
-    kind::{PictureKind, Shown, View},
+    kind::{Aspect, Pane, PictureKind},
     painter::{Answer, Around, Painted, Painter, Wish},
     source::{Source, build},
 };
@@ -76,7 +76,7 @@ fn source() -> Arc<Source> {
 fn wish(source: &Source, pose: CameraPose) -> Wish {
     Wish {
         pose,
-        views: PictureKind::ALL.map(View::picture).to_vec(),
+        panes: PictureKind::ALL.map(Pane::picture).to_vec(),
         is_best_effort: false,
         edges_in: None,
         probes: source.probes.clone(),
@@ -85,15 +85,15 @@ fn wish(source: &Source, pose: CameraPose) -> Wish {
 }
 
 /// Collects the thread's answers until it has drawn everything requested.
-fn fulfilled(painter: &mut Painter, wish: &Wish) -> (Around, BTreeMap<View, Painted>) {
+fn fulfilled(painter: &mut Painter, wish: &Wish) -> (Around, BTreeMap<Pane, Painted>) {
     painter.wish(wish.clone());
     let (mut around, mut painted) = (None, BTreeMap::new());
     let start = Instant::now();
-    while painted.len() < wish.views.len() {
+    while painted.len() < wish.panes.len() {
         match painter.answer() {
             Some(Answer::Around(known)) => around = Some(known),
-            Some(Answer::Painted(view, picture)) if picture.pose == wish.pose => {
-                painted.insert(view, picture);
+            Some(Answer::Painted(pane, picture)) if picture.pose == wish.pose => {
+                painted.insert(pane, picture);
             }
             Some(Answer::Painted(..)) => {}
             Some(Answer::Problem(problem)) => panic!("{problem}"),
@@ -158,7 +158,7 @@ fn where_a_true_picture_was_taken_every_method_comes_nearer_to_it_than_the_simul
     let source = source();
     let (frame, pose) = probe(&source);
     let (around, painted) = fulfilled(&mut painter(&source), &wish(&source, pose));
-    let facts = |kind| &painted[&View::picture(kind)].result.as_ref().unwrap().facts;
+    let facts = |kind| &painted[&Pane::picture(kind)].result.as_ref().unwrap().facts;
     let shown = facts(PictureKind::Truth).probe.unwrap();
     assert_eq!((shown.frame, shown.distance_px), (frame, 0.0));
     let likeness = |kind: PictureKind| facts(kind).likeness_db.unwrap();
@@ -183,32 +183,32 @@ fn where_nothing_was_recorded_the_reason_takes_the_place_of_the_picture() {
     let outwards = wish(&source, usual.with_planar(Pose2::new(3.2, -2.2, -0.8)));
     let mut painter = painter(&source);
     let (_, painted) = fulfilled(&mut painter, &outwards);
-    let reason = |kind| painted[&View::picture(kind)].result.as_ref().unwrap_err();
+    let reason = |kind| painted[&Pane::picture(kind)].result.as_ref().unwrap_err();
     assert!(reason(PictureKind::Blend).contains("best effort"), "{}", reason(PictureKind::Blend));
     assert!(reason(PictureKind::Truth).contains("px away"), "{}", reason(PictureKind::Truth));
-    assert!(painted[&View::picture(PictureKind::Simulated)].result.is_ok());
+    assert!(painted[&Pane::picture(PictureKind::Simulated)].result.is_ok());
 
     let (_, painted) = fulfilled(&mut painter, &Wish { is_best_effort: true, ..outwards });
-    assert!(painted[&View::picture(PictureKind::Blend)].result.is_ok());
+    assert!(painted[&Pane::picture(PictureKind::Blend)].result.is_ok());
 }
 
 #[test]
 fn origins_and_trust_are_of_the_same_picture_and_a_simulated_one_has_none() {
     let source = source();
-    let view = |kind, shown| View { kind, shown };
-    let views = vec![
-        view(PictureKind::Blend, Shown::Picture),
-        view(PictureKind::Blend, Shown::Origins),
-        view(PictureKind::Blend, Shown::Trust),
-        view(PictureKind::Simulated, Shown::Origins),
+    let pane = |kind, aspect| Pane { kind, aspect };
+    let panes = vec![
+        pane(PictureKind::Blend, Aspect::Picture),
+        pane(PictureKind::Blend, Aspect::Origins),
+        pane(PictureKind::Blend, Aspect::Trust),
+        pane(PictureKind::Simulated, Aspect::Origins),
     ];
     let wish = Wish {
-        views,
+        panes,
         edges_in: Some([DVec2::splat(-9.0), DVec2::splat(9.0)]),
         ..wish(&source, probe(&source).1)
     };
     let (around, painted) = fulfilled(&mut painter(&source), &wish);
-    let drawn = |index: usize| painted[&wish.views[index]].result.as_ref();
+    let drawn = |index: usize| painted[&wish.panes[index]].result.as_ref();
     let used = |index: usize| &drawn(index).unwrap().facts.used;
     assert!(used(0) == used(1) && used(0) == used(2) && used(0).len() > 1);
     assert!(drawn(0).unwrap().picture != drawn(1).unwrap().picture);
@@ -222,7 +222,7 @@ fn of_many_wishes_the_newest_is_fulfilled() {
     let mut painter = painter(&source);
     let poses = (0..200).map(|step| CameraPose { yaw_rad: 0.001 * f64::from(step), ..probe(&source).1 });
     let wishes: Vec<Wish> = poses
-        .map(|pose| Wish { views: vec![View::picture(PictureKind::Blend)], ..wish(&source, pose) })
+        .map(|pose| Wish { panes: vec![Pane::picture(PictureKind::Blend)], ..wish(&source, pose) })
         .collect();
     wishes.iter().for_each(|wish| painter.wish(wish.clone()));
     let (start, mut answers) = (Instant::now(), 0);
@@ -246,21 +246,21 @@ fn of_many_wishes_the_newest_is_fulfilled() {
 fn while_wishes_change_without_an_end_every_view_gets_its_turn_and_the_first_is_drawn_first() {
     let source = source();
     let mut painter = painter(&source);
-    let views = wish(&source, probe(&source).1).views;
+    let panes = wish(&source, probe(&source).1).panes;
     let (start, mut step, mut drawn) = (Instant::now(), 0, Vec::new());
-    while !views.iter().all(|view| drawn.contains(view)) {
+    while !panes.iter().all(|pane| drawn.contains(pane)) {
         // The pose changes whenever a picture arrives, as when the mouse never rests.
         step += 1;
         let pose = CameraPose { yaw_rad: 0.0001 * f64::from(step), ..probe(&source).1 };
         painter.wish(wish(&source, pose));
         match painter.answer() {
-            Some(Answer::Painted(view, _)) => drawn.push(view),
+            Some(Answer::Painted(pane, _)) => drawn.push(pane),
             Some(Answer::Problem(problem)) => panic!("{problem}"),
             Some(Answer::Around(_)) | None => std::thread::sleep(Duration::from_millis(1)),
         }
         assert!(start.elapsed() < LIMIT, "{drawn:?}");
     }
-    assert_eq!(drawn[..views.len()], views, "one after the other");
+    assert_eq!(drawn[..panes.len()], panes, "one after the other");
 }
 
 #[test]
@@ -269,22 +269,22 @@ fn what_was_drawn_already_is_not_drawn_again_for_another_part_of_the_map() {
     let mut painter = painter(&source);
     let first = wish(&source, probe(&source).1);
     fulfilled(&mut painter, &first);
-    let views =
-        vec![View::picture(PictureKind::Blend), View { kind: PictureKind::Blend, shown: Shown::Trust }];
+    let panes =
+        vec![Pane::picture(PictureKind::Blend), Pane { kind: PictureKind::Blend, aspect: Aspect::Trust }];
     let part = [DVec2::new(-9.0, -9.0), DVec2::new(0.0, 9.0)];
-    painter.wish(Wish { views, edges_in: Some(part), ..first });
+    painter.wish(Wish { panes, edges_in: Some(part), ..first });
     let start = Instant::now();
     let mut painted = Vec::new();
     while painted.is_empty() {
         match painter.answer() {
-            Some(Answer::Painted(view, _)) => painted.push(view),
+            Some(Answer::Painted(pane, _)) => painted.push(pane),
             Some(Answer::Around(around)) => assert!(!around.edges.is_empty()),
             Some(Answer::Problem(problem)) => panic!("{problem}"),
             None => std::thread::sleep(Duration::from_millis(2)),
         }
         assert!(start.elapsed() < LIMIT);
     }
-    assert_eq!(painted[0].shown, Shown::Trust, "the picture itself was there");
+    assert_eq!(painted[0].aspect, Aspect::Trust, "the picture itself was there");
 }
 
 #[test]
@@ -307,7 +307,7 @@ fn another_device_is_opened_at_once_and_once() {
     };
     let device = Device { name: "another".to_owned(), open: Arc::new(open) };
     let mut painter = painter(&source);
-    let first = Wish { views: vec![View::picture(PictureKind::Blend)], ..wish(&source, probe(&source).1) };
+    let first = Wish { panes: vec![Pane::picture(PictureKind::Blend)], ..wish(&source, probe(&source).1) };
     fulfilled(&mut painter, &first);
     assert_eq!(opened.load(Ordering::SeqCst), 0);
     let second = Wish { device: Some(device), ..first };
