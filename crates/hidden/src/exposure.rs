@@ -25,10 +25,10 @@ pub struct Exposer {
     rays: Vec<Rays>,
 }
 
-/// Camera pose in the precision of the rays.
-struct View {
+/// True camera pose in the precision of the rays.
+struct WorldFromCamera {
     origin: Vec3,
-    world_from_camera: Mat3,
+    rotation: Mat3,
 }
 
 impl Exposer {
@@ -75,9 +75,9 @@ impl Exposer {
         for row in 0..self.frame.rows() {
             for moment in &moments {
                 let station = trajectory.station(time_s + self.row_delay_s(row) + moment);
-                let view = self.view(station);
+                let pose = self.true_pose(station);
                 for cone in 0..self.frame.cones_per_row() {
-                    self.follow_cone(rays, scene, things, &view, [row, cone], &mut |ray, rgb| {
+                    self.follow_cone(rays, scene, things, &pose, [row, cone], &mut |ray, rgb| {
                         for (plane, channel) in light.iter_mut().zip(&rays.channels) {
                             plane[ray] += rgb[*channel] / moments.len() as f32;
                         }
@@ -94,16 +94,16 @@ impl Exposer {
         rays: &Rays,
         scene: &Scene,
         things: &[Thing],
-        view: &View,
+        pose: &WorldFromCamera,
         [row, cone]: [usize; 2],
         put: &mut impl FnMut(usize, Vec3),
     ) {
         let width = self.frame.rays_per_row();
         let around = rays.cones[row * self.frame.cones_per_row() + cone];
-        let axis = view.world_from_camera * around.axis;
+        let axis = pose.rotation * around.axis;
         let near: Vec<&Thing> = things
             .iter()
-            .filter(|thing| is_in_cone(thing, view.origin, axis, around.half_angle_rad))
+            .filter(|thing| is_in_cone(thing, pose.origin, axis, around.half_angle_rad))
             .collect();
         let columns = cone * CONE_PX * PER_PIXEL..((cone + 1) * CONE_PX * PER_PIXEL).min(width);
         for line in row * PER_PIXEL..(row + 1) * PER_PIXEL {
@@ -113,10 +113,10 @@ impl Exposer {
                     continue;
                 }
                 let ray = Ray {
-                    origin: view.origin,
-                    direction: view.world_from_camera * in_camera,
+                    origin: pose.origin,
+                    direction: pose.rotation * in_camera,
                     steps_in_camera: [1, width].map(|step| step_between(&rays.directions, index, step)),
-                    world_from_camera: &view.world_from_camera,
+                    world_from_camera: &pose.rotation,
                 };
                 put(index, scene.light(&ray, near.iter().copied()));
             }
@@ -124,11 +124,11 @@ impl Exposer {
     }
 
     /// Returns the true camera pose for the one that is believed.
-    fn view(&self, believed: Station) -> View {
+    fn true_pose(&self, believed: Station) -> WorldFromCamera {
         let pitched = rotation::pitch_in_camera(believed.world_from_camera, self.truth.mount_pitch_rad);
         let turned = rotation::roll_about_axis(pitched, self.truth.mount_roll_rad);
         let raised = believed.position + glam::DVec3::Z * self.truth.raised_m;
-        View { origin: raised.as_vec3(), world_from_camera: turned.as_mat3() }
+        WorldFromCamera { origin: raised.as_vec3(), rotation: turned.as_mat3() }
     }
 
     /// Returns when a row of pixels, margins included, is exposed, relative to the picture's time, seconds.
