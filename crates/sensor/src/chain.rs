@@ -63,7 +63,7 @@ fn sampled_variance_px2(sigma_px: f64) -> f64 {
 impl Chain {
     /// Builds the chain from a nominal camera, a nominal field and the model's changes to them. A camera without photometry
     /// gets a gamma of 2.2 and no black level, noise or blur. Fails where a value is not finite or where the effects leave
-    /// no valid camera.
+    /// no valid camera or tone curve.
     pub fn new(setup: &CameraSetup, field: &FieldDimensions, model: &Model) -> Result<Self, ModelError> {
         check_finite(model)?;
         let mut chain = Self::nominal(setup, field);
@@ -265,8 +265,10 @@ fn changed_camera(lens: &[Used], camera: &Camera) -> Result<Camera, ModelFault> 
 }
 
 fn changed_tone(encoding: &[Used], nominal: Tone) -> Result<Tone, ModelFault> {
-    let tone = encoding.iter().fold(nominal, |tone, used| used.effect.tone(&used.values, tone));
-    if tone.gamma > 0.0 { Ok(tone) } else { Err(ModelFault::Gamma { gamma: tone.gamma }) }
+    encoding.iter().try_fold(nominal, |tone, used| {
+        let fault = |error| ModelFault::Tone { id: used.effect.id(), error };
+        used.effect.tone(&used.values, tone).map_err(fault)
+    })
 }
 
 fn delay_s(motion: &[Used], row: f64) -> f64 {

@@ -21,7 +21,10 @@ pub use self::{
     estimates::Estimates,
     parameter::{Growth, Parameter, Role},
 };
-use crate::{noise::Noise, tone::Tone};
+use crate::{
+    noise::Noise,
+    tone::{InvalidTone, Tone},
+};
 
 /// One effect: its description, its wording, and its forward model.
 ///
@@ -102,9 +105,9 @@ pub trait Effect: Sync + Debug {
         noise
     }
 
-    /// Encoding: returns the true tone curve for the nominal one.
-    fn tone(&self, _p: &[f64], tone: Tone) -> Tone {
-        tone
+    /// Encoding: returns the true tone curve for the nominal one. Fails where the values leave no valid curve.
+    fn tone(&self, _p: &[f64], tone: Tone) -> Result<Tone, InvalidTone> {
+        Ok(tone)
     }
 
     /// Odometry: returns the motion that the odometry reports for a true motion of this duration.

@@ -10,7 +10,7 @@
 //! | [`Trajectory`] | the camera's pose at any time, interpolated between stamped poses |
 //! | [`Frame`] | projection of points into one picture, row by row |
 //! | [`SceneColors`] | the colours of carpet, lines, goals and hall |
-//! | [`ModelError`], [`RenderError`], [`TrajectoryError`] | errors of reading, drawing and interpolating |
+//! | [`ModelError`], [`RenderError`], [`TrajectoryError`] | errors of models, drawing and interpolating |
 //!
 //! Light runs one way: world → motion → mount → lens → exposure → sensor → encoding, one [`Stage`] each; the odometry is
 //! beside it. Up to the encoding, light is linear RGB with 1 as full scale. Metres, radians, seconds and the frames of
@@ -55,13 +55,13 @@ mod light;
 mod model;
 mod motion;
 mod noise;
+mod projected_scene;
 mod renderer;
+mod scene;
 mod sensor;
 pub mod text;
 mod tone;
 mod trajectory;
-mod view;
-mod world;
 
 pub use self::{
     chain::Chain,
@@ -73,6 +73,6 @@ pub use self::{
     model::{Model, ModelError, ModelFault, Used},
     noise::Noise,
     renderer::{RenderError, Renderer},
-    tone::Tone,
+    tone::{InvalidTone, Tone},
     trajectory::{Trajectory, TrajectoryError, Twist},
 };

@@ -12,9 +12,9 @@ use crate::{
     lens::{Lens, RayPatch},
     light::Light,
     motion::Motion,
+    projected_scene::ProjectedScene,
+    scene::Scene,
     sensor::Sensor,
-    view::View,
-    world::World,
 };
 
 /// Default number of parts along each side of a pixel that an edge crosses.
@@ -39,7 +39,7 @@ pub enum RenderError {
 #[derive(Debug, Clone)]
 pub struct Renderer {
     chain: Chain,
-    world: World,
+    scene: Scene,
     /// One lens for all colours, or one each where the lens magnifies them differently.
     lenses: Vec<Lens>,
     encoding: Encoding,
@@ -54,7 +54,7 @@ impl Renderer {
         Self::through(Chain::nominal(setup, field), colors)
     }
 
-    /// Makes a renderer for a camera and a field with effects. Fails where the effects leave no valid camera.
+    /// Makes a renderer for a camera and a field with effects. Fails where the effects leave no valid camera or tone curve.
     pub fn with_model(
         setup: &CameraSetup,
         field: &FieldDimensions,
@@ -69,7 +69,7 @@ impl Renderer {
         let [red, green, blue] = chain.magnification();
         let magnifications = if red == green && green == blue { vec![green] } else { vec![red, green, blue] };
         Self {
-            world: World::new(chain.field(), colors),
+            scene: Scene::new(chain.field(), colors),
             lenses: magnifications.iter().map(|factor| Lens::new(camera, *factor)).collect(),
             encoding: Encoding::new(chain.tone()),
             size: [camera.width, camera.height],
@@ -98,14 +98,14 @@ impl Renderer {
         if !self.chain.model().effects.is_empty() {
             return self.draw_at(&Trajectory::still(pose), 0.0, None);
         }
-        let view = self.view(pose)?;
+        let scene = self.projected(pose)?;
         let [width, height] = self.size;
         let mut picture = RgbImage::new(width, height);
         let row_length = 3 * width as usize;
         picture
             .par_chunks_exact_mut(row_length)
             .enumerate()
-            .for_each(|(v, row)| self.draw_row(&view, v, row));
+            .for_each(|(v, row)| self.draw_row(&scene, v, row));
         Ok(picture)
     }
 
@@ -126,45 +126,46 @@ impl Renderer {
     /// Returns the light that falls through the lens while each row is exposed.
     fn light(&self, motion: &Motion<'_>) -> Result<Light, RenderError> {
         let mut light = Light::dark(self.size);
-        let shared = if motion.is_same_for_rows() { Some(self.views(motion, 0.5)?) } else { None };
+        let shared = if motion.is_same_for_rows() { Some(self.instants(motion, 0.5)?) } else { None };
         let last_row = f64::from(self.size[1].max(2) - 1);
         light.rows_mut().enumerate().try_for_each(|(v, row)| {
             match &shared {
-                Some(views) => self.expose_row(views, v, row),
-                None => self.expose_row(&self.views(motion, v as f64 / last_row)?, v, row),
+                Some(instants) => self.expose_row(instants, v, row),
+                None => self.expose_row(&self.instants(motion, v as f64 / last_row)?, v, row),
             }
             Ok(())
         })?;
         Ok(light)
     }
 
-    /// Returns the views at each instant of a row's exposure; rows run from 0 at the top to 1 at the bottom.
-    fn views(&self, motion: &Motion<'_>, row: f64) -> Result<Vec<View>, RenderError> {
-        motion.poses(row).map(|pose| self.view(pose)).collect()
+    /// Projects the scene at each instant of a row's exposure; rows run from 0 at the top to 1 at the bottom.
+    fn instants(&self, motion: &Motion<'_>, row: f64) -> Result<Vec<ProjectedScene>, RenderError> {
+        motion.poses(row).map(|pose| self.projected(pose)).collect()
     }
 
-    fn view(&self, pose: CameraPose) -> Result<View, RenderError> {
+    /// Projects the scene to a camera pose above the ground.
+    fn projected(&self, pose: CameraPose) -> Result<ProjectedScene, RenderError> {
         if !pose.is_finite() {
             return Err(RenderError::NotFinite(pose));
         }
         if pose.height_m <= 0.0 {
             return Err(RenderError::NotAboveGround { height_m: pose.height_m });
         }
-        Ok(View::new(&self.world, pose))
+        Ok(ProjectedScene::new(&self.scene, pose))
     }
 
-    fn expose_row(&self, views: &[View], v: usize, row: &mut [Vec3]) {
+    fn expose_row(&self, instants: &[ProjectedScene], v: usize, row: &mut [Vec3]) {
         for (u, light) in row.iter_mut().enumerate() {
             let falloff = self.chain.falloff(DVec2::new(u as f64, v as f64)) as f32;
-            let sum: Vec3 = views.iter().map(|view| self.color(view, u, v)).sum();
-            *light = falloff * sum / views.len() as f32;
+            let sum: Vec3 = instants.iter().map(|scene| self.color(scene, u, v)).sum();
+            *light = falloff * sum / instants.len() as f32;
         }
     }
 
     /// Returns the colour at a pixel, each channel through its own lens.
-    fn color(&self, view: &View, u: usize, v: usize) -> Vec3 {
+    fn color(&self, scene: &ProjectedScene, u: usize, v: usize) -> Vec3 {
         let through = |lens: &Lens| match lens.row(v)[u] {
-            Some(patch) => view.color(patch, self.parts_per_side, self.light_on_ground(view, patch)),
+            Some(patch) => scene.color(patch, self.parts_per_side, self.light_on_ground(scene, patch)),
             None => Vec3::ZERO,
         };
         match self.lenses.as_slice() {
@@ -173,8 +174,8 @@ impl Renderer {
         }
     }
 
-    fn light_on_ground(&self, view: &View, patch: RayPatch) -> f32 {
-        view.ground(patch.center).map_or(1.0, |point| self.chain.light_on_ground(point) as f32)
+    fn light_on_ground(&self, scene: &ProjectedScene, patch: RayPatch) -> f32 {
+        scene.ground(patch.center).map_or(1.0, |point| self.chain.light_on_ground(point) as f32)
     }
 
     fn recorded(&self, light: &Light, sensor: &Sensor<'_>) -> RgbImage {
@@ -190,10 +191,10 @@ impl Renderer {
         picture
     }
 
-    fn draw_row(&self, view: &View, v: usize, row: &mut [u8]) {
+    fn draw_row(&self, scene: &ProjectedScene, v: usize, row: &mut [u8]) {
         for (patch, pixel) in self.lenses[0].row(v).iter().zip(row.as_chunks_mut::<3>().0) {
             if let Some(patch) = patch {
-                *pixel = self.encoding.encode(view.color(*patch, self.parts_per_side, 1.0));
+                *pixel = self.encoding.encode(scene.color(*patch, self.parts_per_side, 1.0));
             }
         }
     }

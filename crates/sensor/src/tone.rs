@@ -10,7 +10,20 @@ pub struct Tone {
     pub contrast: f64,
 }
 
+/// Error of a tone curve without a valid gamma.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("the gamma would be {gamma}, which is not above 0")]
+pub struct InvalidTone {
+    /// Exponent that is not above 0, or NaN.
+    pub gamma: f64,
+}
+
 impl Tone {
+    /// Returns the curve with this gamma and bend. Fails where the gamma is not above 0.
+    pub fn new(gamma: f64, contrast: f64) -> Result<Self, InvalidTone> {
+        if gamma > 0.0 { Ok(Self { gamma, contrast }) } else { Err(InvalidTone { gamma }) }
+    }
+
     /// Returns the encoded value, 0 to 1; clips linear values to 0 to 1.
     pub fn encode(self, linear: f64) -> f64 {
         let encoded = linear.clamp(0.0, 1.0).powf(1.0 / self.gamma);

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 #[allow(dead_code, reason = "shared with other tests")]
-mod scene;
+mod common;
 
 use glam::{DVec2, DVec3, Vec3};
 use proptest::prelude::*;
@@ -124,9 +124,9 @@ fn cylinder(from: DVec3, ray: DVec3, bottom: DVec3, top: DVec3, radius: f64) -> 
 
 fn any_camera() -> impl Strategy<Value = Camera> {
     prop_oneof![
-        (30.0..60.0).prop_map(|focal_px| scene::fisheye([96, 72], focal_px)),
-        (40.0..150.0).prop_map(|focal_px| scene::pinhole([96, 72], focal_px)),
-        (70.0..150.0).prop_map(|focal_px| scene::barrel([96, 72], focal_px)),
+        (30.0..60.0).prop_map(|focal_px| common::fisheye([96, 72], focal_px)),
+        (40.0..150.0).prop_map(|focal_px| common::pinhole([96, 72], focal_px)),
+        (70.0..150.0).prop_map(|focal_px| common::barrel([96, 72], focal_px)),
     ]
 }
 
@@ -134,7 +134,7 @@ fn any_camera() -> impl Strategy<Value = Camera> {
 fn any_pose() -> impl Strategy<Value = CameraPose> {
     let planar = [-5.0..5.0, -4.0..4.0, -3.1..3.1];
     (planar, [0.2..2.5, -0.3..1.2, -0.6..0.6])
-        .prop_map(|(planar, rest)| scene::pose(planar, rest))
+        .prop_map(|(planar, rest)| common::pose(planar, rest))
         .prop_filter("in a goal", |pose| (pose.x_m.abs() - 3.0).abs() > 0.2)
 }
 
@@ -142,9 +142,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
     fn every_pixel_is_what_256_rays_show(camera in any_camera(), pose in any_pose()) {
-        let colors = scene::colors();
-        let reference = Reference { field: scene::field(), colors, curves: scene::field().curves() };
-        let setup = scene::linear_setup(camera.clone());
+        let colors = common::colors();
+        let reference = Reference { field: common::field(), colors, curves: common::field().curves() };
+        let setup = common::linear_setup(camera.clone());
         let picture = Renderer::new(&setup, &reference.field, colors).draw(pose).unwrap();
         let differences: Vec<(f32, u32, u32)> = (0..camera.width * camera.height).into_par_iter().map(|i| {
             let (u, v) = (i % camera.width, i / camera.width);

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 #[allow(dead_code, reason = "shared with other tests")]
-mod scene;
+mod common;
 
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
@@ -22,16 +22,16 @@ fn with(effects: &[(&str, &[f64])]) -> Model {
 }
 
 fn chain(camera: &Camera, effects: &[(&str, &[f64])]) -> Chain {
-    Chain::new(&scene::linear_setup(camera.clone()), &scene::field(), &with(effects)).unwrap()
+    Chain::new(&common::linear_setup(camera.clone()), &common::field(), &with(effects)).unwrap()
 }
 
 fn pinhole() -> Camera {
-    scene::pinhole([640, 480], 300.0)
+    common::pinhole([640, 480], 300.0)
 }
 
 /// Camera at the field's centre, looking level along +x from a metre above the ground.
 fn level() -> CameraPose {
-    scene::pose([0.0; 3], [1.0, 0.0, 0.0])
+    common::pose([0.0; 3], [1.0, 0.0, 0.0])
 }
 
 /// Returns a distant point in this direction, to the right and down, seen by a level camera at the field's centre.
@@ -144,7 +144,7 @@ fn points_a_little_outside_the_picture_are_followed_and_others_not() {
 fn any_walk() -> impl Strategy<Value = Trajectory> {
     let pose = ([-0.2..0.2, -0.2..0.2, -0.3..0.3], [0.4..0.6, 0.2..0.6, -0.1..0.1]);
     proptest::array::uniform5(pose).prop_map(|poses| {
-        let poses = poses.map(|(planar, rest)| scene::pose(planar, rest));
+        let poses = poses.map(|(planar, rest)| common::pose(planar, rest));
         let times_s = [0.0, 0.2, 0.4, 0.6, 0.8];
         Trajectory::new(&times_s.into_iter().zip(poses).collect::<Vec<_>>()).unwrap()
     })
@@ -158,7 +158,7 @@ proptest! {
         place in [0.5..3.0, -1.5..1.5],
         time_s in 0.1..0.7f64,
     ) {
-        let camera = scene::fisheye([640, 480], 215.0);
+        let camera = common::fisheye([640, 480], 215.0);
         let chain = chain(&camera, &[("rolling_shutter", &[readout_s, 0.01]), ("mount_roll", &[0.05])]);
         let point = DVec2::from_array(place).extend(0.0);
         if let Some(pixel) = chain.project(&walk, time_s, point, GREEN) {
@@ -170,12 +170,12 @@ proptest! {
 
     #[test]
     fn a_model_of_neutral_effects_is_the_nominal_camera(walk in any_walk(), place in [0.5..3.0, -1.5..1.5]) {
-        let camera = scene::fisheye([640, 480], 215.0);
+        let camera = common::fisheye([640, 480], 215.0);
         let neutral = library().iter().fold(Model::default(), |model, effect| model.with(*effect, []));
-        let setup = scene::linear_setup(camera.clone());
-        let chain = Chain::new(&setup, &scene::field(), &neutral).unwrap();
+        let setup = common::linear_setup(camera.clone());
+        let chain = Chain::new(&setup, &common::field(), &neutral).unwrap();
         prop_assert_eq!(chain.camera(), &camera);
-        prop_assert_eq!(chain.field(), &scene::field());
+        prop_assert_eq!(chain.field(), &common::field());
         let point = DVec2::from_array(place).extend(0.0);
         let expected = camera.project(walk.at(0.3).camera_from_world(point));
         if let Ok(expected) = expected {
@@ -197,12 +197,12 @@ fn measured_setup() -> CameraSetup {
         noise_read: Some(0.01),
         psf_sigma_px: Some(0.6),
     };
-    CameraSetup { photometry: Some(photometry), ..scene::linear_setup(pinhole()) }
+    CameraSetup { photometry: Some(photometry), ..common::linear_setup(pinhole()) }
 }
 
 #[test]
 fn what_the_camera_file_says_of_the_photometry_is_in_the_chain() {
-    let nominal = Chain::nominal(&measured_setup(), &scene::field());
+    let nominal = Chain::nominal(&measured_setup(), &common::field());
     assert!((nominal.respond(0.5) - 0.55).abs() < 1e-12);
     assert!((nominal.noise().variance(0.5) - (0.002 * 0.5 + 1e-4)).abs() < 1e-12);
     // Weights of a Gaussian of 0.6 pixels sampled at the pixels' centres.
@@ -213,12 +213,12 @@ fn what_the_camera_file_says_of_the_photometry_is_in_the_chain() {
     assert!((nominal.psf_variance_px2(DVec2::ZERO) - sampled).abs() < 1e-5);
     assert!((nominal.encode(0.25) - 0.5).abs() < 1e-12);
     let model = with(&[("black_level", &[0.1]), ("defocus", &[0.8]), ("tone_curve", &[-1.0])]);
-    let changed = Chain::new(&measured_setup(), &scene::field(), &model).unwrap();
+    let changed = Chain::new(&measured_setup(), &common::field(), &model).unwrap();
     assert!((changed.respond(0.0) - 0.19).abs() < 1e-12);
     assert!((changed.psf_variance_px2(DVec2::ZERO) - (sampled + 0.64)).abs() < 1e-5);
     assert!((changed.encode(0.25) - 0.25).abs() < 1e-12);
     let unknown = CameraSetup { photometry: None, ..measured_setup() };
-    let unknown = Chain::nominal(&unknown, &scene::field());
+    let unknown = Chain::nominal(&unknown, &common::field());
     assert!((unknown.encode(0.5) - 0.5_f64.powf(1.0 / 2.2)).abs() < 1e-12);
     assert_eq!((unknown.respond(0.3), unknown.noise().variance(0.3)), (0.3, 0.0));
 }
@@ -258,7 +258,7 @@ fn odometry_passes_all_its_effects() {
 #[test]
 fn the_field_is_the_changed_one() {
     let chain = chain(&pinhole(), &[("field_dimensions", &[0.2, -0.1])]);
-    let expected = FieldDimensions { length_m: 6.2, width_m: 3.9, ..scene::field() };
+    let expected = FieldDimensions { length_m: 6.2, width_m: 3.9, ..common::field() };
     assert!((chain.field().length_m - expected.length_m).abs() < 1e-12);
     assert!((chain.field().width_m - expected.width_m).abs() < 1e-12);
 }

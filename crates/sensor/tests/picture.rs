@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 #[allow(dead_code, reason = "shared with other tests")]
-mod scene;
+mod common;
 
 use std::path::Path;
 
@@ -19,8 +19,8 @@ use reality_sim_core::{
 use reality_sim_sensor::{RenderError, Renderer, SceneColors};
 
 fn draw(camera: &Camera, field: &FieldDimensions, pose: CameraPose) -> RgbImage {
-    let setup = scene::linear_setup(camera.clone());
-    Renderer::new(&setup, field, scene::colors()).draw(pose).unwrap()
+    let setup = common::linear_setup(camera.clone());
+    Renderer::new(&setup, field, common::colors()).draw(pose).unwrap()
 }
 
 fn green(picture: &RgbImage, pixel: DVec2) -> u8 {
@@ -29,7 +29,7 @@ fn green(picture: &RgbImage, pixel: DVec2) -> u8 {
 
 /// Pose of a robot's camera that sees the field.
 fn pose() -> CameraPose {
-    scene::pose([-1.7, 0.3, 0.4], [0.5, 0.42, 0.02])
+    common::pose([-1.7, 0.3, 0.4], [0.5, 0.42, 0.02])
 }
 
 fn lines_in_view(camera: &Camera, field: &FieldDimensions, pose: CameraPose) -> Vec<VisibleSample> {
@@ -40,11 +40,11 @@ fn lines_in_view(camera: &Camera, field: &FieldDimensions, pose: CameraPose) -> 
 fn lines_are_bright_where_they_are_projected_and_the_carpet_beside_is_not() {
     let walk = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/walk"));
     let sequence = Sequence::open(walk).unwrap();
-    let field = scene::field_without_goals();
+    let field = common::field_without_goals();
     let camera = &sequence.setup.camera;
-    let [line, carpet] = [scene::colors().line_linear_rgb, scene::colors().carpet_linear_rgb]
-        .map(|color| scene::pixel_of(color)[1]);
-    let renderer = Renderer::new(&scene::linear_setup(camera.clone()), &field, scene::colors());
+    let [line, carpet] = [common::colors().line_linear_rgb, common::colors().carpet_linear_rgb]
+        .map(|color| common::pixel_of(color)[1]);
+    let renderer = Renderer::new(&common::linear_setup(camera.clone()), &field, common::colors());
     let (mut on_line, mut beside) = (0, 0);
     for pose in sequence.reference_poses().step_by(10).map(|pose| pose.unwrap()) {
         let picture = renderer.draw(pose).unwrap();
@@ -79,7 +79,7 @@ fn interpolated(picture: &RgbImage, place: DVec2) -> f64 {
 
 /// Returns the distance from the projected edge, along the normal, at which the profile is halfway between line and carpet.
 fn edge_offset_px(picture: &RgbImage, edge: DVec2, outwards: DVec2) -> f64 {
-    let [line, carpet] = [scene::colors().line_linear_rgb, scene::colors().carpet_linear_rgb]
+    let [line, carpet] = [common::colors().line_linear_rgb, common::colors().carpet_linear_rgb]
         .map(|color| 255.0 * f64::from(color.y));
     // The area under the profile gives the edge's position, whatever the profile's shape.
     let (reach, step) = (2.5, 0.05);
@@ -90,13 +90,13 @@ fn edge_offset_px(picture: &RgbImage, edge: DVec2, outwards: DVec2) -> f64 {
 
 #[test]
 fn edges_of_lines_are_where_the_camera_projects_them() {
-    let field = scene::field_without_goals();
+    let field = common::field_without_goals();
     let near_lines = [
-        scene::pose([1.6, -0.6, 0.3], [0.5, 0.7, 0.05]),
-        scene::pose([-0.5, -0.2, 0.9], [0.45, 0.8, -0.1]),
-        scene::pose([2.3, 1.5, -0.4], [0.6, 0.6, 0.0]),
+        common::pose([1.6, -0.6, 0.3], [0.5, 0.7, 0.05]),
+        common::pose([-0.5, -0.2, 0.9], [0.45, 0.8, -0.1]),
+        common::pose([2.3, 1.5, -0.4], [0.6, 0.6, 0.0]),
     ];
-    for camera in [scene::fisheye([640, 480], 215.0), scene::barrel([640, 480], 400.0)] {
+    for camera in [common::fisheye([640, 480], 215.0), common::barrel([640, 480], 400.0)] {
         let offsets_px: Vec<f64> =
             near_lines.iter().flat_map(|pose| edge_offsets_px(&camera, &field, *pose)).collect();
         let mean_px = offsets_px.iter().sum::<f64>() / offsets_px.len() as f64;
@@ -131,10 +131,10 @@ fn edge_offsets_px(camera: &Camera, field: &FieldDimensions, pose: CameraPose) -
 
 #[test]
 fn goals_hide_what_is_behind_them_and_nothing_else() {
-    let (camera, field) = (scene::fisheye([640, 480], 215.0), scene::field());
-    let pose = scene::pose([1.5, 0.2, 0.0], [0.5, 0.1, 0.0]);
-    let (picture, empty) = (draw(&camera, &field, pose), draw(&camera, &scene::field_without_goals(), pose));
-    let goal = scene::pixel_of(scene::colors().goal_positive_x_linear_rgb);
+    let (camera, field) = (common::fisheye([640, 480], 215.0), common::field());
+    let pose = common::pose([1.5, 0.2, 0.0], [0.5, 0.1, 0.0]);
+    let (picture, empty) = (draw(&camera, &field, pose), draw(&camera, &common::field_without_goals(), pose));
+    let goal = common::pixel_of(common::colors().goal_positive_x_linear_rgb);
     let seen = |point: DVec3| camera.project(pose.camera_from_world(point)).unwrap().round().as_uvec2();
     for post in field.goals()[1].posts {
         for height_m in [0.02, 0.3, 0.6, 0.88] {
@@ -153,27 +153,27 @@ fn goals_hide_what_is_behind_them_and_nothing_else() {
 
 #[test]
 fn the_nearer_goal_hides_the_farther_one() {
-    let (camera, field) = (scene::pinhole([200, 150], 150.0), scene::field());
+    let (camera, field) = (common::pinhole([200, 150], 150.0), common::field());
     for (x_m, yaw_rad, color) in [
-        (-5.0, 0.0, scene::colors().goal_negative_x_linear_rgb),
-        (5.0, std::f64::consts::PI, scene::colors().goal_positive_x_linear_rgb),
+        (-5.0, 0.0, common::colors().goal_negative_x_linear_rgb),
+        (5.0, std::f64::consts::PI, common::colors().goal_positive_x_linear_rgb),
     ] {
         let post = field.goals()[usize::from(x_m > 0.0)].posts[0].center;
         // Position in line with the posts of one side.
-        let pose = scene::pose([x_m, post.y, yaw_rad], [0.4, 0.0, 0.0]);
+        let pose = common::pose([x_m, post.y, yaw_rad], [0.4, 0.0, 0.0]);
         let pixel = camera.project(pose.camera_from_world(post.extend(0.4))).unwrap().round().as_uvec2();
-        assert_eq!(draw(&camera, &field, pose).get_pixel(pixel.x, pixel.y).0, scene::pixel_of(color));
+        assert_eq!(draw(&camera, &field, pose).get_pixel(pixel.x, pixel.y).0, common::pixel_of(color));
     }
 }
 
 #[test]
 fn beyond_the_image_circle_and_the_valid_angle_the_picture_is_black() {
     let circle = ImageCircle { cx: 100.0, cy: 70.0, radius: 60.0 };
-    let camera = scene::fisheye([200, 150], 60.0);
+    let camera = common::fisheye([200, 150], 60.0);
     let round = camera.clone().with_image_circle(Some(circle));
     let narrow = camera.clone().with_max_angle_rad(0.9).unwrap();
     for camera in [round, narrow] {
-        let picture = draw(&camera, &scene::field(), pose());
+        let picture = draw(&camera, &common::field(), pose());
         for (u, v, pixel) in picture.enumerate_pixels() {
             let place = DVec2::new(f64::from(u), f64::from(v));
             let sees = camera.check_inside(place).is_ok() && camera.unproject(place).is_ok();
@@ -184,14 +184,14 @@ fn beyond_the_image_circle_and_the_valid_angle_the_picture_is_black() {
 
 #[test]
 fn pixel_values_follow_the_gamma_of_the_photometry() {
-    let mut setup = scene::linear_setup(scene::pinhole([8, 6], 20.0));
-    let looking_down = scene::pose([1.0, 1.0, 0.0], [0.3, 1.5, 0.0]);
+    let mut setup = common::linear_setup(common::pinhole([8, 6], 20.0));
+    let looking_down = common::pose([1.0, 1.0, 0.0], [0.3, 1.5, 0.0]);
     let mut green = |gamma: Option<f64>| {
         setup.photometry = setup
             .photometry
             .zip(gamma)
             .map(|(p, gamma)| reality_sim_core::sequence::Photometry { gamma, ..p });
-        let renderer = Renderer::new(&setup, &scene::field(), scene::colors());
+        let renderer = Renderer::new(&setup, &common::field(), common::colors());
         renderer.draw(looking_down).unwrap().get_pixel(4, 3).0[1]
     };
     // A fifth of full scale, calculated by hand.
@@ -202,8 +202,8 @@ fn pixel_values_follow_the_gamma_of_the_photometry() {
 
 #[test]
 fn colors_are_those_of_the_camera_and_of_the_field() {
-    let mut setup = scene::linear_setup(scene::pinhole([8, 6], 20.0));
-    let field = FieldDimensions { goal_srgb_positive_x: Some([255, 188, 0]), ..scene::field() };
+    let mut setup = common::linear_setup(common::pinhole([8, 6], 20.0));
+    let field = FieldDimensions { goal_srgb_positive_x: Some([255, 188, 0]), ..common::field() };
     let colors = SceneColors::new(&setup, &field);
     assert_eq!(colors.line_linear_rgb, SceneColors::default().line_linear_rgb);
     let white_goals = FieldDimensions { goal_srgb_negative_x: None, ..field.clone() };
@@ -221,8 +221,8 @@ fn colors_are_those_of_the_camera_and_of_the_field() {
 
 #[test]
 fn poses_from_which_nothing_can_be_drawn_are_errors() {
-    let setup = scene::linear_setup(scene::pinhole([8, 6], 20.0));
-    let renderer = Renderer::new(&setup, &scene::field(), scene::colors());
+    let setup = common::linear_setup(common::pinhole([8, 6], 20.0));
+    let renderer = Renderer::new(&setup, &common::field(), common::colors());
     for value in [f64::NAN, f64::INFINITY] {
         let poses = [
             CameraPose { x_m: value, ..pose() },
@@ -244,11 +244,11 @@ fn poses_from_which_nothing_can_be_drawn_are_errors() {
 
 #[test]
 fn from_above_the_hall_the_field_is_seen() {
-    let camera = scene::pinhole([200, 150], 150.0);
-    let above = scene::pose([1.0, 1.0, 0.0], [9.0, std::f64::consts::FRAC_PI_2, 0.0]);
-    let picture = draw(&camera, &scene::field(), above);
+    let camera = common::pinhole([200, 150], 150.0);
+    let above = common::pose([1.0, 1.0, 0.0], [9.0, std::f64::consts::FRAC_PI_2, 0.0]);
+    let picture = draw(&camera, &common::field(), above);
     let pixel = camera.project(above.camera_from_world(DVec3::new(1.0, 1.0, 0.0))).unwrap();
-    assert_eq!(green(&picture, pixel), scene::pixel_of(scene::colors().carpet_linear_rgb)[1]);
+    assert_eq!(green(&picture, pixel), common::pixel_of(common::colors().carpet_linear_rgb)[1]);
     let line = camera.project(above.camera_from_world(DVec3::new(1.0, 2.0, 0.0))).unwrap();
     assert!(green(&picture, line) > 100);
 }
@@ -260,9 +260,9 @@ proptest! {
         angles in proptest::array::uniform3(-4.0..4.0),
         height_m in prop_oneof![1e-12..1e-3, 0.01..10.0, 1e3..1e12, Just(0.9), Just(4.0)],
     ) {
-        let camera = scene::fisheye([24, 18], 9.0);
-        let pose = scene::pose([place[0], place[1], angles[0]], [height_m, angles[1], angles[2]]);
-        let picture = draw(&camera, &scene::field(), pose);
+        let camera = common::fisheye([24, 18], 9.0);
+        let pose = common::pose([place[0], place[1], angles[0]], [height_m, angles[1], angles[2]]);
+        let picture = draw(&camera, &common::field(), pose);
         prop_assert_eq!(picture.dimensions(), (24, 18));
     }
 }

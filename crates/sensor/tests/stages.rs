@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 #[allow(dead_code, reason = "shared with other tests")]
-mod scene;
+mod common;
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -13,7 +13,7 @@ use reality_sim_core::{
     camera::Camera,
     field::{Curve, FieldDimensions, LineSample, sample_lines},
     pose::CameraPose,
-    sequence::{CameraSetup, Photometry},
+    sequence::CameraSetup,
 };
 use reality_sim_sensor::{
     Chain, Frame, Model, RenderError, Renderer, SceneColors, Trajectory, effect, library,
@@ -24,76 +24,53 @@ fn with(effects: &[(&str, &[f64])]) -> Model {
 }
 
 fn renderer(setup: &CameraSetup, field: &FieldDimensions, effects: &[(&str, &[f64])]) -> Renderer {
-    Renderer::with_model(setup, field, scene::colors(), &with(effects)).unwrap()
-}
-
-/// Trajectory of a robot's camera that sees the field while the robot walks and turns its head.
-fn walk() -> Trajectory {
-    let pose = |time_s: f64| {
-        let planar = [1.4 + 0.3 * time_s, -0.6 + 0.1 * time_s, 0.3 + 0.8 * time_s];
-        (time_s, scene::pose(planar, [0.5, 0.7 + 0.3 * time_s, 0.05]))
-    };
-    Trajectory::new(&[-0.4, -0.2, 0.0, 0.2, 0.4].map(pose)).unwrap()
-}
-
-/// Camera with realistic shot and read noise, black level and blur.
-fn measured_setup(camera: Camera) -> CameraSetup {
-    let photometry = Photometry {
-        gamma: 2.2,
-        line_linear_rgb: None,
-        carpet_linear_rgb: None,
-        black_level: Some(0.02),
-        noise_shot: Some(0.002),
-        noise_read: Some(0.005),
-        psf_sigma_px: Some(0.7),
-    };
-    CameraSetup { photometry: Some(photometry), ..scene::linear_setup(camera) }
+    Renderer::with_model(setup, field, common::colors(), &with(effects)).unwrap()
 }
 
 #[test]
 fn effects_at_neutral_values_draw_the_nominal_picture() {
-    let setup = measured_setup(scene::fisheye([160, 120], 54.0));
-    let field = scene::field();
-    let nominal = Renderer::new(&setup, &field, scene::colors());
+    let setup = common::measured_setup(common::fisheye([160, 120], 54.0));
+    let field = common::field();
+    let nominal = Renderer::new(&setup, &field, common::colors());
     let neutral = library().iter().fold(Model::default(), |model, effect| model.with(*effect, []));
-    let renderer = Renderer::with_model(&setup, &field, scene::colors(), &neutral).unwrap();
+    let renderer = Renderer::with_model(&setup, &field, common::colors(), &neutral).unwrap();
     for seed in [None, Some(3)] {
-        let drawn = renderer.draw_at(&walk(), 0.1, seed).unwrap();
-        assert!(drawn == nominal.draw_at(&walk(), 0.1, seed).unwrap());
+        let drawn = renderer.draw_at(&common::walk(), 0.1, seed).unwrap();
+        assert!(drawn == nominal.draw_at(&common::walk(), 0.1, seed).unwrap());
     }
 }
 
 #[test]
 fn an_ideal_sensor_draws_the_same_picture_through_all_stages() {
-    let setup = scene::linear_setup(scene::fisheye([160, 120], 54.0));
-    let renderer = Renderer::new(&setup, &scene::field(), scene::colors());
-    let pose = walk().at(0.1);
+    let setup = common::linear_setup(common::fisheye([160, 120], 54.0));
+    let renderer = Renderer::new(&setup, &common::field(), common::colors());
+    let pose = common::walk().at(0.1);
     let drawn = renderer.draw(pose).unwrap();
     assert!(drawn == renderer.draw_at(&Trajectory::still(pose), 0.0, Some(1)).unwrap());
-    assert!(drawn == renderer.draw_at(&walk(), 0.1, None).unwrap());
+    assert!(drawn == renderer.draw_at(&common::walk(), 0.1, None).unwrap());
 }
 
 #[test]
 fn a_still_camera_draws_no_motion_and_a_moving_one_does() {
-    let setup = scene::linear_setup(scene::fisheye([160, 120], 54.0));
-    let nominal = Renderer::new(&setup, &scene::field(), scene::colors());
-    let pose = walk().at(0.1);
+    let setup = common::linear_setup(common::fisheye([160, 120], 54.0));
+    let nominal = Renderer::new(&setup, &common::field(), common::colors());
+    let pose = common::walk().at(0.1);
     for (id, values) in [("rolling_shutter", [0.05]), ("motion_blur", [0.05]), ("time_offset", [0.05])] {
-        let renderer = renderer(&setup, &scene::field(), &[(id, &values)]);
+        let renderer = renderer(&setup, &common::field(), &[(id, &values)]);
         assert!(renderer.draw(pose).unwrap() == nominal.draw(pose).unwrap(), "{id}");
-        assert!(renderer.draw_at(&walk(), 0.1, None).unwrap() != nominal.draw(pose).unwrap(), "{id}");
+        assert!(renderer.draw_at(&common::walk(), 0.1, None).unwrap() != nominal.draw(pose).unwrap(), "{id}");
     }
 }
 
 #[test]
 fn poses_from_which_nothing_can_be_drawn_are_refused_at_any_row() {
-    let setup = scene::linear_setup(scene::fisheye([32, 24], 11.0));
-    let sinking = renderer(&setup, &scene::field(), &[("camera_height", &[-0.6])]);
-    assert!(matches!(sinking.draw_at(&walk(), 0.0, None), Err(RenderError::NotAboveGround { .. })));
-    assert!(matches!(sinking.draw(walk().at(0.0)), Err(RenderError::NotAboveGround { .. })));
+    let setup = common::linear_setup(common::fisheye([32, 24], 11.0));
+    let sinking = renderer(&setup, &common::field(), &[("camera_height", &[-0.6])]);
+    assert!(matches!(sinking.draw_at(&common::walk(), 0.0, None), Err(RenderError::NotAboveGround { .. })));
+    assert!(matches!(sinking.draw(common::walk().at(0.0)), Err(RenderError::NotAboveGround { .. })));
     for id in ["rolling_shutter", "motion_blur"] {
-        let moving = renderer(&setup, &scene::field(), &[(id, &[0.05])]);
-        assert!(matches!(moving.draw_at(&walk(), f64::NAN, None), Err(RenderError::NotFinite(_))));
+        let moving = renderer(&setup, &common::field(), &[(id, &[0.05])]);
+        assert!(matches!(moving.draw_at(&common::walk(), f64::NAN, None), Err(RenderError::NotFinite(_))));
     }
 }
 
@@ -119,7 +96,7 @@ struct Projected {
 
 /// Returns the distance along the normal from the projected midpoint to the drawn line.
 fn line_offset_px(picture: &RgbImage, channel: usize, line: &Projected) -> f64 {
-    let dark = f64::from(scene::pixel_of(scene::colors().carpet_linear_rgb)[channel]);
+    let dark = f64::from(common::pixel_of(common::colors().carpet_linear_rgb)[channel]);
     let count = ((line.half_width_px + 4.0) / 0.1).ceil() as i32;
     let (mut sum, mut first) = (0.0, 0.0);
     for offset in (-count..=count).map(|i| 0.1 * f64::from(i)) {
@@ -165,7 +142,7 @@ fn projected_lines(chain: &Chain, frame: &Frame<'_>, channel: usize) -> Vec<Proj
 
 #[test]
 fn lines_are_drawn_where_the_chain_projects_them_under_every_geometric_effect() {
-    let field = scene::field_without_goals();
+    let field = common::field_without_goals();
     let effects: [(&str, &[f64]); 12] = [
         ("field_dimensions", &[0.1, -0.1, 0.05, 0.1, 0.1]),
         ("time_offset", &[0.08]),
@@ -180,18 +157,18 @@ fn lines_are_drawn_where_the_chain_projects_them_under_every_geometric_effect() 
         ("chromatic_aberration", &[0.012, -0.01]),
         ("defocus", &[1.2]),
     ];
-    let fisheye = scene::fisheye([640, 480], 215.0);
+    let fisheye = common::fisheye([640, 480], 215.0);
     for effect in &effects {
         check_lines(&fisheye, &field, std::slice::from_ref(effect));
     }
-    for camera in [fisheye, scene::barrel([640, 480], 400.0)] {
+    for camera in [fisheye, common::barrel([640, 480], 400.0)] {
         check_lines(&camera, &field, &effects);
     }
 }
 
 fn check_lines(camera: &Camera, field: &FieldDimensions, effects: &[(&str, &[f64])]) {
-    let renderer = renderer(&scene::linear_setup(camera.clone()), field, effects);
-    let (trajectory, time_s) = (walk(), 0.05);
+    let renderer = renderer(&common::linear_setup(camera.clone()), field, effects);
+    let (trajectory, time_s) = (common::walk(), 0.05);
     let picture = renderer.draw_at(&trajectory, time_s, None).unwrap();
     let frame = renderer.chain().frame(&trajectory, time_s);
     for channel in 0..3 {
@@ -206,11 +183,11 @@ fn check_lines(camera: &Camera, field: &FieldDimensions, effects: &[(&str, &[f64
 
 /// Pose a metre above the middle line, looking straight down: 300 pixels a metre, with the image's up along +x.
 fn above(x_m: f64) -> CameraPose {
-    scene::pose([x_m, 1.5, 0.0], [1.0, FRAC_PI_2, 0.0])
+    common::pose([x_m, 1.5, 0.0], [1.0, FRAC_PI_2, 0.0])
 }
 
 fn down_camera() -> Camera {
-    scene::pinhole([160, 120], 300.0)
+    common::pinhole([160, 120], 300.0)
 }
 
 /// Trajectory along +x, across the middle line, at this speed.
@@ -221,7 +198,7 @@ fn across(speed_m_per_s: f64) -> Trajectory {
 
 /// Returns the row of the middle line's centre in a column, and the variance of its light along the column, pixels².
 fn line_profile(picture: &RgbImage, column: u32) -> (f64, f64) {
-    let dark = f64::from(scene::pixel_of(scene::colors().carpet_linear_rgb)[1]);
+    let dark = f64::from(common::pixel_of(common::colors().carpet_linear_rgb)[1]);
     let bright = |row: u32| f64::from(picture.get_pixel(column, row).0[1]) - dark;
     let moment = |power: i32, middle: f64| {
         (0..picture.height()).map(|row| bright(row) * (f64::from(row) - middle).powi(power)).sum::<f64>()
@@ -232,8 +209,8 @@ fn line_profile(picture: &RgbImage, column: u32) -> (f64, f64) {
 }
 
 fn profile(effects: &[(&str, &[f64])], trajectory: &Trajectory, column: u32) -> (f64, f64) {
-    let field = scene::field_without_goals();
-    let renderer = renderer(&scene::linear_setup(down_camera()), &field, effects);
+    let field = common::field_without_goals();
+    let renderer = renderer(&common::linear_setup(down_camera()), &field, effects);
     line_profile(&renderer.draw_at(trajectory, 0.0, None).unwrap(), column)
 }
 
@@ -270,8 +247,8 @@ fn defocus_widens_lines_by_its_variance_in_every_direction() {
     }
     // With the camera turned by a quarter, lines run along the columns.
     let turned = Trajectory::still(CameraPose { yaw_rad: FRAC_PI_2, ..above(0.0) });
-    let setup = scene::linear_setup(down_camera());
-    let field = scene::field_without_goals();
+    let setup = common::linear_setup(down_camera());
+    let field = common::field_without_goals();
     let variances = [0.0, 2.0].map(|sigma_px| {
         let picture =
             renderer(&setup, &field, &[("defocus", &[sigma_px])]).draw_at(&turned, 0.0, None).unwrap();
@@ -288,8 +265,8 @@ fn rows_that_are_read_one_by_one_shear_a_line_along_the_columns() {
         (time_s, CameraPose { yaw_rad: FRAC_PI_2, y_m: 1.5, x_m: speed * time_s, ..above(0.0) })
     };
     let trajectory = Trajectory::new(&[-0.2, -0.1, 0.0, 0.1, 0.2].map(pose)).unwrap();
-    let setup = scene::linear_setup(down_camera());
-    let field = scene::field_without_goals();
+    let setup = common::linear_setup(down_camera());
+    let field = common::field_without_goals();
     let drawn = |effects| renderer(&setup, &field, effects).draw_at(&trajectory, 0.0, None).unwrap();
     let (straight, sheared) = (drawn(&[]), drawn(&[("rolling_shutter", &[readout_s])]));
     // With the camera turned back, columns become rows, counted from the right.
@@ -314,12 +291,12 @@ fn even_pixels(picture: &RgbImage) -> Vec<(u32, u32)> {
 
 #[test]
 fn light_reaches_the_file_as_the_chain_says() {
-    let camera = scene::fisheye([160, 120], 54.0);
-    let field = scene::field_without_goals();
-    let setup = scene::linear_setup(camera.clone());
-    let trajectory = walk();
+    let camera = common::fisheye([160, 120], 54.0);
+    let field = common::field_without_goals();
+    let setup = common::linear_setup(camera.clone());
+    let trajectory = common::walk();
     let pose = trajectory.at(0.1);
-    let plain = Renderer::new(&setup, &field, scene::colors()).draw(pose).unwrap();
+    let plain = Renderer::new(&setup, &field, common::colors()).draw(pose).unwrap();
     let effects: [(&str, &[f64]); 7] = [
         ("vignetting", &[0.6, 0.2]),
         ("uneven_illumination", &[0.4, -0.3, -0.5, 0.2, 0.1, 0.2]),
@@ -357,13 +334,13 @@ fn light_reaches_the_file_as_the_chain_says() {
 
 #[test]
 fn walls_and_goals_keep_their_light_where_the_ground_is_uneven() {
-    let setup = scene::linear_setup(scene::fisheye([640, 480], 215.0));
-    let field = scene::field();
-    let pose = scene::pose([1.5, 0.2, 0.0], [0.5, 0.0, 0.0]);
+    let setup = common::linear_setup(common::fisheye([640, 480], 215.0));
+    let field = common::field();
+    let pose = common::pose([1.5, 0.2, 0.0], [0.5, 0.0, 0.0]);
     let uneven = renderer(&setup, &field, &[("uneven_illumination", &[0.5])]).draw(pose).unwrap();
-    let even = Renderer::new(&setup, &field, scene::colors()).draw(pose).unwrap();
-    for color in [scene::colors().wall_linear_rgb, scene::colors().goal_positive_x_linear_rgb] {
-        let color = image::Rgb(scene::pixel_of(color));
+    let even = Renderer::new(&setup, &field, common::colors()).draw(pose).unwrap();
+    for color in [common::colors().wall_linear_rgb, common::colors().goal_positive_x_linear_rgb] {
+        let color = image::Rgb(common::pixel_of(color));
         let of_color: Vec<_> =
             even_pixels(&even).into_iter().filter(|&(u, v)| even[(u, v)] == color).collect();
         assert!(!of_color.is_empty() && of_color.iter().all(|&(u, v)| uneven[(u, v)] == color));
@@ -372,10 +349,10 @@ fn walls_and_goals_keep_their_light_where_the_ground_is_uneven() {
 
 /// Returns mean and variance of a channel, in linear values, of a picture that shows only carpet.
 fn carpet_noise(effects: &[(&str, &[f64])], seed: Option<u64>) -> (f64, f64) {
-    let setup = scene::linear_setup(scene::pinhole([160, 120], 300.0));
-    let colors = SceneColors { carpet_linear_rgb: Vec3::splat(0.4), ..scene::colors() };
-    let renderer = Renderer::with_model(&setup, &scene::field(), colors, &with(effects)).unwrap();
-    let pose = scene::pose([1.4, 1.0, 0.0], [0.5, FRAC_PI_2, 0.0]);
+    let setup = common::linear_setup(common::pinhole([160, 120], 300.0));
+    let colors = SceneColors { carpet_linear_rgb: Vec3::splat(0.4), ..common::colors() };
+    let renderer = Renderer::with_model(&setup, &common::field(), colors, &with(effects)).unwrap();
+    let pose = common::pose([1.4, 1.0, 0.0], [0.5, FRAC_PI_2, 0.0]);
     let picture = renderer.draw_at(&Trajectory::still(pose), 0.0, seed).unwrap();
     let values: Vec<f64> = picture.iter().map(|value| f64::from(*value) / 255.0).collect();
     let mean = values.iter().sum::<f64>() / values.len() as f64;
@@ -405,9 +382,9 @@ fn a_black_level_has_no_noise_of_its_own() {
 
 #[test]
 fn noise_is_that_of_seed_and_time() {
-    let setup = measured_setup(scene::fisheye([64, 48], 22.0));
-    let renderer = Renderer::new(&setup, &scene::field(), scene::colors());
-    let still = Trajectory::still(walk().at(0.0));
+    let setup = common::measured_setup(common::fisheye([64, 48], 22.0));
+    let renderer = Renderer::new(&setup, &common::field(), common::colors());
+    let still = Trajectory::still(common::walk().at(0.0));
     let drawn = |time_s, seed| renderer.draw_at(&still, time_s, seed).unwrap();
     assert!(drawn(0.2, Some(1)) == drawn(0.2, Some(1)));
     assert!(drawn(0.2, Some(1)) != drawn(0.2, Some(2)));
@@ -417,8 +394,9 @@ fn noise_is_that_of_seed_and_time() {
 
 #[test]
 fn where_no_light_falls_the_sensor_still_puts_out_its_black_level() {
-    let camera = scene::fisheye([160, 120], 54.0).with_max_angle_rad(1.0).unwrap();
-    let setup = scene::linear_setup(camera);
-    let picture = renderer(&setup, &scene::field(), &[("black_level", &[0.1])]).draw(walk().at(0.0)).unwrap();
+    let camera = common::fisheye([160, 120], 54.0).with_max_angle_rad(1.0).unwrap();
+    let setup = common::linear_setup(camera);
+    let picture =
+        renderer(&setup, &common::field(), &[("black_level", &[0.1])]).draw(common::walk().at(0.0)).unwrap();
     assert_eq!(picture.get_pixel(0, 0).0, [26; 3]);
 }

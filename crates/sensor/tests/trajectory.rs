@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 #[allow(dead_code, reason = "shared with other tests")]
-mod scene;
+mod common;
 
 use glam::{DMat3, DVec3};
 use proptest::prelude::*;
@@ -13,7 +13,7 @@ use reality_sim_sensor::{Trajectory, TrajectoryError};
 /// Generates stamped poses of a camera that moves and turns at random.
 fn any_way(longest_step_s: f64) -> impl Strategy<Value = Vec<(f64, CameraPose)>> {
     let pose = ([-3.0..3.0, -2.0..2.0, -3.1..3.1], [0.3..0.8, -1.2..1.2, -3.1..3.1])
-        .prop_map(|(planar, rest)| scene::pose(planar, rest));
+        .prop_map(|(planar, rest)| common::pose(planar, rest));
     proptest::collection::vec((0.05..longest_step_s, pose), 1..12).prop_map(|steps| {
         let mut time_s = -1.0;
         steps
@@ -95,7 +95,7 @@ proptest! {
 
 #[test]
 fn far_apart_poses_are_joined_by_a_straight_line() {
-    let at = |x_m: f64| scene::pose([x_m, 0.0, 0.0], [0.5, 0.4, 0.0]);
+    let at = |x_m: f64| common::pose([x_m, 0.0, 0.0], [0.5, 0.4, 0.0]);
     // A single curve through all of these would overshoot by metres.
     let times_s = [0.0, 0.1, 0.2, 2.2, 2.3, 2.4];
     let places_m = [0.0, 0.5, 1.0, 1.0, 0.5, 0.0];
@@ -110,7 +110,7 @@ fn far_apart_poses_are_joined_by_a_straight_line() {
 #[test]
 fn angles_take_the_short_way_round() {
     let turned = |yaw_rad: f64, roll_rad: f64| {
-        scene::pose([0.0, 0.0, wrap_angle(yaw_rad)], [0.5, 0.4, wrap_angle(roll_rad)])
+        common::pose([0.0, 0.0, wrap_angle(yaw_rad)], [0.5, 0.4, wrap_angle(roll_rad)])
     };
     let way: Vec<_> =
         (0..20).map(|i| 0.2 * f64::from(i)).map(|t| (t, turned(2.0 * t, 3.0 - 2.0 * t))).collect();
@@ -125,7 +125,7 @@ fn angles_take_the_short_way_round() {
 
 #[test]
 fn what_does_not_move_is_still() {
-    let pose = scene::pose([1.0, 2.0, 3.0], [0.5, 0.4, 0.1]);
+    let pose = common::pose([1.0, 2.0, 3.0], [0.5, 0.4, 0.1]);
     let still = Trajectory::still(pose);
     let same = Trajectory::new(&[(1.0, pose), (2.0, pose), (2.1, pose)]).unwrap();
     for trajectory in [&still, &same] {
@@ -141,7 +141,7 @@ fn what_does_not_move_is_still() {
 
 #[test]
 fn poses_that_give_no_trajectory_are_refused_with_what_to_do() {
-    let pose = scene::pose([0.0; 3], [0.5, 0.0, 0.0]);
+    let pose = common::pose([0.0; 3], [0.5, 0.0, 0.0]);
     let strange = CameraPose { roll_rad: f64::NAN, ..pose };
     let cases = [
         (vec![], TrajectoryError::NoPoses),

@@ -6,7 +6,7 @@ use super::phrases::outstanding;
 use crate::{
     effect::{About, Changes, Covariate, Effect, Estimates, Need, Parameter, Stage, values},
     text::{Uncertain, Unit},
-    tone::Tone,
+    tone::{InvalidTone, Tone},
 };
 
 #[derive(Debug)]
@@ -48,8 +48,8 @@ impl Effect for ToneCurve {
         Some(outstanding(&changes).into_iter().map(text).collect::<Vec<String>>().join(", "))
     }
 
-    fn tone(&self, p: &[f64], tone: Tone) -> Tone {
+    fn tone(&self, p: &[f64], tone: Tone) -> Result<Tone, InvalidTone> {
         let [gamma_change, contrast] = values(p);
-        Tone { gamma: tone.gamma + gamma_change, contrast: tone.contrast + contrast }
+        Tone::new(tone.gamma + gamma_change, tone.contrast + contrast)
     }
 }

@@ -7,7 +7,7 @@ use std::{
 
 use reality_sim_core::{camera::InvalidCamera, field::InvalidField, sequence::Printable};
 
-use crate::effects::library;
+use crate::{effects::library, tone::InvalidTone};
 
 /// Error of a model that cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -110,11 +110,13 @@ pub enum ModelFault {
     /// The field is not valid.
     #[error("{0}: correct the field's dimensions")]
     Field(InvalidField),
-    /// The tone curve's gamma is not valid.
-    #[error("the gamma would be {gamma}: bring gamma_change of tone_curve nearer to 0")]
-    Gamma {
-        /// Gamma including the effects.
-        gamma: f64,
+    /// The effect's values leave no valid tone curve.
+    #[error("with {id}, {error}: bring its values nearer to 0")]
+    Tone {
+        /// The effect.
+        id: &'static str,
+        /// Fault of the curve.
+        error: InvalidTone,
     },
 }
 

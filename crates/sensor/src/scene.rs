@@ -1,4 +1,4 @@
-//! The visible world: layers of shapes, from the ground up.
+//! The scene: layers of shapes, from the ground up.
 
 mod goal;
 mod lines;
@@ -39,9 +39,9 @@ pub(crate) struct Layer {
     pub(crate) on_ground: bool,
 }
 
-/// Scene: ground, goals and hall.
+/// Ground, goals and hall.
 #[derive(Debug, Clone)]
-pub(crate) struct World {
+pub(crate) struct Scene {
     wall: Vec3,
     /// Floor, carpet, straight lines and circles, each on top of the previous one.
     ground: [Layer; 4],
@@ -50,7 +50,7 @@ pub(crate) struct World {
     goals: [(Vec3, GoalBars); 2],
 }
 
-impl World {
+impl Scene {
     pub(crate) fn new(field: &FieldDimensions, colors: SceneColors) -> Self {
         let carpet = Rectangle::around(DVec2::ZERO, field.carpet_half_extent_m());
         let floor = carpet.grown(FLOOR_AROUND_CARPET_M);

@@ -1,4 +1,4 @@
-//! Shapes of the world.
+//! Shapes of the scene.
 
 use glam::DVec3;
 

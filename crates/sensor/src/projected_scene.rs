@@ -1,4 +1,4 @@
-//! View of the world from a camera, and the fraction of a pixel that each shape covers.
+//! The scene as a camera sees it from a pose, and the fraction of a pixel that each shape covers.
 //!
 //! A shape with straight edges occupies the rays between planes through the projection centre. A ray's position relative to
 //! such a plane is linear in the ray, so that the covered fraction of a pixel has a closed form, however far away or thin
@@ -14,22 +14,22 @@ use reality_sim_core::pose::CameraPose;
 use self::{polygon::Polygon, ring::Ring, side::Side};
 use crate::{
     lens::RayPatch,
-    world::{Overlap, Shape, World},
+    scene::{Overlap, Scene, Shape},
 };
 
-/// View of the world from a camera pose.
+/// Scene as a camera sees it from a pose.
 #[derive(Debug)]
-pub(crate) struct View {
+pub(crate) struct ProjectedScene {
     position_in_world: DVec3,
     camera_from_world: DMat3,
     background: Vec3,
     /// Layers from back to front.
-    layers: Vec<Layer>,
+    layers: Vec<ProjectedLayer>,
 }
 
 /// Visible shapes of one colour.
 #[derive(Debug)]
-struct Layer {
+struct ProjectedLayer {
     color: Vec3,
     cones: Vec<Cone>,
     overlap: Overlap,
@@ -43,20 +43,20 @@ enum Cone {
     Ring(Ring),
 }
 
-impl View {
-    /// Builds the view from a pose above the ground.
-    pub(crate) fn new(world: &World, pose: CameraPose) -> Self {
+impl ProjectedScene {
+    /// Projects the scene to a camera pose above the ground.
+    pub(crate) fn new(scene: &Scene, pose: CameraPose) -> Self {
         let position = pose.position_in_world();
         let camera_from_world = pose.rotation_world_from_camera().transpose();
         let cone = |shape| Cone::new(&shape, position, camera_from_world);
-        let seen = world.layers_seen_from(position).into_iter().map(|layer| Layer {
+        let seen = scene.layers_seen_from(position).into_iter().map(|layer| ProjectedLayer {
             color: layer.color,
             cones: layer.shapes.into_iter().filter_map(cone).collect(),
             overlap: layer.overlap,
             on_ground: layer.on_ground,
         });
         let layers = seen.collect();
-        Self { position_in_world: position, camera_from_world, background: world.background(), layers }
+        Self { position_in_world: position, camera_from_world, background: scene.background(), layers }
     }
 
     /// Returns the point in metres where a ray meets the ground plane; `None` if it does not.
@@ -95,7 +95,7 @@ impl View {
     }
 }
 
-impl Layer {
+impl ProjectedLayer {
     /// Returns the colour under this light on the ground.
     fn lit(&self, light: f32) -> Vec3 {
         if self.on_ground { light * self.color } else { self.color }

@@ -7,7 +7,7 @@ use reality_sim_core::{
     pose::CameraPose,
     sequence::{CameraSetup, Photometry},
 };
-use reality_sim_sensor::SceneColors;
+use reality_sim_sensor::{SceneColors, Trajectory};
 
 pub fn field() -> FieldDimensions {
     FieldDimensions::preset("humanoid-kidsize-2010").unwrap()
@@ -72,4 +72,27 @@ pub fn pixel_of(linear_rgb: Vec3) -> [u8; 3] {
 
 pub fn pose([x_m, y_m, yaw_rad]: [f64; 3], [height_m, pitch_rad, roll_rad]: [f64; 3]) -> CameraPose {
     CameraPose { x_m, y_m, yaw_rad, height_m, pitch_rad, roll_rad }
+}
+
+/// Trajectory of a robot's camera that sees the field while the robot walks and turns its head.
+pub fn walk() -> Trajectory {
+    let stamped = |time_s: f64| {
+        let planar = [1.4 + 0.3 * time_s, -0.6 + 0.1 * time_s, 0.3 + 0.8 * time_s];
+        (time_s, pose(planar, [0.5, 0.7 + 0.3 * time_s, 0.05]))
+    };
+    Trajectory::new(&[-0.4, -0.2, 0.0, 0.2, 0.4].map(stamped)).unwrap()
+}
+
+/// Camera with realistic shot and read noise, black level and blur.
+pub fn measured_setup(camera: Camera) -> CameraSetup {
+    let photometry = Photometry {
+        gamma: 2.2,
+        line_linear_rgb: None,
+        carpet_linear_rgb: None,
+        black_level: Some(0.02),
+        noise_shot: Some(0.002),
+        noise_read: Some(0.005),
+        psf_sigma_px: Some(0.7),
+    };
+    CameraSetup { photometry: Some(photometry), ..linear_setup(camera) }
 }
