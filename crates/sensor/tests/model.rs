@@ -10,6 +10,9 @@ use std::{fs, path::Path};
 use proptest::prelude::*;
 use reality_sim_sensor::{Chain, InvalidTone, Model, ModelError, ModelFault, effect, library};
 
+/// Test of a fault.
+type Check = fn(&ModelFault) -> bool;
+
 fn parsed(text: &str) -> Result<Model, ModelError> {
     Model::from_toml(Path::new("model.toml"), text)
 }
@@ -66,7 +69,7 @@ fn a_faulty_model_is_refused_with_its_line_and_its_fault() {
         MissingId, NotANumber, NotFinite, NotTables, Toml, Twice, UnknownEffect, UnknownKey, UnknownTable,
     };
 
-    let cases: [(&str, usize, fn(&ModelFault) -> bool); 11] = [
+    let cases: [(&str, usize, Check); 11] = [
         ("[[effect]]\nid = 'fog'\n", 2, |fault| matches!(fault, UnknownEffect { id } if id == "fog")),
         ("[[effect]]\nstrength = 1.0\n", 1, |fault| matches!(fault, MissingId)),
         ("[[effect]]\nid = 3\n", 2, |fault| matches!(fault, MissingId)),
@@ -111,7 +114,7 @@ fn a_file_that_is_none_is_refused_by_name() {
     let missing = folder.path().join("missing.toml");
     let not_text = folder.path().join("not_text.toml");
     fs::write(&not_text, b"# one\n# \xff\n").unwrap();
-    let cases: [(&Path, Option<usize>, fn(&ModelFault) -> bool); 3] = [
+    let cases: [(&Path, Option<usize>, Check); 3] = [
         (&missing, None, |fault| matches!(fault, ModelFault::Missing)),
         (folder.path(), None, |fault| matches!(fault, ModelFault::NotAFile)),
         (&not_text, Some(2), |fault| matches!(fault, ModelFault::NotUtf8)),
@@ -131,7 +134,7 @@ fn a_file_that_is_none_is_refused_by_name() {
 #[test]
 fn effects_that_leave_no_camera_or_no_tone_curve_are_named() {
     let setup = common::linear_setup(common::fisheye([64, 48], 22.0));
-    let cases: [(&str, f64, fn(&ModelFault) -> bool); 3] = [
+    let cases: [(&str, f64, Check); 3] = [
         ("focal_length", -1.5, |fault| matches!(fault, ModelFault::Camera { id: "focal_length", .. })),
         ("radial_distortion", f64::NAN, |fault| {
             matches!(fault, ModelFault::NotFinite { id: "radial_distortion", key: "k1" })
