@@ -106,18 +106,17 @@ pub fn backend_error(error: anyhow::Error) -> BackendError {
 /// Lists the devices that the viewer offers, the default first.
 #[cfg(feature = "viewer")]
 pub fn all() -> Vec<reality_sim_viewer::Device> {
-    let choose = |name: String, backend: DeviceChoice, adapter: Option<String>| {
+    use reality_sim_viewer::Device;
+
+    let open = |backend: DeviceChoice, adapter: Option<String>| {
         let args = BackendArgs { backend, adapter };
-        let open = move || args.device().map(|device| device.backend).map_err(backend_error);
-        reality_sim_viewer::Device { name, open: Arc::new(open) }
+        move || args.device().map(|device| device.backend).map_err(backend_error)
     };
-    let mut devices = vec![
-        choose("automatic".to_owned(), DeviceChoice::Auto, None),
-        choose("processor".to_owned(), DeviceChoice::Cpu, None),
-    ];
-    devices
-        .extend(adapter_names().into_iter().map(|name| choose(name.clone(), DeviceChoice::Gpu, Some(name))));
-    devices
+    let kinds = [DeviceChoice::Auto, DeviceChoice::Cpu].map(|kind| Device::new(kind, open(kind, None)));
+    let adapters = adapter_names()
+        .into_iter()
+        .map(|name| Device::adapter(name.clone(), open(DeviceChoice::Gpu, Some(name))));
+    kinds.into_iter().chain(adapters).collect()
 }
 
 /// Returns the names of this machine's graphics adapters.

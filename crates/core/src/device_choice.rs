@@ -28,6 +28,15 @@ impl DeviceChoice {
             Self::Gpu => "gpu",
         }
     }
+
+    /// Returns a description in one line.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Auto => "A graphics card where there is one, else the processor",
+            Self::Cpu => "This processor",
+            Self::Gpu => "A graphics card",
+        }
+    }
 }
 
 impl fmt::Display for DeviceChoice {

@@ -16,9 +16,6 @@ use crate::{
     },
 };
 
-/// Name of pictures drawn from the field's model, which are compared with the methods that use recorded pictures.
-pub const SIMULATED: &str = "simulated";
-
 /// Result of one method for one probe.
 #[derive(Debug, Clone)]
 pub struct Outcome {
@@ -98,7 +95,7 @@ pub fn compare_methods(
         }
     }
     let (drawn, milliseconds) = timed(|| renderer.draw(pose))?;
-    outcomes.extend(compare(drawn, milliseconds, None).map(|outcome| (SIMULATED, outcome)));
+    outcomes.extend(compare(drawn, milliseconds, None).map(|outcome| (Renderer::NAME, outcome)));
     let distance_px = synthesizer.nearest(pose, 1).ok().map(|nearest| nearest[0].distance_px);
     Ok(ProbeResult { frame, distance_px, truth, outcomes })
 }
@@ -123,7 +120,7 @@ fn timed<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, f64), E> {
 
 /// Returns the names of the methods, in the order in which they are shown.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    MethodKind::COMPARED.into_iter().map(MethodKind::name).chain([SIMULATED])
+    MethodKind::COMPARED.into_iter().map(MethodKind::name).chain([Renderer::NAME])
 }
 
 impl MethodReport {

@@ -48,6 +48,9 @@ pub struct Renderer {
 }
 
 impl Renderer {
+    /// Name of simulated pictures where they are listed beside those made from recorded pictures.
+    pub const NAME: &str = "simulated";
+
     /// Makes a renderer for a camera, a field and colours. The hall's walls stand 3 m outside the carpet; its ceiling is 4 m
     /// above the ground. Pixel values follow the gamma of the camera's photometry, or 2.2 without photometry.
     pub fn new(setup: &CameraSetup, field: &FieldDimensions, colors: SceneColors) -> Self {

@@ -182,7 +182,7 @@ fn outputs(effect: &dyn Effect, p: &[f64], probe: &Probe) -> Vec<f64> {
     ];
     all.extend(pose.position_in_world().to_array());
     all.extend(pose.rotation_world_from_camera().to_cols_array());
-    all.extend(pixels.iter().flat_map(|pixel| pixel.to_array()));
+    all.extend(pixels.iter().flat_map(DVec2::to_array));
     all.extend(effect.magnification(p));
     all.extend(effect.gain(p, probe.time_s));
     all

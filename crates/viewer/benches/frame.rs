@@ -3,7 +3,6 @@
 use std::{
     hint::black_box,
     path::Path,
-    sync::Arc,
     thread,
     time::{Duration, Instant},
 };
@@ -14,7 +13,6 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT, Queryable},
 };
-use reality_sim_core::backend::CpuBackend;
 use reality_sim_viewer::{Device, ViewerApp, ViewerOptions};
 
 /// Pause between two frames: about the time that the filter takes for a picture, so that many frames show a new one.
@@ -42,7 +40,7 @@ fn frames(criterion: &mut Criterion) {
 
 fn window() -> Window {
     let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk");
-    let device = Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) };
+    let device = Device::processor();
     let options = ViewerOptions { open: walk, demonstration: None, devices: vec![device] };
     let builder = Harness::builder().with_size([1280.0, 820.0]);
     let mut window = builder.wgpu().build_eframe(|cc| ViewerApp::new(cc, options));

@@ -7,7 +7,6 @@ use std::{
     error::Error,
     fs,
     path::{Path, PathBuf},
-    sync::Arc,
     thread,
     time::Duration,
 };
@@ -15,10 +14,7 @@ use std::{
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::{Harness, kittest::Queryable};
 use image::{DynamicImage, RgbImage, codecs::jpeg::JpegEncoder};
-use reality_sim_core::{
-    backend::CpuBackend,
-    sequence::{Sequence, save_image},
-};
+use reality_sim_core::sequence::{Sequence, save_image};
 use reality_sim_gap::{Options, Recording, ReferenceSource, analyse};
 use reality_sim_sensor::{Model, Renderer, SceneColors};
 use reality_sim_viewer::{Device, ViewerApp, ViewerOptions};
@@ -131,7 +127,7 @@ fn write_report(recording: &Path, to: &Path) -> Result<(), Box<dyn Error>> {
 }
 
 fn open(path: &Path) -> Window {
-    let device = Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) };
+    let device = Device::processor();
     let options = ViewerOptions { open: path.to_path_buf(), demonstration: None, devices: vec![device] };
     let builder = Harness::builder().with_size([1280.0, 820.0]).with_max_steps(16);
     builder.wgpu().build_eframe(|cc| ViewerApp::new(cc, options))

@@ -14,13 +14,10 @@
 //! of [`reality_sim_core::pose`].
 //!
 //! ```no_run
-//! use std::sync::Arc;
-//!
-//! use reality_sim_core::backend::CpuBackend;
 //! use reality_sim_viewer::{Device, ViewerOptions, run};
 //!
-//! let processor = Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) };
-//! run(ViewerOptions { open: "assets/walk".into(), demonstration: None, devices: vec![processor] })?;
+//! let devices = vec![Device::processor()];
+//! run(ViewerOptions { open: "assets/walk".into(), demonstration: None, devices })?;
 //! # Ok::<(), reality_sim_viewer::ViewerError>(())
 //! ```
 

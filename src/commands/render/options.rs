@@ -6,7 +6,7 @@ use anyhow::bail;
 use clap::{Args, builder::PossibleValue};
 
 use reality_sim::{
-    Archive, CameraPose, Pose2, StampedPose, names::UnknownName, probing::SIMULATED, sequence::read_tum,
+    Archive, CameraPose, Pose2, StampedPose, names::UnknownName, sensor::Renderer, sequence::read_tum,
     synthesis::MethodKind,
 };
 
@@ -77,7 +77,7 @@ impl fmt::Display for PictureMethod {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Recorded(kind) => kind.fmt(formatter),
-            Self::Simulated => formatter.pad(SIMULATED),
+            Self::Simulated => formatter.pad(Renderer::NAME),
         }
     }
 }
@@ -86,14 +86,14 @@ impl FromStr for PictureMethod {
     type Err = UnknownName;
 
     fn from_str(name: &str) -> Result<Self, UnknownName> {
-        if name == SIMULATED { Ok(Self::Simulated) } else { name.parse().map(Self::Recorded) }
+        if name == Renderer::NAME { Ok(Self::Simulated) } else { name.parse().map(Self::Recorded) }
     }
 }
 
 /// Lists every method with its help.
 fn methods() -> impl Iterator<Item = PossibleValue> {
     let recorded = MethodKind::ALL.into_iter().map(|kind| described(kind.name(), kind.description()));
-    recorded.chain([described(SIMULATED, "The model of the field, drawn without any recorded picture")])
+    recorded.chain([described(Renderer::NAME, "The model of the field, drawn without any recorded picture")])
 }
 
 /// Pose whose last three numbers may be left out.

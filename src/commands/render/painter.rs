@@ -6,7 +6,6 @@ use image::RgbImage;
 
 use reality_sim::{
     FieldDimensions, Reconstruction, StampedPose, Synthesizer,
-    probing::SIMULATED,
     sensor::{Model, Renderer, SceneColors, Trajectory},
     sequence::CameraSetup,
     synthesis::MethodKind,
@@ -84,7 +83,7 @@ impl<'a> Painter<'a> {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Recorded(_, method) => method.name(),
-            Self::Simulated(_) | Self::Modelled(..) => SIMULATED,
+            Self::Simulated(_) | Self::Modelled(..) => Renderer::NAME,
         }
     }
 

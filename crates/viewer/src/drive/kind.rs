@@ -1,5 +1,6 @@
 //! Kinds of pictures at a pose, and the panes that show them.
 
+use reality_sim_sensor::Renderer;
 use reality_sim_synthesis::MethodKind;
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +26,7 @@ impl PictureKind {
     pub fn name(self) -> &'static str {
         match self.made_by() {
             MadeBy::Method(method) => method.name(),
-            MadeBy::Renderer => "simulated",
+            MadeBy::Renderer => Renderer::NAME,
             MadeBy::Camera => "true picture",
         }
     }

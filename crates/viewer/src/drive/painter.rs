@@ -423,6 +423,6 @@ fn synthesizers(archive: &Arc<Archive>, warper: &Arc<dyn Warper>) -> [Synthesize
 
 fn warper(device: Option<&Device>) -> Result<Arc<dyn Warper>, String> {
     let Some(device) = device else { return Ok(Arc::new(CpuWarper)) };
-    let opened = (device.open)().and_then(|backend| backend.warper());
-    opened.map_err(|error| format!("{}: {error}", device.name))
+    let opened = device.open().and_then(|backend| backend.warper());
+    opened.map_err(|error| format!("{}: {error}", device.name()))
 }

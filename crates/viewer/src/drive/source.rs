@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use image::RgbImage;
-use reality_sim_core::{backend::CpuBackend, pose::CameraPose, sequence::Sequence};
+use reality_sim_core::{pose::CameraPose, sequence::Sequence};
 use reality_sim_db::metric::PixelMetric;
 use reality_sim_pipeline::{self as pipeline, Event, FilterPlan, HoldBack, PipelineError, Plan, PoseChoice};
 use reality_sim_synthesis::Archive;
@@ -128,10 +128,9 @@ pub fn build(
 
 fn filter_plan(device: Option<&Device>) -> FilterPlan {
     let plan = FilterPlan::default().with_program(concat!("reality-sim viewer ", env!("CARGO_PKG_VERSION")));
-    let device = device.cloned();
-    plan.with_device(Arc::new(move || match &device {
-        Some(Device { name, open }) => Ok(pipeline::Device { name: name.clone(), backend: open()? }),
-        None => Ok(pipeline::Device { name: "processor".to_owned(), backend: Arc::new(CpuBackend) }),
+    let device = device.cloned().unwrap_or_else(Device::processor);
+    plan.with_device(Arc::new(move || {
+        Ok(pipeline::Device { name: device.name().to_owned(), backend: device.open()? })
     }))
 }
 

@@ -305,7 +305,7 @@ fn another_device_is_opened_at_once_and_once() {
         count.fetch_add(1, Ordering::SeqCst);
         Ok(Arc::new(CpuBackend))
     };
-    let device = Device { name: "another".to_owned(), open: Arc::new(open) };
+    let device = Device::adapter("another", open);
     let mut painter = painter(&source);
     let first = Wish { panes: vec![Pane::picture(PictureKind::Blend)], ..wish(&source, probe(&source).1) };
     fulfilled(&mut painter, &first);
@@ -388,10 +388,7 @@ fn a_long_recording_is_made_a_database_of_only_when_that_is_asked_for() {
 #[test]
 fn a_device_that_cannot_be_opened_is_told_and_the_processor_draws() {
     let source = source();
-    let device = Device {
-        name: "broken".to_owned(),
-        open: Arc::new(|| Err(BackendError::new("no driver: install one"))),
-    };
+    let device = Device::adapter("broken", || Err(BackendError::new("no driver: install one")));
     let mut painter = Painter::spawn(&Context::default(), source.clone());
     painter.wish(Wish { device: Some(device), ..wish(&source, probe(&source).1) });
     let start = Instant::now();

@@ -360,11 +360,11 @@ impl Playing {
         let Some(device) = by_name(&self.devices, &self.settings.device) else {
             return Ok(Arc::new(CpuBackend));
         };
-        if let Some((_, backend)) = self.backend.as_ref().filter(|(name, _)| *name == device.name) {
+        if let Some((_, backend)) = self.backend.as_ref().filter(|(name, _)| *name == device.name()) {
             return Ok(backend.clone());
         }
-        let backend = (device.open)()?;
-        self.backend = Some((device.name.clone(), backend.clone()));
+        let backend = device.open()?;
+        self.backend = Some((device.name().to_owned(), backend.clone()));
         Ok(backend)
     }
 

@@ -9,10 +9,7 @@ use std::{
 
 use eframe::egui::Context;
 use reality_sim_core::{
-    backend::{BackendError, CpuBackend},
-    observation::ObservationKind,
-    pose::Pose2,
-    sequence::Sequence,
+    backend::BackendError, observation::ObservationKind, pose::Pose2, sequence::Sequence,
 };
 
 use super::{
@@ -34,10 +31,7 @@ fn walk(frames: usize) -> Arc<Sequence> {
 
 fn devices() -> Vec<Device> {
     let broken = || Err(BackendError::new("no such card: choose another one"));
-    vec![
-        Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) },
-        Device { name: "broken".to_owned(), open: Arc::new(broken) },
-    ]
+    vec![Device::processor(), Device::adapter("broken", broken)]
 }
 
 fn player(sequence: &Arc<Sequence>, filter: FilterSettings) -> Player {
@@ -292,7 +286,7 @@ fn a_device_that_does_not_open_is_a_problem_and_another_one_helps() {
     let mut player = player(&walk(4), broken);
     assert!(next_problem(&mut player).contains("no such card"));
     player.tell(Command::Filter(FilterSettings {
-        device: "processor".to_owned(),
+        device: Device::processor().name().to_owned(),
         ..FilterSettings::default()
     }));
     assert!(error_m(&next_frame(&mut player)) < 0.01);

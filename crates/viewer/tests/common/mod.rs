@@ -6,7 +6,6 @@
 use std::{
     collections::HashMap,
     path::{Path, PathBuf},
-    sync::Arc,
     thread,
     time::{Duration, Instant},
 };
@@ -19,7 +18,6 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT, Queryable},
 };
-use reality_sim_core::backend::CpuBackend;
 use reality_sim_viewer::{Device, ViewerApp, ViewerOptions};
 
 /// Time limit, longer than anything takes on a busy machine.
@@ -62,7 +60,7 @@ pub fn viewer<'a>(open: &Path) -> Viewer<'a> {
 
 /// Returns a window of a size, in points, that opens a path and remembers what is stored.
 pub fn viewer_with<'a>(open: &Path, size: Vec2, storage: Option<&'a dyn Storage>) -> Viewer<'a> {
-    let device = Device { name: "processor".to_owned(), open: Arc::new(|| Ok(Arc::new(CpuBackend))) };
+    let device = Device::processor();
     let options =
         ViewerOptions { open: open.to_path_buf(), demonstration: Some(walk()), devices: vec![device] };
     Harness::builder().with_size(size).build_eframe(|cc| {
