@@ -49,7 +49,7 @@ pub const FOREIGN: [&str; 8] = [
 pub enum Falloff {
     /// Proportional to the square of the distance from the principal point.
     Quadratic,
-    /// As cos⁴ of the angle in a camera whose corners are at 45°, scaled to the same loss in the corners.
+    /// Falloff as cos⁴ of the angle in a camera whose corners are at 45°, scaled to the same loss in the corners.
     Cos4,
 }
 

@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_of_flat_light_has_the_deviation_of_the_sensor() {
+    fn noise_of_even_light_has_the_standard_deviation_of_the_sensor() {
         for (light, factor) in [(0.1_f32, 0.0), (0.6, 0.0), (0.3, 0.5)] {
             let (mean, deviation) = flat(&film(&[Hidden::SensorNoise { factor }]), light);
             let expected = (1.0 + factor) * (0.0015 * f64::from(light) + 0.004 * 0.004).sqrt();
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_lose_the_strength_of_the_vignetting() {
+    fn vignetting_takes_its_strength_from_the_corners() {
         for falloff in [Falloff::Quadratic, Falloff::Cos4] {
             let nominal = Nominal::new(1, [120, 90]);
             let mut truth = Truth::new(&nominal, &[Hidden::Vignetting { strength: 0.3, falloff }]);

@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn streams_of_one_seed_differ() {
+    fn streams_of_the_same_seed_differ() {
         let first = |purpose, number| Random::stream(3, purpose, number).next_u64();
         assert_ne!(first("gait", 0), first("lens", 0));
         assert_ne!(first("noise", 0), first("noise", 1));

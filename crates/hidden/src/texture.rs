@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_texture_has_the_mean_and_deviation_asked_for() {
+    fn a_texture_has_the_requested_mean_and_deviation() {
         let texture = Texture::new(&mut Random::new(5), &[(0.15, 0.06), (0.05, 0.05)]);
         let values: Vec<f64> = (0..400)
             .flat_map(|i| (0..400).map(move |j| (i, j)))

@@ -69,7 +69,7 @@ fn a_recording_reads_back_as_a_sequence_with_pictures() {
 }
 
 #[test]
-fn a_standing_robot_sees_one_picture_and_its_noise() {
+fn pictures_of_a_standing_robot_differ_by_their_noise_alone() {
     let folder = tempfile::tempdir().unwrap();
     let sequence = Recipe { walk: Walk::Standing, ..recipe(Vec::new()) }.record(folder.path()).unwrap();
     let pictures = [0, 3].map(|frame| sequence.load_image(frame).unwrap());
@@ -79,7 +79,7 @@ fn a_standing_robot_sees_one_picture_and_its_noise() {
 }
 
 #[test]
-fn recipes_that_cannot_be_followed_are_refused() {
+fn impossible_recipes_are_refused() {
     let nowhere = Path::new("not-written");
     let refused = |recipe: Recipe| recipe.record(nowhere).unwrap_err().to_string();
     assert!(refused(Recipe { frames: 0, ..recipe(Vec::new()) }).contains("frames"));

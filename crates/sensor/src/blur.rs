@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn kernels_go_on_where_heat_ends() {
+    fn the_sampled_gaussian_continues_the_diffusion_kernel() {
         let [heat, gaussian] = [HEAT_PX2, HEAT_PX2 + 1e-6].map(Kernel::new);
         for (heat, gaussian) in heat.weights.iter().zip(&gaussian.weights) {
             assert!((heat - gaussian).abs() < 2e-4, "{heat} {gaussian}");

@@ -25,7 +25,7 @@ const DEFAULT_GAMMA: f64 = 2.2;
 #[derive(Debug, Clone)]
 pub struct Chain {
     model: Model,
-    /// This list and those below hold the stage's effects that are not neutral.
+    /// Effects of the stage that are not neutral, as in the lists below.
     world: Vec<Used>,
     motion: Vec<Used>,
     mount: Vec<Used>,

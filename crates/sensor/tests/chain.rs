@@ -123,7 +123,7 @@ fn a_late_clock_shows_every_picture_later() {
 }
 
 #[test]
-fn points_a_little_outside_the_picture_are_followed_and_others_not() {
+fn points_just_outside_the_picture_are_projected_and_others_are_not() {
     let camera = pinhole();
     let nominal = chain(&camera, &[]);
     let at = |u: f64| {
@@ -201,7 +201,7 @@ fn measured_setup() -> CameraSetup {
 }
 
 #[test]
-fn what_the_camera_file_says_of_the_photometry_is_in_the_chain() {
+fn the_chain_has_the_photometry_of_the_camera_file() {
     let nominal = Chain::nominal(&measured_setup(), &common::field());
     assert!((nominal.respond(0.5) - 0.55).abs() < 1e-12);
     assert!((nominal.noise().variance(0.5) - (0.002 * 0.5 + 1e-4)).abs() < 1e-12);
@@ -224,7 +224,7 @@ fn what_the_camera_file_says_of_the_photometry_is_in_the_chain() {
 }
 
 #[test]
-fn light_is_that_of_ground_lens_and_exposure_together() {
+fn light_is_the_product_of_ground_lens_and_exposure() {
     let camera = pinhole();
     let effects: [(&str, &[f64]); 4] = [
         ("vignetting", &[0.5]),
@@ -245,7 +245,7 @@ fn light_is_that_of_ground_lens_and_exposure_together() {
 }
 
 #[test]
-fn odometry_passes_all_its_effects() {
+fn odometry_passes_through_all_its_effects() {
     let effects: [(&str, &[f64]); 3] =
         [("odometry_scale", &[0.1]), ("odometry_yaw_drift", &[0.05]), ("odometry_lateral_slip", &[0.5])];
     let chain = chain(&pinhole(), &effects);
@@ -256,7 +256,7 @@ fn odometry_passes_all_its_effects() {
 }
 
 #[test]
-fn the_field_is_the_changed_one() {
+fn the_chain_returns_the_changed_field() {
     let chain = chain(&pinhole(), &[("field_dimensions", &[0.2, -0.1])]);
     let expected = FieldDimensions { length_m: 6.2, width_m: 3.9, ..common::field() };
     assert!((chain.field().length_m - expected.length_m).abs() < 1e-12);

@@ -44,7 +44,7 @@ fn every_file_of_an_effect_is_in_the_library() {
 }
 
 #[test]
-fn every_effect_says_what_it_is_and_what_its_numbers_are() {
+fn every_effect_describes_itself_and_its_parameters() {
     for effect in library() {
         let id = effect.id();
         for text in [effect.name(), effect.because(), effect.recording_that_would_decide()] {

@@ -35,7 +35,7 @@ proptest! {
 }
 
 #[test]
-fn the_file_says_what_its_numbers_are() {
+fn the_file_explains_its_values() {
     let model = Model::default().with(effect("vignetting").unwrap(), [0.52]);
     let expected = "# Effects of the simulated camera beside what camera.toml says, as positive values have them; neutral values: no effect.\n\n\
         [[effect]]\nid = \"vignetting\"  # the lens darkens towards the corners\n\
@@ -44,7 +44,7 @@ fn the_file_says_what_its_numbers_are() {
 }
 
 #[test]
-fn what_is_left_out_is_neutral_and_whole_numbers_are_numbers() {
+fn omitted_values_are_neutral_and_integers_are_accepted() {
     let text = "[[effect]]\nid = 'principal_point'\ny_px = 4\n\n[[effect]]\nid = 'defocus'\n";
     let model = parsed(text).unwrap();
     assert_eq!(model.values("principal_point").unwrap(), [0.0, 4.0]);
@@ -54,7 +54,7 @@ fn what_is_left_out_is_neutral_and_whole_numbers_are_numbers() {
 }
 
 #[test]
-fn values_of_an_effect_are_replaced_filled_up_and_cut_off() {
+fn values_of_an_effect_are_replaced_padded_and_truncated() {
     let [vignetting, defocus] = ["vignetting", "defocus"].map(|id| effect(id).unwrap());
     let model =
         Model::default().with(vignetting, [0.1, 0.2]).with(defocus, [1.0]).with(vignetting, vec![0.3]);
@@ -109,7 +109,7 @@ fn a_faulty_model_is_refused_with_its_line_and_its_fault() {
 }
 
 #[test]
-fn a_file_that_is_none_is_refused_by_name() {
+fn a_path_without_a_readable_model_is_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
     let missing = folder.path().join("missing.toml");
     let not_text = folder.path().join("not_text.toml");

@@ -290,7 +290,7 @@ fn even_pixels(picture: &RgbImage) -> Vec<(u32, u32)> {
 }
 
 #[test]
-fn light_reaches_the_file_as_the_chain_says() {
+fn pixel_values_are_those_that_the_chain_computes() {
     let camera = common::fisheye([160, 120], 54.0);
     let field = common::field_without_goals();
     let setup = common::linear_setup(camera.clone());
@@ -333,7 +333,7 @@ fn light_reaches_the_file_as_the_chain_says() {
 }
 
 #[test]
-fn walls_and_goals_keep_their_light_where_the_ground_is_uneven() {
+fn uneven_light_on_the_ground_leaves_walls_and_goals_alone() {
     let setup = common::linear_setup(common::fisheye([640, 480], 215.0));
     let field = common::field();
     let pose = common::pose([1.5, 0.2, 0.0], [0.5, 0.0, 0.0]);
@@ -372,7 +372,7 @@ fn noise_has_its_variance_and_no_mean() {
 }
 
 #[test]
-fn a_black_level_has_no_noise_of_its_own() {
+fn a_black_level_adds_no_noise() {
     let (_, plain) = carpet_noise(&[("sensor_noise", &[0.005])], Some(5));
     let (mean, raised) = carpet_noise(&[("sensor_noise", &[0.005]), ("black_level", &[0.2])], Some(5));
     assert!((mean - 0.52).abs() < 0.001, "{mean}");
@@ -381,7 +381,7 @@ fn a_black_level_has_no_noise_of_its_own() {
 }
 
 #[test]
-fn noise_is_that_of_seed_and_time() {
+fn noise_depends_on_seed_and_time_alone() {
     let setup = common::measured_setup(common::fisheye([64, 48], 22.0));
     let renderer = Renderer::new(&setup, &common::field(), common::colors());
     let still = Trajectory::still(common::walk().at(0.0));
@@ -393,7 +393,7 @@ fn noise_is_that_of_seed_and_time() {
 }
 
 #[test]
-fn where_no_light_falls_the_sensor_still_puts_out_its_black_level() {
+fn without_light_the_sensor_outputs_its_black_level() {
     let camera = common::fisheye([160, 120], 54.0).with_max_angle_rad(1.0).unwrap();
     let setup = common::linear_setup(camera);
     let picture =

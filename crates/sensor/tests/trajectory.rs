@@ -108,7 +108,7 @@ fn far_apart_poses_are_joined_by_a_straight_line() {
 }
 
 #[test]
-fn angles_take_the_short_way_round() {
+fn angles_are_interpolated_the_short_way_round() {
     let turned = |yaw_rad: f64, roll_rad: f64| {
         common::pose([0.0, 0.0, wrap_angle(yaw_rad)], [0.5, 0.4, wrap_angle(roll_rad)])
     };
@@ -124,7 +124,7 @@ fn angles_take_the_short_way_round() {
 }
 
 #[test]
-fn what_does_not_move_is_still() {
+fn a_trajectory_of_equal_poses_is_still() {
     let pose = common::pose([1.0, 2.0, 3.0], [0.5, 0.4, 0.1]);
     let still = Trajectory::still(pose);
     let same = Trajectory::new(&[(1.0, pose), (2.0, pose), (2.1, pose)]).unwrap();
@@ -140,7 +140,7 @@ fn what_does_not_move_is_still() {
 }
 
 #[test]
-fn poses_that_give_no_trajectory_are_refused_with_what_to_do() {
+fn poses_that_define_no_trajectory_are_refused() {
     let pose = common::pose([0.0; 3], [0.5, 0.0, 0.0]);
     let strange = CameraPose { roll_rad: f64::NAN, ..pose };
     let cases = [

@@ -84,7 +84,7 @@ fn said(effect: &dyn Effect) -> String {
 }
 
 #[test]
-fn effects_say_what_is_written_down_of_them() {
+fn the_wording_of_every_effect_is_the_recorded_one() {
     let mut ranked = library().to_vec();
     ranked.sort_by_key(|effect| effect.about().rank);
     let nouns = ranked.iter().map(|effect| format!("{}: {}\n", effect.id(), effect.about().noun));
@@ -130,7 +130,7 @@ fn size(id: &str, values: &[(&'static str, f64, f64)], correlation: f64) -> Stri
 }
 
 #[test]
-fn noise_is_told_where_it_is_best_known() {
+fn noise_is_stated_at_the_brightness_where_it_is_best_known() {
     // The noise changes by 0.0004 at a light of 0.4; which part depends on the light is not known.
     let values = [("shot", 0.0005, 0.0005), ("read_variance", 0.0002, 0.0002)];
     let text = "at 40 % of full light, 2.00 % of full scale is missing (± 0.14 %)";
@@ -141,7 +141,7 @@ fn noise_is_told_where_it_is_best_known() {
 }
 
 #[test]
-fn the_lens_bends_in_or_out_only_where_all_its_numbers_agree() {
+fn a_direction_of_bending_is_named_only_where_all_radii_agree() {
     let lens = |k1: f64, k2: f64| {
         let values = [("k1", k1, 0.002), ("k2", k2, 0.002), ("k3", 0.0, 0.001), ("k4", 0.0, 0.001)];
         size("radial_distortion", &values, 0.0)
@@ -159,7 +159,7 @@ fn the_row_of_the_time_stamp_is_named_where_it_is_known() {
 }
 
 #[test]
-fn a_drift_is_from_the_darkest_moment_to_the_brightest() {
+fn a_drift_is_stated_from_the_darkest_moment_to_the_brightest() {
     let values =
         [("from_s", 5.0, 0.0), ("ev_01", -0.3, 0.01), ("ev_02", 0.5, 0.01), ("ev_03", f64::NAN, 0.0)];
     let text = "the brightest moment has 74 % more light than the darkest, 0.800 EV (± 0.028 EV)";
@@ -186,7 +186,7 @@ fn every_effect_has_words_of_its_own() {
 }
 
 #[test]
-fn numbers_that_are_none_do_no_harm() {
+fn estimates_that_are_not_finite_leave_no_trace_in_the_words() {
     for effect in library() {
         for (value, sigma) in [(f64::NAN, f64::NAN), (0.0, f64::NAN), (f64::INFINITY, 1.0), (0.0, 0.0)] {
             let values: Vec<_> =

@@ -347,7 +347,7 @@ mod tests {
     }
 
     #[test]
-    fn an_opening_that_lasts_can_be_cancelled_without_waiting_for_it() {
+    fn a_slow_opening_can_be_cancelled_without_waiting_for_it() {
         let (mut harness, go) = with_endless_opening();
         harness.get_by_label("Cancel").click();
         harness.run_steps(2);
@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_opened_second_takes_the_place_of_what_still_opens() {
+    fn a_second_opening_replaces_the_one_under_way() {
         let (mut harness, go) = with_endless_opening();
         let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk");
         let ctx = harness.ctx.clone();

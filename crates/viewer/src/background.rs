@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_work_returns_arrives_once_and_wakes_the_window() {
+    fn the_result_of_the_work_arrives_once_and_wakes_the_window() {
         let (ctx, repaints) = counting_context();
         let task = Task::spawn(&ctx, "adding", |_| Ok(2 + 3));
         assert!(matches!(end_of(&task), Outcome::Done(5)));
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn work_that_panics_has_failed_and_the_window_wakes_up_to_say_so() {
+    fn work_that_panics_fails_and_wakes_the_window() {
         let (ctx, repaints) = counting_context();
         let task = Task::<()>::spawn(&ctx, "Counting sheep", |_| panic!("meant to: part of a test"));
         wait_until(|| repaints.load(Ordering::SeqCst) > 0);
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn who_finishes_a_task_waits_until_all_that_it_held_is_gone() {
+    fn finishing_a_task_waits_until_all_that_it_held_is_dropped() {
         let (held, progress_seen) = (Arc::new(()), Arc::new(AtomicBool::new(false)));
         let (its, seen) = (held.clone(), progress_seen.clone());
         let task = Task::spawn(&egui::Context::default(), "", move |progress| {
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_finished_after_the_cancelling_is_not_delivered() {
+    fn a_result_after_cancelling_is_not_delivered() {
         let (go, wait) = mpsc::channel::<()>();
         let task = Task::spawn(&egui::Context::default(), "", move |_| Ok(wait.recv().is_ok()));
         task.progress.is_cancelled.store(true, Ordering::Relaxed);

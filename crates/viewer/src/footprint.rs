@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_is_the_present_poses_footprint() {
+    fn the_footprint_is_kept_for_the_present_pose_only() {
         let mut kept = Footprint::default();
         for pose in [pose(0.3), pose(0.3), pose(0.8), pose(0.3)] {
             assert_eq!(kept.outline(&camera(), pose), footprint(&camera(), pose));

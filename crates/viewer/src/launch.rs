@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_opens_the_window_gives_back_its_result() {
+    fn the_result_of_opening_the_window_is_returned() {
         assert_eq!(while_opening(|_| 5).unwrap(), 5);
     }
 
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn winits_place_in_its_code_is_not_shown() {
+    fn source_locations_of_winit_are_not_shown() {
         let message = "winit EventLoopError: os error at /home/src/mod.rs:785: no X server";
         assert_eq!(reason(message), "no X server");
         assert_eq!(reason("winit error: something else"), "winit error: something else");

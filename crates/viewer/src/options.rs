@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::Device;
 
-/// What the window first shows, and what it may use.
+/// Options of the window: what it first shows, and the devices that it offers.
 #[derive(Debug, Clone)]
 pub struct ViewerOptions {
     /// Path of a recording, a database, or a report of the gap.

@@ -337,7 +337,7 @@ fn in_the_smallest_window_the_way_to_a_true_picture_is_reached_and_the_field_gro
 }
 
 #[test]
-fn at_rest_nothing_is_drawn_anew() {
+fn nothing_is_drawn_again_at_rest() {
     let (mut window, _folder) = driving();
     click(&mut window, "triangulation");
     window.remove_cursor();

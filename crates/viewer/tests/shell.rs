@@ -266,7 +266,7 @@ fn painted_text(viewer: &Viewer<'_>) -> String {
 }
 
 #[test]
-fn of_several_things_dropped_the_first_is_opened_and_the_others_are_not_forgotten_in_silence() {
+fn the_first_of_several_dropped_things_is_opened_and_the_others_are_mentioned() {
     let mut viewer = viewer(Path::new("/no/such/walk"));
     until_label(&mut viewer, "Dismiss");
     drop_on(&mut viewer, &[&walk(), Path::new("/another")]);
@@ -292,7 +292,7 @@ fn f1_and_the_question_mark_list_every_key() {
 }
 
 #[test]
-fn a_key_held_down_does_a_thing_once() {
+fn a_key_that_is_held_down_acts_once() {
     let mut viewer = demonstration();
     for repeat in [false, true, true] {
         let (key, modifiers, physical_key) = (Key::F1, Modifiers::NONE, None);
@@ -332,7 +332,7 @@ fn typing_a_path_triggers_no_keys() {
 }
 
 #[test]
-fn keys_with_ctrl_are_heard_while_someone_types() {
+fn keys_with_ctrl_work_while_a_text_field_has_the_focus() {
     let mut viewer = demonstration();
     press(&mut viewer, Modifiers::COMMAND, Key::O);
     viewer.run_steps(2);

@@ -347,7 +347,7 @@ fn a_drag_that_ends_in_another_panel_leaves_nothing_behind() {
 }
 
 #[test]
-fn the_panel_looks_as_it_did() {
+fn the_panel_looks_like_its_snapshot() {
     let mut window = window_on(&walk(), vec2(760.0, 520.0));
     until_label(&mut window, "sure");
     // Times differ from run to run, so only picture and field are compared.

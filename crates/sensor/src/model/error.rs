@@ -88,7 +88,7 @@ pub enum ModelFault {
     NotANumber {
         /// The effect.
         id: &'static str,
-        /// Its key.
+        /// Key of the parameter.
         key: &'static str,
     },
     /// A number is NaN or infinite.
@@ -96,7 +96,7 @@ pub enum ModelFault {
     NotFinite {
         /// The effect.
         id: &'static str,
-        /// Its key.
+        /// Key of the parameter.
         key: &'static str,
     },
     /// The effect's values leave no valid camera.

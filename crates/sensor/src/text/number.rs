@@ -14,7 +14,7 @@ const MOST_DECIMALS: i32 = 9;
 pub struct Uncertain {
     /// The number.
     pub value: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the value.
     pub sigma: f64,
 }
 
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_a_dash() {
+    fn a_value_that_is_not_finite_is_a_dash() {
         for value in [f64::NAN, f64::INFINITY] {
             assert_eq!(digits(value, 2), "–");
             assert_eq!(with_sigma(value, 1.0), "–");

@@ -116,7 +116,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn limits_are_in_the_units_of_people() {
+    fn limits_are_stated_in_familiar_units() {
         assert_eq!(Unit::Degrees.limit_in_words("pitch_rad", 0.0014), "0.080°");
         assert_eq!(Unit::Milliseconds.limit_in_words("readout_s", 0.0042), "4.2 ms");
         assert_eq!(Unit::Percent.limit_in_words("strength", 0.031), "3.1 %");

@@ -42,7 +42,7 @@ impl PictureKind {
         }
     }
 
-    /// What makes it.
+    /// Returns what makes the picture.
     pub fn made_by(self) -> MadeBy {
         match self {
             Self::Auto => MadeBy::Method(MethodKind::Auto),
@@ -56,12 +56,12 @@ impl PictureKind {
     }
 }
 
-/// What makes a picture.
+/// Maker of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MadeBy {
     /// A method, from recorded pictures.
     Method(MethodKind),
-    /// What draws the model of the field.
+    /// The renderer of the field's model.
     Renderer,
     /// The camera that stood there.
     Camera,

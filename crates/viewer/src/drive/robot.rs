@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn it_leaves_the_carpet_by_a_metre_at_most() {
+    fn the_robot_leaves_the_carpet_by_a_metre_at_most() {
         let mut robot = robot();
         robot.take(CameraPose { x_m: 90.0, y_m: -90.0, ..robot.pose() });
         let pose = robot.pose();
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn it_follows_a_path_to_its_end_looking_along_it_and_stops() {
+    fn the_robot_follows_a_path_to_its_end_facing_along_it_and_stops() {
         let mut robot = robot();
         robot.follow_or_stop();
         assert!(!robot.is_following(), "there is no path");

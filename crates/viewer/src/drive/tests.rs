@@ -217,7 +217,7 @@ fn origins_and_trust_are_of_the_same_picture_and_a_simulated_one_has_none() {
 }
 
 #[test]
-fn of_many_wishes_the_newest_is_fulfilled() {
+fn the_newest_of_many_requests_is_fulfilled() {
     let source = source();
     let mut painter = painter(&source);
     let poses = (0..200).map(|step| CameraPose { yaw_rad: 0.001 * f64::from(step), ..probe(&source).1 });
@@ -243,7 +243,7 @@ fn of_many_wishes_the_newest_is_fulfilled() {
 }
 
 #[test]
-fn while_wishes_change_without_an_end_every_view_gets_its_turn_and_the_first_is_drawn_first() {
+fn every_pane_has_its_turn_while_requests_keep_changing() {
     let source = source();
     let mut painter = painter(&source);
     let panes = wish(&source, probe(&source).1).panes;
@@ -264,7 +264,7 @@ fn while_wishes_change_without_an_end_every_view_gets_its_turn_and_the_first_is_
 }
 
 #[test]
-fn what_was_drawn_already_is_not_drawn_again_for_another_part_of_the_map() {
+fn pictures_are_not_drawn_again_for_another_part_of_the_map() {
     let source = source();
     let mut painter = painter(&source);
     let first = wish(&source, probe(&source).1);
@@ -288,7 +288,7 @@ fn what_was_drawn_already_is_not_drawn_again_for_another_part_of_the_map() {
 }
 
 #[test]
-fn who_drops_the_painter_waits_for_its_thread() {
+fn dropping_the_painter_waits_for_its_thread() {
     let source = Arc::new(built(walk()));
     let mut painter = Painter::spawn(&Context::default(), source.clone());
     painter.wish(wish(&source, probe(&source).1));
@@ -297,7 +297,7 @@ fn who_drops_the_painter_waits_for_its_thread() {
 }
 
 #[test]
-fn another_device_is_opened_at_once_and_once() {
+fn another_device_is_opened_once_when_it_is_chosen() {
     let source = source();
     let opened = Arc::new(AtomicUsize::new(0));
     let count = opened.clone();
@@ -355,7 +355,7 @@ fn leaving_while_the_database_is_made_leaves_no_file_behind() {
 }
 
 #[test]
-fn the_provenance_of_poses_found_says_how_they_were_found() {
+fn the_provenance_states_how_poses_were_found() {
     let mut recording = walk();
     recording.frames.truncate(4);
     recording.frames.iter_mut().for_each(|frame| frame.reference_pose = None);
@@ -370,7 +370,7 @@ fn the_provenance_of_poses_found_says_how_they_were_found() {
 }
 
 #[test]
-fn a_long_recording_is_made_a_database_of_only_when_that_is_asked_for() {
+fn a_long_recording_becomes_a_database_only_on_request() {
     let mut long = walk();
     long.frames = vec![long.frames[0].clone(); 2001];
     let show = |ui: &mut Ui, panel: &mut DrivePanel| {
@@ -386,7 +386,7 @@ fn a_long_recording_is_made_a_database_of_only_when_that_is_asked_for() {
 }
 
 #[test]
-fn a_device_that_cannot_be_opened_is_told_and_the_processor_draws() {
+fn a_device_that_does_not_open_is_reported_and_the_processor_draws() {
     let source = source();
     let device = Device::adapter("broken", || Err(BackendError::new("no driver: install one")));
     let mut painter = Painter::spawn(&Context::default(), source.clone());

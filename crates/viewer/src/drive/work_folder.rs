@@ -64,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_goes_with_its_owner_and_its_name_tells_whose_it_is() {
+    fn a_folder_is_deleted_with_its_owner_and_bears_its_process_id() {
         let parent = tempfile::tempdir().unwrap();
         let folder = WorkFolder::new_in(parent.path()).unwrap();
         let prefix = format!("reality-sim-viewer-{}-", std::process::id());

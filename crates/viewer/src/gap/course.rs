@@ -17,7 +17,7 @@ pub fn ui(ui: &mut Ui, course: &Course, channel: Channel, room: Vec2) {
     title_ui(
         ui,
         "Over time: without (orange), with (green)",
-        "Size of each frame's residuals, robust against robots in the way. Dots: judged frames, which no fit has seen",
+        "Size of each frame's residuals, robust against robots in the way. Dots: held-out frames, which no fit has seen",
     );
     let Some(first_s) = course.time_s.first().copied() else { return words(ui, room, "no frames") };
     let (factor, unit) = channel_scale(channel);

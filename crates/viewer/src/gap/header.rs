@@ -1,12 +1,9 @@
 //! The answer: the verdict in one word, and the summary in a sentence.
 
 use eframe::egui::{self, Color32, Label, RichText, Ui};
-use reality_sim_gap::{
-    ReferenceSource,
-    report::{
-        Report, Verdict,
-        text::{GAP_UNIT, absorbed, summary, verdict_meaning, verdict_word},
-    },
+use reality_sim_gap::report::{
+    Report, Verdict,
+    text::{GAP_UNIT, absorbed, digits, reference_source, summary, verdict_meaning, verdict_word},
 };
 
 /// Largest share of the window's height that the summary takes.
@@ -61,18 +58,13 @@ fn color(verdict: Verdict) -> Color32 {
 }
 
 fn facts(report: &Report) -> String {
-    let poses = match report.poses.source {
-        ReferenceSource::Measured => "measured",
-        ReferenceSource::Tagged => "found by the filter",
-    };
+    let [before, after, floor] =
+        [report.gap.before, report.gap.after, report.gap.floor].map(|size| digits(size, 3));
     format!(
-        "{} · {} frames, {} of them judged and in no fit · poses {poses} · gap {:.2} before, {:.2} after, in {} (floor {:.2})",
+        "{} · {} frames, {} of them held out · poses {} · gap {before} before, {after} after, in {GAP_UNIT} (floor {floor})",
         report.recording,
         report.frames,
         report.held_out_frames,
-        report.gap.before,
-        report.gap.after,
-        GAP_UNIT,
-        report.gap.floor,
+        reference_source(report.poses.source),
     )
 }

@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_seen_in_any_order_come_in_theirs_and_each_once() {
+    fn frames_shown_in_any_order_are_listed_once_in_theirs() {
         let mut history = History::default();
         for index in [5, 2, 9, 2, 7] {
             history.add(record(index, index == 9));

@@ -77,7 +77,7 @@ pub enum Speed {
     Recorded,
     /// Five times the speed of the recording.
     Fast,
-    /// As fast as the filter runs.
+    /// The filter's own speed, as fast as it runs.
     Filter,
 }
 

@@ -88,7 +88,7 @@ fn error_m(frame: &FrameView) -> f64 {
 }
 
 #[test]
-fn every_picture_is_played_once_in_its_order_and_found_to_a_centimetre() {
+fn every_picture_is_played_once_in_order_and_localized_within_a_centimetre() {
     let mut player = player(&walk(12), FilterSettings::default());
     assert_eq!(next_frame(&mut player).record.index, 0);
     // The window is slow: nothing is lost, and the queue does not grow without bound.
@@ -101,7 +101,7 @@ fn every_picture_is_played_once_in_its_order_and_found_to_a_centimetre() {
 }
 
 #[test]
-fn playing_at_the_end_begins_again() {
+fn playing_at_the_end_starts_again() {
     let mut player = player(&walk(3), FilterSettings::default());
     next_frame(&mut player);
     assert_eq!(play(&mut player).len(), 2);
@@ -110,7 +110,7 @@ fn playing_at_the_end_begins_again() {
 }
 
 #[test]
-fn particles_dragged_away_are_lost_and_find_back() {
+fn particles_that_are_dragged_away_recover() {
     let mut player = player(&walk(14), FilterSettings::default());
     next_frame(&mut player);
     player.tell(Command::GoTo(1));
@@ -252,7 +252,7 @@ fn without_its_first_picture_a_recording_is_found_from_the_second() {
 }
 
 #[test]
-fn settings_and_a_frame_asked_for_at_once_both_count() {
+fn settings_and_a_frame_that_are_requested_together_both_count() {
     for is_settings_first in [true, false] {
         let mut player = player(&walk(12), FilterSettings::default());
         next_frame(&mut player);

@@ -71,7 +71,7 @@ fn a_report_opens_alone_with_its_verdict_and_its_sentence() {
     let (window, _folder) = opened();
     assert!(shows(&window, "confusable"));
     assert!(shows(&window, &text::summary(&report())));
-    assert!(!texts(&window, "12 frames, 3 of them judged").is_empty());
+    assert!(!texts(&window, "12 frames, 3 of them held out").is_empty());
     assert!(!shows(&window, "Walk") && !shows(&window, "Drive") && !shows(&window, "Dismiss"));
 }
 
@@ -210,7 +210,7 @@ fn a_channel_without_a_map_says_so() {
 }
 
 #[test]
-fn the_effect_that_is_chosen_tells_all_that_is_known_of_it() {
+fn the_chosen_effect_shows_all_that_is_known_of_it() {
     let (mut window, _folder) = opened();
     let all = report();
     let because = |effect: &EffectReport| format!("Because {}.", text::effect_because(effect));
@@ -371,7 +371,7 @@ fn what_is_looked_at_survives_a_restart_under_a_key_of_its_own() {
 }
 
 #[test]
-fn at_rest_nothing_is_drawn_anew() {
+fn nothing_is_drawn_again_at_rest() {
     let (mut window, _folder) = opened();
     window.remove_cursor();
     let delay =
