@@ -171,7 +171,7 @@ fn of_two_effects_that_explain_nearly_the_same_the_one_at_work_is_named() {
     // A tone curve of two parameters does to two brightnesses what a black level does.
     for effect in &report.effects {
         assert!(
-            effect.confusable_with.iter().all(|rival| rival == "tone_curve"),
+            effect.confusable_with.iter().all(|other| other == "tone_curve"),
             "{:?}",
             effect.confusable_with
         );

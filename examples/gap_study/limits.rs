@@ -11,13 +11,13 @@ use reality_sim_hidden::{Hidden, Random};
 use crate::{
     plan::{Part, Task},
     run,
-    truth::{main_size, parameters},
+    truth::{hidden_size, main_size, parameters},
 };
 
 /// Largest size of a hidden effect, as a fraction of its plausible range.
 const LARGEST: f64 = 0.8;
-/// Nominal shot noise. The library's parameters are variances, whereas the hidden one is a factor of the standard deviation.
-const SHOT_NOISE: f64 = 0.0015;
+/// Largest plausible factor of the noise's standard deviation.
+const LARGEST_NOISE_FACTOR: f64 = 4.0;
 
 /// Detection limits of a recording by effect: name of the parameter and its size.
 type OfRecording = BTreeMap<String, (String, f64)>;
@@ -43,8 +43,8 @@ impl Limits {
             }
         };
         let Some((parameter, limit)) = limits.get(id) else { return Ok(None) };
-        let limit = if id == "sensor_noise" { (1.0 + limit / SHOT_NOISE).sqrt() - 1.0 } else { *limit };
         let unit = Hidden::of(id, 1.0, &mut Random::new(task.seed.wrapping_mul(77)))?;
+        let limit = hidden_size(&unit, *limit);
         let known = parameters(&unit).into_iter().find(|(name, _)| name == parameter);
         let per_multiple = known.map_or(main_size(&unit), |(_, value)| value).abs();
         let largest = LARGEST * reach(id, &unit) / main_size(&unit).abs();
@@ -58,8 +58,9 @@ fn reach(id: &str, unit: &Hidden) -> f64 {
     let first = effect(id)
         .and_then(|effect| effect.parameters().iter().find(|parameter| parameter.role == Role::Size));
     let is_below = parameters(unit).iter().any(|(_, value)| *value < 0.0);
-    match (id, first) {
-        ("sensor_noise", _) => 4.0,
+    match (unit, first) {
+        // A factor, whereas the library's parameters are variances.
+        (Hidden::SensorNoise { .. }, _) => LARGEST_NOISE_FACTOR,
         (_, Some(parameter)) if is_below => parameter.neutral - parameter.range[0],
         (_, Some(parameter)) => parameter.range[1] - parameter.neutral,
         (_, None) => f64::INFINITY,

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, error::Error, path::Path, time::Instant};
 use reality_sim::{
     Sequence,
     gap::{
-        Options, Recording, ReferenceSource, analyse,
+        Options, Recording, RecordingError, ReferenceSource, analyse, gap_of,
         report::{Finding, Report, Verdict},
     },
     sensor::{Model, effect},
@@ -116,13 +116,13 @@ pub fn run(task: &Task, hidden: &[Chosen]) -> Result<Outcome, Box<dyn Error>> {
 }
 
 fn examine(sequence: &Sequence, model: &Model, options: &Options) -> Result<Report, Box<dyn Error>> {
-    let recording = Recording::new(
-        sequence,
-        &sequence.reference_poses().collect::<Vec<_>>(),
-        ReferenceSource::Measured,
-        None,
-    )?;
-    Ok(analyse(&recording, model, options, &|_| ())?.report)
+    Ok(analyse(&open(sequence)?, model, options, &|_| ())?.report)
+}
+
+/// Opens a recording with all of its frames and their true poses.
+fn open(sequence: &Sequence) -> Result<Recording<'_>, RecordingError> {
+    let poses: Vec<_> = sequence.reference_poses().collect();
+    Recording::new(sequence, &poses, ReferenceSource::Measured, None)
 }
 
 fn compared(hidden: &Hidden, report: &Report) -> Vec<Compared> {
@@ -158,11 +158,5 @@ fn oracle(sequence: &Sequence, effects: &[Hidden], options: &Options) -> Result<
     if effects.is_empty() {
         return Ok(None);
     }
-    let recording = Recording::new(
-        sequence,
-        &sequence.reference_poses().collect::<Vec<_>>(),
-        ReferenceSource::Measured,
-        None,
-    )?;
-    Ok(Some(reality_sim::gap::gap_of(&recording, &model, options)?.before))
+    Ok(Some(gap_of(&open(sequence)?, &model, options)?.before))
 }

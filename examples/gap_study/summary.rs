@@ -68,12 +68,12 @@ fn named(outcome: &Outcome) -> BTreeSet<&str> {
 
 /// Whether exactly the hidden effects were named, none of them confusable.
 fn is_exact(outcome: &Outcome) -> bool {
-    named(outcome) == hidden(outcome) && outcome.named.iter().all(|(_, rivals)| rivals.is_empty())
+    named(outcome) == hidden(outcome) && outcome.named.iter().all(|(_, confusable)| confusable.is_empty())
 }
 
 /// Whether an effect was named, or is confusable with a named one.
 fn in_set(outcome: &Outcome, id: &str) -> bool {
-    outcome.named.iter().any(|(named, rivals)| named == id || rivals.iter().any(|rival| rival == id))
+    outcome.named.iter().any(|(named, confusable)| named == id || confusable.iter().any(|other| other == id))
 }
 
 /// Writes the targets of the study and the results.
@@ -221,8 +221,8 @@ fn confusion(text: &mut String, runs: &[&Outcome]) {
 
 /// Returns the named effects; confusable ones are joined by "or".
 fn answer(run: &Outcome) -> String {
-    let name = |(id, rivals): &(String, Vec<String>)| {
-        std::iter::once(id).chain(rivals).cloned().collect::<Vec<String>>().join(" or ")
+    let name = |(id, confusable): &(String, Vec<String>)| {
+        std::iter::once(id).chain(confusable).cloned().collect::<Vec<String>>().join(" or ")
     };
     let mut names: Vec<String> = run.named.iter().map(name).collect();
     names.sort();

@@ -2,6 +2,9 @@
 
 use reality_sim_hidden::{Falloff, Hidden};
 
+/// Nominal shot noise of the recordings: variance of a linear value of 1.
+const SHOT_NOISE: f64 = 0.0015;
+
 /// Returns the number that stands for an effect's size.
 pub fn main_size(hidden: &Hidden) -> f64 {
     match hidden {
@@ -13,6 +16,15 @@ pub fn main_size(hidden: &Hidden) -> f64 {
         Hidden::ChromaticAberration { red_scale, blue_scale } => red_scale.abs().max(blue_scale.abs()),
         Hidden::WhiteBalance { red_gain, blue_gain } => red_gain.abs().max(blue_gain.abs()),
         _ => parameters(hidden).first().map_or(1.0, |(_, value)| *value),
+    }
+}
+
+/// Returns the size of a hidden effect that corresponds to a value of the library's parameter.
+pub fn hidden_size(hidden: &Hidden, parameter: f64) -> f64 {
+    match hidden {
+        // The library's parameter is added to the variance, whereas the hidden factor multiplies the standard deviation.
+        Hidden::SensorNoise { .. } => (1.0 + parameter / SHOT_NOISE).sqrt() - 1.0,
+        _ => parameter,
     }
 }
 

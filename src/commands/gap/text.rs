@@ -22,8 +22,8 @@ fn by_reason(unobservable: &[Unobservable]) -> BTreeMap<&str, Vec<&str>> {
 pub fn text(report: &Report, folder: &Path) -> String {
     let mut lines: Vec<(&str, String)> = Vec::new();
     for effect in &report.effects {
-        let rivals: String = effect.confusable_with.iter().map(|rival| format!(", or {rival}")).collect();
-        lines.push(("found", format!("{}{rivals}: {}", effect.id, effect_size(effect))));
+        let others: String = effect.confusable_with.iter().map(|id| format!(", or {id}")).collect();
+        lines.push(("found", format!("{}{others}: {}", effect.id, effect_size(effect))));
     }
     for effect in &report.in_model {
         lines.push(("in model", format!("{}: {}", effect.id, effect_size(effect))));

@@ -1,4 +1,4 @@
-//! Carpet, and what hides it.
+//! Blocks of carpet, and whether something hides them.
 
 use std::collections::BTreeMap;
 
@@ -9,23 +9,23 @@ use crate::{
     thresholds::Thresholds,
 };
 
-/// The quantity that tells carpet from what hides it.
+/// Quantity that distinguishes carpet from what hides it.
 const GREEN: Quantity = Quantity::CarpetLevel(ColorChannel::Green);
-/// Carpet is hidden where its residual is more than this many standard deviations.
+/// Smallest residual of a hidden block, standard deviations.
 const HIDDEN_SIGMAS: f64 = Thresholds::DEFAULT.diagnostics.hidden_sigmas;
 
-/// Returns the blocks of carpet of a frame, each with the residual of its green.
+/// Returns the blocks of carpet of a frame, each with the residual of its green level (natural logarithm).
 pub(super) fn blocks<'a>(frame: &'a FrameResiduals<'_>) -> impl Iterator<Item = (&'a Measurement, f64)> {
     let measured = frame.measurements.iter().zip(frame.values.iter().copied());
-    measured.filter(|(row, value)| row.quantity == GREEN && value.is_finite())
+    measured.filter(|(measurement, value)| measurement.quantity == GREEN && value.is_finite())
 }
 
-/// Returns the standard deviation of a block's residual; infinite where none was measured.
+/// Returns the standard deviation of a block's residual; infinite if no block was measured.
 pub(super) fn sigma(sigmas: &BTreeMap<Quantity, f64>) -> f64 {
     sigmas.get(&GREEN).copied().unwrap_or(f64::INFINITY)
 }
 
-/// Whether a block shows something else than carpet.
+/// Whether a block shows something other than carpet.
 pub(super) fn is_hidden(residual: f64, sigma: f64) -> bool {
     residual.abs() > HIDDEN_SIGMAS * sigma
 }
@@ -43,22 +43,23 @@ pub(super) mod pictures {
     pub(in super::super) const SIGMA: f64 = 0.05;
     const SIZE: [u32; 2] = [320, 240];
 
-    /// Pictures of carpet with this residual at a picture's number and a place in fractions of its size.
+    /// Calls `check` with pictures of carpet. `residual` gives a block's residual from the picture's number and the block's
+    /// place as fractions of the picture's size.
     pub(in super::super) fn with_pictures<T>(
         residual: impl Fn(u32, DVec2) -> f64,
-        judge: impl Fn(&[FrameResiduals<'_>]) -> T,
+        check: impl Fn(&[FrameResiduals<'_>]) -> T,
     ) -> T {
         let size = DVec2::new(f64::from(SIZE[0]), f64::from(SIZE[1]));
         let pixels: Vec<DVec2> =
             (0..1200).map(|i| 8.0 * DVec2::new(f64::from(i % 40), f64::from(i / 40))).collect();
-        let rows: Vec<Measurement> =
+        let measurements: Vec<Measurement> =
             pixels.iter().map(|&pixel| carpet_measurement(pixel, pixel / 100.0)).collect();
-        // A little texture, another in every block and picture.
+        // A faint texture that differs from block to block and from picture to picture.
         let texture =
             |frame: u32, index: usize| 0.01 * (((index * 31 + frame as usize * 17) % 7) as f64 - 3.0) / 3.0;
         let frames: Vec<FrameResiduals<'_>> = (0..24)
             .map(|frame| FrameResiduals {
-                measurements: &rows,
+                measurements: &measurements,
                 values: (0..)
                     .zip(&pixels)
                     .map(|(index, pixel)| residual(frame, *pixel / size) + texture(frame, index))
@@ -68,6 +69,6 @@ pub(super) mod pictures {
                 size: SIZE,
             })
             .collect();
-        judge(&frames)
+        check(&frames)
     }
 }

@@ -1,4 +1,4 @@
-//! What detectors look at, and what they have in common.
+//! Interface of the detectors, and the residuals that they examine.
 
 use std::collections::BTreeMap;
 
@@ -16,44 +16,43 @@ use crate::{
     thresholds::Thresholds,
 };
 
-/// Largest p-value of a finding, corrected for everything that is tested of its kind.
+/// Largest p-value of a finding, corrected for all tests of its kind.
 pub(crate) const SIGNIFICANCE: f64 = Thresholds::DEFAULT.diagnostics.significance;
 
-/// Finds one kind of thing that no effect of the library explains.
+/// Detector of one kind of deviation that no effect of the library explains.
 pub(crate) trait Detector: Sync {
-    /// Returns what is significant in what a fit left.
+    /// Returns the significant deviations in the residuals of a fit.
     fn detect(&self, fit: &FitResiduals<'_>) -> Vec<Finding>;
 }
 
-/// What the effects of a model leave of a recording, with nuisance parameters and poses fitted. Frames are those that were
-/// fitted.
+/// Residuals of the training frames, with the effects of a model, the nuisance parameters and the poses fitted.
 pub(crate) struct FitResiduals<'a> {
     pub(crate) recording: &'a Recording<'a>,
     /// Time of the recording's first frame, seconds.
     pub(crate) start_s: f64,
     pub(crate) frames: Vec<FrameResiduals<'a>>,
-    /// The frames' times and odometry, in the same order.
+    /// Times and odometry of the frames, in the same order.
     pub(crate) steps: Vec<&'a Frame>,
-    /// What was measured in the frames, in the same order.
+    /// Measurements in the pictures of the frames, in the same order.
     pub(crate) measurements: Vec<&'a FrameMeasurements>,
-    /// Standard deviations of the residuals.
+    /// Standard deviation of the residuals of each quantity, in its unit.
     pub(crate) sigmas: &'a BTreeMap<Quantity, f64>,
     pub(crate) nuisances: &'a [Nuisance],
     /// Fitted values of the nuisance parameters, in their standard deviations.
     pub(crate) nuisance_values: &'a [f64],
-    /// How far the model may be off beside what it explains.
+    /// Error that the model is allowed to have: a fraction of what its effects explain.
     pub(crate) model_error: &'a ModelError,
-    /// Gaps of the channels, on held-out frames.
+    /// Gap of each channel on held-out frames.
     pub(crate) gaps: &'a BTreeMap<Channel, ChannelGap>,
 }
 
-/// A frame's residuals after the fit.
+/// Residuals of a frame after the fit.
 pub(crate) struct FrameResiduals<'a> {
     pub(crate) measurements: &'a [Measurement],
-    /// One residual for each measurement.
+    /// Residual of each measurement, in the unit of its quantity; NaN if it does not count.
     pub(crate) values: Vec<f64>,
     pub(crate) time_s: f64,
-    /// Point on the field below the camera, metres.
+    /// Point on the field below the camera, world axes, metres.
     pub(crate) camera: DVec2,
     /// Width and height of the picture, pixels.
     pub(crate) size: [u32; 2],

@@ -1,4 +1,4 @@
-//! Objects that stand on the carpet and walk away: where one stood, other pictures show plain carpet.
+//! Objects that move over the carpet: where one stood, other pictures show plain carpet.
 
 use glam::DVec2;
 
@@ -13,7 +13,7 @@ use crate::{
 
 const THRESHOLDS: DynamicObjectThresholds = Thresholds::DEFAULT.diagnostics.dynamic_objects;
 
-/// Finds objects that are not where they were in other pictures.
+/// Detector of objects that are elsewhere in other pictures.
 pub(crate) struct DynamicObjects;
 
 impl Detector for DynamicObjects {
@@ -22,48 +22,53 @@ impl Detector for DynamicObjects {
     }
 }
 
-/// A block of carpet, or of what hides it.
+/// Block of carpet, or of an object that hides it.
 #[derive(Debug, Clone, Copy)]
-struct Spot {
+struct Block {
+    /// Point on the field, world axes, metres.
     ground: DVec2,
     is_hidden: bool,
 }
 
-/// What a picture shows of the carpet.
-struct Spots {
+/// Blocks of the carpet that a picture shows.
+struct CarpetPicture {
     time_s: f64,
-    /// The place that the camera is above.
+    /// Point on the field below the camera, world axes, metres.
     camera: DVec2,
-    spots: Vec<Spot>,
+    blocks: Vec<Block>,
 }
 
-/// `sigma` is the standard deviation of a block of carpet.
+/// Returns the share of pictures that show a moving object, if it is large enough. `sigma` is the standard deviation of a
+/// block's residual.
 fn dynamic_objects(frames: &[FrameResiduals<'_>], sigma: f64) -> Option<Finding> {
-    let pictures: Vec<Spots> = frames.iter().map(|frame| Spots::new(frame, sigma)).collect();
-    let shows_one = |picture: &&Spots| picture.feet().any(|foot| has_left(&pictures, picture.time_s, foot));
+    let pictures: Vec<CarpetPicture> = frames.iter().map(|frame| CarpetPicture::new(frame, sigma)).collect();
+    let shows_one =
+        |picture: &&CarpetPicture| picture.feet().any(|foot| has_left(&pictures, picture.time_s, foot));
     let share = pictures.iter().filter(shows_one).count() as f64 / pictures.len().max(1) as f64;
     (share > THRESHOLDS.least_share).then_some(Finding::DynamicObjects { share })
 }
 
-impl Spots {
+impl CarpetPicture {
     fn new(frame: &FrameResiduals<'_>, sigma: f64) -> Self {
-        let spots = carpet::blocks(frame)
-            .map(|(row, value)| Spot { ground: row.ground, is_hidden: carpet::is_hidden(value, sigma) });
-        Self { time_s: frame.time_s, camera: frame.camera, spots: spots.collect() }
+        let blocks = carpet::blocks(frame).map(|(measurement, residual)| Block {
+            ground: measurement.ground,
+            is_hidden: carpet::is_hidden(residual, sigma),
+        });
+        Self { time_s: frame.time_s, camera: frame.camera, blocks: blocks.collect() }
     }
 
-    /// Where things touch the carpet: hidden, and between there and the camera there is plain carpet and nothing hidden, a
-    /// thing's sides being in front of what is farther away.
+    /// Returns the points where objects touch the carpet: hidden blocks with plain carpet and no other hidden block between
+    /// them and the camera. Farther hidden blocks may only be covered by the upper part of an object.
     fn feet(&self) -> impl Iterator<Item = DVec2> {
-        let is_foot = |spot: &&Spot| {
-            let is_before = |other: &&Spot| self.is_before(other.ground, spot.ground);
-            let mut before = self.spots.iter().filter(is_before).peekable();
-            spot.is_hidden && before.peek().is_some() && before.all(|other| !other.is_hidden)
+        let is_foot = |block: &&Block| {
+            let is_before = |other: &&Block| self.is_before(other.ground, block.ground);
+            let mut before = self.blocks.iter().filter(is_before).peekable();
+            block.is_hidden && before.peek().is_some() && before.all(|other| !other.is_hidden)
         };
-        self.spots.iter().filter(is_foot).map(|spot| spot.ground)
+        self.blocks.iter().filter(is_foot).map(|block| block.ground)
     }
 
-    /// Whether a place is nearer to the camera than another one, in its direction.
+    /// Whether a place lies between the camera and another place.
     fn is_before(&self, place: DVec2, other: DVec2) -> bool {
         let (to_place, way) = (place - self.camera, other - self.camera);
         let distance = way.length();
@@ -73,16 +78,17 @@ impl Spots {
     }
 }
 
-/// Whether other pictures show plain carpet where a thing stood at a time.
-fn has_left(pictures: &[Spots], time_s: f64, foot: DVec2) -> bool {
+/// Whether pictures of other times show plain carpet where an object stood at `time_s`.
+fn has_left(pictures: &[CarpetPicture], time_s: f64, foot: DVec2) -> bool {
     let (mut seen, mut clear) = (0_usize, 0_usize);
     for picture in pictures.iter().filter(|picture| (picture.time_s - time_s).abs() > THRESHOLDS.later_s) {
-        let around: Vec<&Spot> =
-            picture.spots.iter().filter(|spot| spot.ground.distance(foot) < THRESHOLDS.near_m).collect();
-        let is_there = around.iter().any(|spot| spot.ground.distance(foot) < THRESHOLDS.there_m);
+        let distance = |block: &Block| block.ground.distance(foot);
+        let around: Vec<&Block> =
+            picture.blocks.iter().filter(|block| distance(block) < THRESHOLDS.near_m).collect();
+        let is_there = around.iter().any(|block| distance(block) < THRESHOLDS.there_m);
         if is_there && around.len() >= THRESHOLDS.least_blocks {
             seen += 1;
-            clear += usize::from(around.iter().all(|spot| !spot.is_hidden));
+            clear += usize::from(around.iter().all(|block| !block.is_hidden));
         }
     }
     seen as f64 >= THRESHOLDS.least_seen * pictures.len() as f64
@@ -97,8 +103,8 @@ mod tests {
     const SIGMA: f64 = 0.05;
     const CAMERA_M: f64 = 0.5;
 
-    /// Carpet of 2 m by 2 m in blocks of 10 cm, seen from above a place 1 m before it, with things that stand there: 20 cm
-    /// thick where they touch the carpet, 40 cm above half of the camera's height.
+    /// Carpet of 2 m by 2 m in blocks of 10 cm, seen from a camera 1 m in front of it, with objects on it. An object is 20 cm
+    /// wide, and 40 cm above half of the camera's height.
     fn picture(camera: DVec2, things: &[DVec2]) -> (Vec<Measurement>, Vec<f64>) {
         let places = (0..400).map(|i| 0.1 * DVec2::new(f64::from(i % 20), f64::from(i / 20)));
         let hides = |thing: &DVec2, place: DVec2| {
@@ -114,13 +120,13 @@ mod tests {
         seen.unzip()
     }
 
-    /// Twenty pictures in four seconds, the camera moving past.
-    fn judged(things: impl Fn(f64) -> Vec<DVec2>) -> Option<Finding> {
+    /// Returns the finding in twenty pictures within four seconds, taken while the camera moves past.
+    fn found(things: impl Fn(f64) -> Vec<DVec2>) -> Option<Finding> {
         let times_s: Vec<f64> = (0..20).map(|i| 0.2 * f64::from(i)).collect();
         let camera = |time_s: f64| DVec2::new(0.5 * time_s, -1.0);
         let pictures: Vec<_> = times_s.iter().map(|&t| picture(camera(t), &things(t))).collect();
-        let frames = times_s.iter().zip(&pictures).map(|(&time_s, (rows, values))| FrameResiduals {
-            measurements: rows,
+        let frames = times_s.iter().zip(&pictures).map(|(&time_s, (measurements, values))| FrameResiduals {
+            measurements,
             values: values.clone(),
             time_s,
             camera: camera(time_s),
@@ -130,23 +136,23 @@ mod tests {
     }
 
     #[test]
-    fn who_walks_over_the_carpet_is_seen_and_in_how_many_pictures() {
-        let found = judged(|time_s| vec![DVec2::new(0.1 + 0.5 * time_s, 0.9)]);
+    fn a_person_who_walks_over_the_carpet_is_found_with_the_share_of_pictures() {
+        let found = found(|time_s| vec![DVec2::new(0.1 + 0.5 * time_s, 0.9)]);
         let Some(Finding::DynamicObjects { share }) = found else { panic!("{found:?}") };
         assert!(share > 0.8, "{share}");
     }
 
     #[test]
-    fn what_stays_where_it_is_does_not_move_although_other_carpet_is_hidden_from_elsewhere() {
-        assert_eq!(judged(|_| vec![DVec2::new(0.7, 0.9), DVec2::new(1.3, 0.2)]), None);
-        // Two legs with one body on them, and carpet between.
-        assert_eq!(judged(|_| vec![DVec2::new(0.6, 0.4), DVec2::new(0.9, 0.4)]), None);
-        assert_eq!(judged(|_| Vec::new()), None);
+    fn an_object_at_rest_does_not_move_although_it_hides_other_carpet_from_elsewhere() {
+        assert_eq!(found(|_| vec![DVec2::new(0.7, 0.9), DVec2::new(1.3, 0.2)]), None);
+        // Two legs of one body, with carpet between them.
+        assert_eq!(found(|_| vec![DVec2::new(0.6, 0.4), DVec2::new(0.9, 0.4)]), None);
+        assert_eq!(found(|_| Vec::new()), None);
     }
 
     #[test]
-    fn a_glimpse_is_not_enough() {
+    fn an_object_in_a_single_picture_is_not_reported() {
         let glimpse = |time_s: f64| if time_s < 0.1 { vec![DVec2::new(0.7, 0.9)] } else { Vec::new() };
-        assert_eq!(judged(glimpse), None);
+        assert_eq!(found(glimpse), None);
     }
 }

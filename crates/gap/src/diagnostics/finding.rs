@@ -1,15 +1,15 @@
-//! What no effect of the library explains, as numbers.
+//! Findings that no effect of the library explains, as numbers.
 
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::quantity::{Channel, ColorChannel};
 
-/// Something significant that no effect explains.
+/// Significant deviation that no effect of the library explains.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Finding {
-    /// Residuals that keep their mean from one part of the recording to the others.
+    /// Residuals with the same mean in every part of the recording.
     Pattern {
         /// Channel of the residuals.
         channel: Channel,
@@ -17,54 +17,54 @@ pub enum Finding {
         strongest: PatternCell,
         /// Size of the mean, in the channel's unit.
         size: f64,
-        /// How unlikely the mean in the strongest cell is chance, corrected for all cells of all patterns.
+        /// P-value of the mean in the strongest cell, corrected for all cells of all patterns.
         p_value: f64,
     },
-    /// Bands of brightness along the rows that differ from picture to picture, as flickering lamps make them.
+    /// Bands of brightness along the rows that differ from picture to picture, as flickering lamps cause them.
     Flicker {
         /// Root mean square of the bands, natural logarithm of light.
         size: f64,
-        /// How unlikely it is chance.
+        /// P-value of the bands.
         p_value: f64,
     },
     /// Objects in front of the carpet that the model does not have.
     Occluders {
-        /// Share of the carpet in view that they hide.
+        /// Share of the carpet in view that they hide, 0 to 1.
         share: f64,
     },
-    /// Objects on the carpet that are not where they were in other pictures.
+    /// Objects on the carpet that are elsewhere in other pictures.
     DynamicObjects {
-        /// Share of the pictures that show one.
+        /// Share of the pictures that show one, 0 to 1.
         share: f64,
     },
-    /// A line of the field that is not where the model has it.
+    /// Line of the field that the pictures do not show where the model predicts it.
     MissingLine {
-        /// Line that is missing.
+        /// Missing line.
         line: FieldLine,
-        /// Share of its pieces that were found.
+        /// Share of its pieces that were found, 0 to 1.
         found_share: f64,
-        /// Share that would be usual: that of other lines as wide in the picture.
+        /// Share that is found of other lines that are as wide in the picture.
         usual_share: f64,
     },
-    /// Residuals of the odometry that follow the robot's movement.
+    /// Residuals of the odometry that are proportional to the robot's movement.
     Odometry {
         /// Component of the odometry's steps.
         component: OdometryComponent,
-        /// What its residuals follow.
+        /// Movement that its residuals are proportional to.
         follows: Movement,
-        /// Root mean square of the part that follows, metres or radians.
+        /// Root mean square of the proportional part, metres or radians.
         size: f64,
     },
-    /// A nominal value of the camera's file that would have to be farther off than it is trusted.
+    /// Nominal value of the camera file that would have to be farther off than its tolerance.
     NominalValue {
-        /// The one that is farthest off.
+        /// Nominal value that is farthest off.
         value: NominalValue,
-        /// By how much: a part of the value, or pixels squared.
+        /// Deviation: a fraction of the value, or pixels squared.
         off_by: f64,
-        /// How unlikely it is chance that all nominal values of the channel are as far off as they are.
+        /// P-value of the deviations of all nominal values of the channel together.
         p_value: f64,
     },
-    /// Residuals far above the noise floor and in no pattern: each picture is off in its own way.
+    /// Residuals far above the noise floor that form no pattern: they differ from picture to picture.
     Scatter {
         /// Channel of the residuals.
         channel: Channel,
@@ -75,7 +75,7 @@ pub enum Finding {
     },
 }
 
-/// Cell in which a pattern is strongest.
+/// Cell in which the mean of a pattern is strongest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "place", rename_all = "snake_case")]
 pub enum PatternCell {
@@ -90,24 +90,24 @@ pub enum PatternCell {
     },
     /// Square of the field.
     Field {
-        /// Middle, world axes, metres.
+        /// Centre along the field (world x), metres.
         x_m: f64,
-        /// Middle, world axes, metres.
+        /// Centre across the field (world y), metres.
         y_m: f64,
     },
     /// Interval of time.
     Time {
-        /// Its beginning after the first frame, seconds.
+        /// Start of the interval, seconds after the first frame.
         after_s: f64,
     },
-    /// Interval of the speed with which the picture moves across a line.
+    /// Interval of speeds at which a line moves across itself in the picture.
     Speed {
-        /// Its middle, widths of the picture a second.
+        /// Middle of the interval, picture widths per second.
         widths_per_s: f64,
     },
 }
 
-/// A line of the field.
+/// Line of the field.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FieldLine {
@@ -137,31 +137,31 @@ pub enum OdometryComponent {
     Turn,
 }
 
-/// What residuals of the odometry may follow.
+/// Movement that residuals of the odometry may be proportional to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Movement {
-    /// Distance that the robot walks ahead.
+    /// Distance that the robot walks forward.
     Ahead,
-    /// Angle by which it turns.
+    /// Angle by which the robot turns.
     Turn,
-    /// Time that goes by.
+    /// Time that passes.
     Time,
 }
 
-/// A nominal value of the camera's file, or one that follows from it.
+/// Nominal value of the camera file, or a value that follows from one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NominalValue {
-    /// Brightness of lines in a colour.
+    /// Level of lines in one colour.
     LineLevel(ColorChannel),
-    /// Brightness of carpet in a colour.
+    /// Level of carpet in one colour.
     CarpetLevel(ColorChannel),
-    /// Brightness of carpet that is seen at a grazing angle.
+    /// Level of carpet seen at a grazing angle.
     Sheen,
     /// Variance of the blur.
     Blur,
-    /// Variance of the blur on broad lines against that on thin ones.
+    /// Difference of the blur's variance between broad and thin lines.
     BlurByWidth,
     /// Shape of the blur.
     BlurShape,
@@ -170,7 +170,7 @@ pub enum NominalValue {
 }
 
 impl Finding {
-    /// Returns the channel in which it shows.
+    /// Returns the channel of the residuals in which the deviation was found.
     pub fn channel(&self) -> Channel {
         match self {
             Self::Pattern { channel, .. } | Self::Scatter { channel, .. } => *channel,
@@ -183,7 +183,7 @@ impl Finding {
         }
     }
 
-    /// Returns its size in [`Finding::unit`]. That of a missing line is the share of it that is missing.
+    /// Returns the size in [`Finding::unit`]; for a missing line, the share of it that is missing.
     pub fn size(&self) -> f64 {
         match self {
             Self::Pattern { size, .. }
@@ -196,7 +196,7 @@ impl Finding {
         }
     }
 
-    /// Returns the unit of its size: `1` for a plain number.
+    /// Returns the unit of the size: `1` for a plain number.
     pub fn unit(&self) -> &'static str {
         match self {
             Self::Pattern { channel, .. } | Self::Scatter { channel, .. } => channel.unit(),
@@ -209,7 +209,7 @@ impl Finding {
         }
     }
 
-    /// Returns how unlikely it is chance; `None` for what is counted and not tested.
+    /// Returns the p-value; `None` for findings that are counted and not tested.
     pub fn p_value(&self) -> Option<f64> {
         match self {
             Self::Pattern { p_value, .. }
@@ -230,7 +230,7 @@ impl OdometryComponent {
 }
 
 impl NominalValue {
-    /// Returns the channel whose residuals depend on it.
+    /// Returns the channel whose residuals depend on the value.
     pub fn channel(self) -> Channel {
         match self {
             Self::LineLevel(_) | Self::CarpetLevel(_) | Self::Sheen => Channel::Photometry,

@@ -1,4 +1,4 @@
-//! Bands of brightness that roll over the picture, as lamps that flicker make them with a rolling shutter.
+//! Bands of brightness that roll over the picture, as flickering lamps cause them with a rolling shutter.
 
 use reality_sim_core::statistics::median;
 
@@ -17,7 +17,7 @@ use crate::{
 const THRESHOLDS: FlickerThresholds = Thresholds::DEFAULT.diagnostics.flicker;
 const BANDS: usize = THRESHOLDS.bands;
 
-/// Finds bands of brightness along the rows that differ from picture to picture.
+/// Detector of bands of brightness along the rows that differ from picture to picture.
 pub(crate) struct Flicker;
 
 impl Detector for Flicker {
@@ -26,10 +26,11 @@ impl Detector for Flicker {
     }
 }
 
-/// Carpet's own patches make bands, too, but along the columns as much as along the rows.
+/// Returns the bands along the rows, if they vary more than those along the columns. Patches of the carpet cause bands along
+/// both alike.
 fn flicker(frames: &[FrameResiduals<'_>]) -> Option<Finding> {
-    let rows = band_variances(frames, |row, size| row.pixel.y / f64::from(size[1]));
-    let columns = band_variances(frames, |row, size| row.pixel.x / f64::from(size[0]));
+    let rows = band_variances(frames, |measurement, size| measurement.pixel.y / f64::from(size[1]));
+    let columns = band_variances(frames, |measurement, size| measurement.pixel.x / f64::from(size[0]));
     let differences: Vec<f64> = rows.iter().zip(&columns).map(|(row, column)| row - column).collect();
     let sum = sum_of(&differences);
     let count = frames.len() as f64;
@@ -39,21 +40,24 @@ fn flicker(frames: &[FrameResiduals<'_>]) -> Option<Finding> {
         .then_some(Finding::Flicker { size, p_value })
 }
 
-/// Returns for each frame the variance of its bands. `place` is the place of a measurement across the bands, 0 to 1.
+/// Returns the variance of the bands of each frame. `place` gives the position of a measurement across the bands, 0 to 1.
 fn band_variances(frames: &[FrameResiduals<'_>], place: fn(&Measurement, [u32; 2]) -> f64) -> Vec<f64> {
-    let cut: Vec<Vec<Option<f64>>> = frames.iter().map(|frame| band_medians(frame, place)).collect();
-    // What every picture has is a pattern of the picture.
+    let bands: Vec<Vec<Option<f64>>> = frames.iter().map(|frame| band_medians(frame, place)).collect();
+    // Bands that all pictures have in common are a pattern of the picture.
     let usual: Vec<f64> =
-        (0..BANDS).map(|band| mean(cut.iter().filter_map(|bands| bands[band])).unwrap_or(0.0)).collect();
-    cut.iter()
-        .map(|bands| variance(bands.iter().zip(&usual).filter_map(|(mean, usual)| Some((*mean)? - usual))))
+        (0..BANDS).map(|band| mean(bands.iter().filter_map(|bands| bands[band])).unwrap_or(0.0)).collect();
+    bands
+        .iter()
+        .map(|bands| {
+            variance(bands.iter().zip(&usual).filter_map(|(median, usual)| Some((*median)? - usual)))
+        })
         .collect()
 }
 
 fn band_medians(frame: &FrameResiduals<'_>, place: fn(&Measurement, [u32; 2]) -> f64) -> Vec<Option<f64>> {
     let mut values: Vec<Vec<f64>> = vec![Vec::new(); BANDS];
-    for (row, value) in carpet::blocks(frame) {
-        let band = (place(row, frame.size) * BANDS as f64).clamp(0.0, BANDS as f64 - 1.0);
+    for (measurement, value) in carpet::blocks(frame) {
+        let band = (place(measurement, frame.size) * BANDS as f64).clamp(0.0, BANDS as f64 - 1.0);
         values[band as usize].push(value);
     }
     values
@@ -80,7 +84,7 @@ mod tests {
     use super::*;
     use crate::diagnostics::carpet::pictures::with_pictures;
 
-    /// A wave along a fraction, its phase another in every picture.
+    /// Wave along a fraction of the picture, with a phase that differs from picture to picture.
     fn rolling(frame: u32, along: f64) -> f64 {
         0.1 * (TAU * (2.0 * along + 0.37 * f64::from(frame))).sin()
     }
@@ -88,13 +92,13 @@ mod tests {
     #[test]
     fn bands_that_roll_along_the_rows_are_found_with_their_size() {
         let found = with_pictures(|frame, place| rolling(frame, place.y), flicker).unwrap();
-        // A sine's root mean square.
+        // Root mean square of a sine with amplitude 0.1.
         assert!((found.size() - 0.07).abs() < 0.015, "{found:?}");
         assert!(found.p_value().unwrap() < Thresholds::DEFAULT.inference.significance);
     }
 
     #[test]
-    fn bands_that_stay_or_run_along_the_columns_and_even_carpet_are_none() {
+    fn constant_bands_bands_along_the_columns_and_even_carpet_are_no_flicker() {
         assert_eq!(with_pictures(|_, place| rolling(0, place.y), flicker), None);
         assert_eq!(with_pictures(|frame, place| rolling(frame, place.x), flicker), None);
         assert_eq!(

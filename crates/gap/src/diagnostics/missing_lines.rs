@@ -1,4 +1,4 @@
-//! Lines that should be on the field and are not.
+//! Lines of the field that the pictures do not show.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,7 +13,7 @@ use crate::{
 
 const THRESHOLDS: MissingLineThresholds = Thresholds::DEFAULT.diagnostics.missing_lines;
 
-/// Finds lines of the field that are not where the model has them.
+/// Detector of lines that the pictures do not show where the model predicts them.
 pub(crate) struct MissingLines;
 
 impl Detector for MissingLines {
@@ -22,15 +22,15 @@ impl Detector for MissingLines {
     }
 }
 
-/// Pieces that were found, and that were expected.
+/// Numbers of pieces found and expected.
 #[derive(Debug, Clone, Copy, Default)]
 struct Count {
     found: f64,
     expected: f64,
 }
 
-/// Thin lines are found less often than broad ones: a line is compared with pieces of other lines that are as wide in the
-/// picture.
+/// Returns the lines of which clearly fewer pieces are found than of other lines. Thin lines are found less often than broad
+/// ones, so pieces are compared with those of other lines that are as wide in the picture.
 fn missing_lines(frames: &[&FrameMeasurements], field: &FieldDimensions) -> Vec<Finding> {
     let counts = Counts::of(frames);
     let curves = field.curves();
@@ -67,7 +67,7 @@ impl Counts {
     }
 
     fn add(&mut self, frame: &FrameMeasurements) {
-        // What stands before a line says nothing of it.
+        // A hidden piece is no evidence that the line is missing.
         let in_sight = || frame.expected_lines.iter().filter(|piece| !piece.is_hidden);
         for piece in in_sight() {
             self.pieces.entry((piece.curve, width(piece.half_width_px))).or_default().expected += 1.0;
@@ -81,8 +81,8 @@ impl Counts {
         seen.into_iter().for_each(|curve| *self.frames.entry(curve).or_default() += 1);
     }
 
-    /// Returns the share of a curve's pieces that is found, and the share that would be as usual for their widths. `None`
-    /// where there are too few to tell.
+    /// Returns the share of a curve's pieces that is found, and the share that is usual for pieces of their widths. None if
+    /// there are too few pieces.
     fn shares(&self, curve: usize) -> Option<[f64; 2]> {
         let (mut own, mut usual) = (Count::default(), 0.0);
         for (&(_, width), count) in self.pieces.iter().filter(|((of, _), _)| *of == curve) {
@@ -151,9 +151,9 @@ mod tests {
         }
     }
 
-    /// A picture in which eight pieces of each of three lines are expected, and so many are found of each. What is not
-    /// found of the first line is hidden, or shows carpet.
-    fn look(pieces: [usize; 3], is_hidden: bool) -> FrameMeasurements {
+    /// Picture in which eight pieces of each of three lines are expected and `pieces` of each are found. The other pieces of
+    /// the first line are hidden, or show carpet.
+    fn frame(pieces: [usize; 3], is_hidden: bool) -> FrameMeasurements {
         let expected = |curve: usize, piece: usize| ExpectedLine {
             curve,
             half_width_px: HALF_WIDTH_PX,
@@ -168,31 +168,31 @@ mod tests {
         }
     }
 
-    fn missing_of(look: &FrameMeasurements, pictures: usize) -> Vec<Finding> {
-        missing_lines(&vec![look; pictures], &field())
+    fn missing_of(frame: &FrameMeasurements, pictures: usize) -> Vec<Finding> {
+        missing_lines(&vec![frame; pictures], &field())
     }
 
     #[test]
-    fn a_line_of_which_carpet_is_seen_instead_is_missing() {
+    fn a_line_where_the_pictures_show_carpet_is_missing() {
         let line = field_line(&field().curves()[0]);
         let usual_share = 15.0 / 16.0;
-        let found = missing_of(&look([0, 8, 7], false), 6);
+        let found = missing_of(&frame([0, 8, 7], false), 6);
         assert_eq!(found, [Finding::MissingLine { line, found_share: 0.0, usual_share }]);
         assert_eq!(found[0].size(), 1.0);
     }
 
     #[test]
-    fn a_line_behind_something_is_not_missing() {
-        assert_eq!(missing_of(&look([0, 8, 7], true), 6), []);
+    fn a_hidden_line_is_not_missing() {
+        assert_eq!(missing_of(&frame([0, 8, 7], true), 6), []);
     }
 
     #[test]
     fn lines_that_are_found_as_often_as_others_are_not_missing() {
-        assert_eq!(missing_of(&look([5, 6, 7], false), 6), []);
+        assert_eq!(missing_of(&frame([5, 6, 7], false), 6), []);
     }
 
     #[test]
-    fn a_few_pictures_are_no_proof() {
-        assert_eq!(missing_of(&look([0, 8, 7], false), THRESHOLDS.least_frames - 1), []);
+    fn a_line_in_too_few_pictures_is_not_reported() {
+        assert_eq!(missing_of(&frame([0, 8, 7], false), THRESHOLDS.least_frames - 1), []);
     }
 }

@@ -1,4 +1,4 @@
-//! What no effect of the library explains: one file a detector.
+//! Detectors of deviations that no effect of the library explains, one in each file.
 
 mod carpet;
 pub(crate) mod detector;

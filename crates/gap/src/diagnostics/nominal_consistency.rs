@@ -1,5 +1,7 @@
-//! Nominal values of the camera's file that would have to be farther off than they are trusted: no effect explains what is
-//! left, and the nuisance parameters do not, either.
+//! Consistency of the camera file's nominal values with the recording. The nuisance parameters absorb errors of nominal
+//! values within their tolerances; if a fit needs much more, something that no effect explains is at work.
+//!
+//! The fitted values of a channel's nuisance parameters, in their standard deviations, are tested by a χ² test.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -11,10 +13,10 @@ use crate::{
     measurement::quantity::{Channel, Quantity},
 };
 
-/// Channels whose nominal values are in the camera's file.
+/// Channels whose nominal values are in the camera file.
 const CHANNELS: [Channel; 3] = [Channel::Photometry, Channel::Sharpness, Channel::Noise];
 
-/// Finds channels whose nominal values are inconsistent with the recording.
+/// Detector of channels whose nominal values are inconsistent with the recording.
 pub(crate) struct NominalConsistency;
 
 impl Detector for NominalConsistency {
@@ -23,15 +25,15 @@ impl Detector for NominalConsistency {
     }
 }
 
-/// `fitted` are values of the nuisance parameters in their standard deviations. Too much of all of a channel together is
-/// told, with the one that is farthest off.
+/// Returns the nominal value that is farthest off for each inconsistent channel. `fitted` are the values of the nuisance
+/// parameters in their standard deviations.
 fn inconsistent(nuisances: &[Nuisance], fitted: &[f64], model_error: &ModelError) -> Vec<Finding> {
     let of = |channel| of_channel(channel, nuisances, fitted, model_error.most_off(channel));
     CHANNELS.into_iter().filter_map(of).collect()
 }
 
-/// `off` is by how much more the channel's residuals may be off.
-fn of_channel(channel: Channel, nuisances: &[Nuisance], fitted: &[f64], off: f64) -> Option<Finding> {
+/// Tests the nominal values of a channel. `model_error` is the error that the channel's residuals may have besides.
+fn of_channel(channel: Channel, nuisances: &[Nuisance], fitted: &[f64], model_error: f64) -> Option<Finding> {
     let nominal: Vec<(Nominal, f64)> = nuisances
         .iter()
         .zip(fitted)
@@ -39,7 +41,8 @@ fn of_channel(channel: Channel, nuisances: &[Nuisance], fitted: &[f64], off: f64
             Some((Nominal::of(nuisance).filter(|nominal| nominal.value.channel() == channel)?, *fitted))
         })
         .collect();
-    let normalized = |(nominal, fitted): &(Nominal, f64)| fitted * nominal.sigma / nominal.allowed(off);
+    let normalized =
+        |(nominal, fitted): &(Nominal, f64)| fitted * nominal.sigma / nominal.total_sigma(model_error);
     let squares: f64 = nominal.iter().map(|nominal| normalized(nominal).powi(2)).sum();
     let p_value = ChiSquared::new(nominal.len().max(1) as f64).ok()?.sf(squares);
     let (farthest, fitted) =
@@ -51,29 +54,29 @@ fn of_channel(channel: Channel, nuisances: &[Nuisance], fitted: &[f64], off: f64
     })
 }
 
-/// A nominal value with its standard deviation.
+/// Nominal value with its standard deviation.
 struct Nominal {
     value: NominalValue,
-    /// Standard deviation: how far it is trusted.
+    /// Standard deviation of the prior: its tolerance.
     sigma: f64,
-    /// Whether it is an offset of the channel's residuals.
+    /// Whether an error of the value shifts residuals of the channel by a constant.
     is_offset: bool,
 }
 
 impl Nominal {
-    /// How far it may be off: beside what it is trusted, where it is an offset of the residuals, by what those may be.
-    fn allowed(&self, off: f64) -> f64 {
-        if self.is_offset { self.sigma.hypot(off) } else { self.sigma }
+    /// Returns the standard deviation of the value's error. For an offset of the residuals it includes the model error.
+    fn total_sigma(&self, model_error: f64) -> f64 {
+        if self.is_offset { self.sigma.hypot(model_error) } else { self.sigma }
     }
 
-    /// The part that it is off by where it is compared by its logarithm; else the difference. `fitted` is in standard
-    /// deviations.
+    /// Returns by how much the value is off: as a fraction if it is compared by its logarithm, otherwise as a difference.
+    /// `fitted` is in standard deviations.
     fn off_by(&self, fitted: f64) -> f64 {
         let difference = fitted * self.sigma;
         if self.value.channel() == Channel::Sharpness { difference.abs() } else { difference.exp_m1().abs() }
     }
 
-    /// The nominal value that a nuisance parameter is of; patches of carpet are in no file.
+    /// Returns the nominal value that a nuisance parameter belongs to. None for a patch of carpet, which is in no file.
     fn of(nuisance: &Nuisance) -> Option<Self> {
         let is_offset = matches!(nuisance, Nuisance::Offset { .. } | Nuisance::Width { .. });
         let (value, sigma) = match *nuisance {
@@ -102,19 +105,20 @@ mod tests {
     use super::*;
     use crate::{linear_model::nuisance::nuisances, measurement::quantity::ColorChannel};
 
-    /// What is told where the nuisances that are picked are so many standard deviations off, the others half a one.
-    fn told(value: f64, explained: &ModelError, picked: impl Fn(&Nominal) -> bool) -> Vec<Finding> {
+    /// Returns the findings if the picked nominal values are `value` standard deviations off and the others half a standard
+    /// deviation.
+    fn findings(value: f64, model_error: &ModelError, picked: impl Fn(&Nominal) -> bool) -> Vec<Finding> {
         let nuisances = nuisances(&[]);
         let off = |nuisance| if Nominal::of(nuisance).is_some_and(|n| picked(&n)) { value } else { 0.5 };
-        inconsistent(&nuisances, &nuisances.iter().map(off).collect::<Vec<_>>(), explained)
+        inconsistent(&nuisances, &nuisances.iter().map(off).collect::<Vec<_>>(), model_error)
     }
 
     #[test]
-    fn what_is_within_its_tolerance_is_not_told_and_what_is_far_beyond_is_named() {
-        assert_eq!(told(0.5, &ModelError::default(), |_| true), []);
+    fn a_nominal_value_within_its_tolerance_is_not_reported_and_one_far_beyond_is() {
+        assert_eq!(findings(0.5, &ModelError::default(), |_| true), []);
         let red = NominalValue::CarpetLevel(ColorChannel::Red);
         let [Finding::NominalValue { value, off_by, p_value }] =
-            told(5.0, &ModelError::default(), |nominal| nominal.value == red)[..]
+            findings(5.0, &ModelError::default(), |nominal| nominal.value == red)[..]
         else {
             panic!()
         };
@@ -123,21 +127,21 @@ mod tests {
     }
 
     #[test]
-    fn what_a_model_explains_its_values_may_be_off_by_a_part_of() {
+    fn nominal_values_may_be_off_by_the_model_error_of_their_channel() {
         let explained = ModelError::by(Quantity::LineLevel(ColorChannel::Blue), 2.0);
         assert_eq!(
-            told(5.0, &explained, |nominal| nominal.value == NominalValue::LineLevel(ColorChannel::Blue)),
+            findings(5.0, &explained, |nominal| nominal.value == NominalValue::LineLevel(ColorChannel::Blue)),
             []
         );
-        assert_eq!(told(5.0, &explained, |nominal| nominal.value.channel() == Channel::Noise).len(), 1);
+        assert_eq!(findings(5.0, &explained, |nominal| nominal.value.channel() == Channel::Noise).len(), 1);
     }
 
     #[test]
-    fn every_channel_is_judged_by_itself() {
+    fn each_channel_is_tested_by_itself() {
         for channel in CHANNELS {
-            let told = told(6.0, &ModelError::default(), |nominal| nominal.value.channel() == channel);
-            assert_eq!(told.len(), 1, "{told:?}");
-            assert_eq!(told[0].channel(), channel);
+            let found = findings(6.0, &ModelError::default(), |nominal| nominal.value.channel() == channel);
+            assert_eq!(found.len(), 1, "{found:?}");
+            assert_eq!(found[0].channel(), channel);
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::{
 /// Smallest share of the carpet that is reported as hidden.
 const LEAST_SHARE: f64 = Thresholds::DEFAULT.diagnostics.least_hidden_share;
 
-/// Finds objects that hide the carpet.
+/// Detector of objects that hide the carpet.
 pub(crate) struct Occluders;
 
 impl Detector for Occluders {
@@ -21,14 +21,15 @@ impl Detector for Occluders {
     }
 }
 
-/// `sigma` is the standard deviation of a block of carpet.
+/// Returns the share of the carpet that is hidden, if it is large enough. `sigma` is the standard deviation of a block's
+/// residual.
 fn occluders(frames: &[FrameResiduals<'_>], sigma: f64) -> Option<Finding> {
     let shares: Vec<f64> = frames.iter().filter_map(|frame| hidden_share(frame, sigma)).collect();
     let share = shares.iter().sum::<f64>() / shares.len() as f64;
     (share > LEAST_SHARE).then_some(Finding::Occluders { share })
 }
 
-/// Returns the share of a frame's carpet that is hidden; `None` where there is no carpet.
+/// Returns the share of a frame's carpet that is hidden. None if the frame shows no carpet.
 fn hidden_share(frame: &FrameResiduals<'_>, sigma: f64) -> Option<f64> {
     let (hidden, all) = carpet::blocks(frame).fold((0, 0), |(hidden, all), (_, residual)| {
         (hidden + usize::from(carpet::is_hidden(residual, sigma)), all + 1)
@@ -44,16 +45,16 @@ mod tests {
     use crate::diagnostics::carpet::pictures::{SIGMA, with_pictures};
 
     #[test]
-    fn things_are_told_by_the_part_of_the_carpet_that_they_hide() {
+    fn occluders_are_reported_with_the_share_of_the_carpet_that_they_hide() {
         let covered = |part: f64| move |_: u32, place: DVec2| if place.x < part { -1.0 } else { 0.0 };
-        let judge = |frames: &[FrameResiduals<'_>]| occluders(frames, SIGMA);
-        let Some(Finding::Occluders { share }) = with_pictures(covered(0.1), judge) else { panic!() };
+        let find = |frames: &[FrameResiduals<'_>]| occluders(frames, SIGMA);
+        let Some(Finding::Occluders { share }) = with_pictures(covered(0.1), find) else { panic!() };
         assert!((share - 0.1).abs() < 0.03, "{share}");
-        assert_eq!(with_pictures(covered(0.02), judge), None);
+        assert_eq!(with_pictures(covered(0.02), find), None);
     }
 
     #[test]
-    fn where_no_carpet_is_in_view_nothing_hides_it() {
+    fn without_carpet_in_view_nothing_is_reported() {
         assert_eq!(occluders(&[], SIGMA), None);
     }
 }

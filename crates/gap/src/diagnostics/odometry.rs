@@ -1,6 +1,7 @@
-//! Residuals of the odometry that follow the robot's movement.
+//! Residuals of the odometry that are proportional to the robot's movement.
 //!
-//! As for patterns in the pictures, a part of the recording is judged by what the other parts foretell.
+//! A residual is regressed on the movement in each part of the recording, and the slope must predict the residuals of the
+//! other parts (cross-validation).
 
 use reality_sim_core::pose::Motion2;
 
@@ -16,19 +17,19 @@ use crate::{
 };
 
 const THRESHOLDS: OdometryThresholds = Thresholds::DEFAULT.diagnostics.odometry;
-/// What residuals may follow, in the order of [`movements`].
-const FOLLOWED: [Movement; 3] = [Movement::Ahead, Movement::Turn, Movement::Time];
-/// Components of a step.
+/// Movements that residuals may be proportional to, in the order of [`movements`].
+const MOVEMENTS: [Movement; 3] = [Movement::Ahead, Movement::Turn, Movement::Time];
+/// Components of an odometry step.
 const COMPONENTS: [(OdometryComponent, Quantity); 3] = [
     (OdometryComponent::Forward, Quantity::OdometryForward),
     (OdometryComponent::Left, Quantity::OdometryLeft),
     (OdometryComponent::Turn, Quantity::OdometryTurn),
 ];
 
-/// What a number may follow, and the number, both in its standard deviation.
+/// Movement, and a residual in its standard deviation.
 type Pair = (f64, f64);
 
-/// Finds residuals of the odometry that follow the movement.
+/// Detector of residuals of the odometry that are proportional to the movement.
 pub(crate) struct Odometry;
 
 impl Detector for Odometry {
@@ -47,50 +48,54 @@ fn of_component(
 ) -> Option<Finding> {
     let sigma = *fit.sigmas.get(&quantity)?;
     let value = |frame: &FrameResiduals<'_>| {
-        let mut rows = frame.measurements.iter().zip(&frame.values);
-        rows.find(|(row, value)| row.quantity == quantity && value.is_finite())
+        let mut residuals = frame.measurements.iter().zip(&frame.values);
+        residuals
+            .find(|(measurement, value)| measurement.quantity == quantity && value.is_finite())
             .map(|(_, value)| value / sigma)
     };
     let values: Vec<Option<f64>> = fit.frames.iter().map(value).collect();
     let off = fit.model_error.off(quantity) / sigma;
     let (follows, rms) =
-        most_followed(steps, &values).filter(|(_, rms)| *rms > THRESHOLDS.least_model_errors * off)?;
+        strongest(steps, &values).filter(|(_, rms)| *rms > THRESHOLDS.least_model_errors * off)?;
     Some(Finding::Odometry { component, follows, size: rms * sigma })
 }
 
-/// What each step of the odometry may follow: how far the robot walks ahead at about that time, turns, and for how long. To
-/// the left the camera sways: no odometry knows of that.
+/// Returns the movement in each step of the odometry: the distance forward in metres at about that time, the turn in radians,
+/// and the duration in seconds. The motion to the left is left out: it is mostly sway of the camera, which no odometry
+/// measures.
 fn movements(recording: &Recording<'_>, frames: &[&Frame]) -> Vec<Option<[f64; 3]>> {
-    let followed = |(motion, frame): (Option<Motion2>, &&Frame)| {
+    let movement = |(motion, frame): (Option<Motion2>, &&Frame)| {
         let Motion2 { forward_m, turn_rad, .. } = motion?;
         Some([forward_m, turn_rad, frame.step?.until_s - frame.time_s])
     };
-    instrumental_motions(recording, frames).into_iter().zip(frames).map(followed).collect()
+    instrumental_motions(recording, frames).into_iter().zip(frames).map(movement).collect()
 }
 
-/// What a component of the steps follows most, and how large that is in its standard deviations.
-fn most_followed(steps: &[Option<[f64; 3]>], values: &[Option<f64>]) -> Option<(Movement, f64)> {
-    let follows = (0..).zip(FOLLOWED).filter_map(|(axis, followed): (usize, Movement)| {
+/// Returns the movement that a component's residuals depend on most, and the root mean square of the dependent part in
+/// standard deviations.
+fn strongest(steps: &[Option<[f64; 3]>], values: &[Option<f64>]) -> Option<(Movement, f64)> {
+    let regressions = (0..).zip(MOVEMENTS).filter_map(|(axis, movement): (usize, Movement)| {
         let pair = |(step, value): (&Option<[f64; 3]>, &Option<f64>)| {
             Vec::from_iter(step.zip(*value).map(|(step, value)| (step[axis], value)))
         };
-        let follows = Follows::of(&steps.iter().zip(values).map(pair).collect::<Vec<_>>())?;
-        (follows.rms > THRESHOLDS.least_ratio * follows.left).then_some((follows.rms, followed))
+        let regression = Regression::of(&steps.iter().zip(values).map(pair).collect::<Vec<_>>())?;
+        (regression.rms > THRESHOLDS.least_ratio * regression.residual_rms)
+            .then_some((regression.rms, movement))
     });
-    let (rms, followed) = follows.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some((followed, rms))
+    let (rms, movement) = regressions.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some((movement, rms))
 }
 
-/// Numbers that follow others.
-struct Follows {
-    /// Root mean square of what is foretold.
+/// Regression of residuals on a movement.
+struct Regression {
+    /// Root mean square of the predicted part.
     rms: f64,
-    /// And of what is not.
-    left: f64,
+    /// Root mean square of the rest.
+    residual_rms: f64,
 }
 
-impl Follows {
-    /// None where frames do not foretell each other.
+impl Regression {
+    /// Regresses residuals on a movement. None if the slope of some frames does not predict the others.
     fn of(frames: &[Vec<Pair>]) -> Option<Self> {
         let slope = slope(frames.iter());
         let rms = |of: &dyn Fn(&Pair) -> f64| {
@@ -98,28 +103,32 @@ impl Follows {
             let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
             f64::sqrt(sum / f64::max(count, 1.0))
         };
-        let found = Self { rms: rms(&|(to, _)| to * slope), left: rms(&|(to, value)| value - to * slope) };
+        let whole = Self {
+            rms: rms(&|(movement, _)| movement * slope),
+            residual_rms: rms(&|(movement, value)| value - movement * slope),
+        };
         let count = frames.len();
         let fold = |frame: usize| stretch(frame, count, THRESHOLDS.folds);
         let gain = |frame: usize| {
             let others = (0..count).filter(|&other| fold(other) != fold(frame));
             let slope = self::slope(others.map(|other| &frames[other]));
-            let gains = frames[frame].iter().map(|(to, value)| {
-                let foretold = to * slope;
-                foretold * value - 0.5 * foretold * foretold
+            let gains = frames[frame].iter().map(|(movement, value)| {
+                let predicted = movement * slope;
+                predicted * value - 0.5 * predicted * predicted
             });
-            // What a number's standard deviation is taken to be may have what is foretold in it.
-            gains.sum::<f64>() / found.left.powi(2).max(1e-9)
+            // The standard deviation of a residual may include the predicted part, so the variance of the rest is used.
+            gains.sum::<f64>() / whole.residual_rms.powi(2).max(1e-9)
         };
         let gain = sum_of(&(0..count).map(gain).collect::<Vec<f64>>());
-        (gain.value > THRESHOLDS.least_gain && gain.score() > THRESHOLDS.least_score).then_some(found)
+        (gain.value > THRESHOLDS.least_gain && gain.score() > THRESHOLDS.least_score).then_some(whole)
     }
 }
 
-/// Least squares.
+/// Returns the slope of a line through the origin, by least squares; 0 without movement.
 fn slope<'a>(frames: impl Iterator<Item = &'a Vec<Pair>>) -> f64 {
-    let sums =
-        frames.flatten().fold([0.0; 2], |[both, square], (to, value)| [both + to * value, square + to * to]);
+    let sums = frames.flatten().fold([0.0; 2], |[both, square], (movement, value)| {
+        [both + movement * value, square + movement * movement]
+    });
     if sums[1] > 0.0 { sums[0] / sums[1] } else { 0.0 }
 }
 
@@ -128,7 +137,7 @@ mod tests {
     use super::*;
     use crate::testing::Noise;
 
-    /// Frames with six numbers each that follow a movement by this slope.
+    /// Frames with six residuals each that depend on a movement by this slope.
     fn frames(seed: u64, slope: f64) -> Vec<Vec<Pair>> {
         let mut noise = Noise(seed);
         let frame = |index: u32| {
@@ -143,15 +152,15 @@ mod tests {
     }
 
     #[test]
-    fn what_follows_the_movement_is_told_with_its_size() {
-        let follows = Follows::of(&frames(1, 1.5)).unwrap();
-        assert!((follows.rms - 1.5 / f64::sqrt(2.0)).abs() < 0.15, "{}", follows.rms);
-        assert!((follows.left - 1.0).abs() < 0.15, "{}", follows.left);
+    fn residuals_proportional_to_a_movement_are_found_with_their_size() {
+        let regression = Regression::of(&frames(1, 1.5)).unwrap();
+        assert!((regression.rms - 1.5 / f64::sqrt(2.0)).abs() < 0.15, "{}", regression.rms);
+        assert!((regression.residual_rms - 1.0).abs() < 0.15, "{}", regression.residual_rms);
     }
 
     #[test]
-    fn scatter_follows_nothing() {
-        let told = (0..300).filter(|&seed| Follows::of(&frames(seed, 0.0)).is_some()).count();
-        assert_eq!(told, 0);
+    fn noise_depends_on_no_movement() {
+        let found = (0..300).filter(|&seed| Regression::of(&frames(seed, 0.0)).is_some()).count();
+        assert_eq!(found, 0);
     }
 }

@@ -1,4 +1,4 @@
-//! Lines that are off by far more than noise and the poses' errors make, although on the whole in no pattern.
+//! Offsets of lines that are far above noise and pose errors although they form no pattern.
 
 use std::collections::BTreeMap;
 
@@ -15,11 +15,11 @@ use crate::{
 /// Smallest ratio of the geometry's residuals to their noise floor that is reported.
 const LEAST_RATIO: f64 = Thresholds::DEFAULT.diagnostics.least_scatter_ratio;
 
-/// Finds residuals of geometry that are far above the noise floor.
+/// Detector of geometric residuals far above the noise floor.
 pub(crate) struct Scatter;
 
 impl Detector for Scatter {
-    /// Poses that were found in the pictures scatter themselves: nothing is told of those.
+    /// Reports nothing for poses estimated from the pictures, which scatter themselves.
     fn detect(&self, fit: &FitResiduals<'_>) -> Vec<Finding> {
         match fit.recording.source {
             ReferenceSource::Measured => Vec::from_iter(scatter(fit.gaps, fit.model_error)),
@@ -28,7 +28,7 @@ impl Detector for Scatter {
     }
 }
 
-/// Returns the geometry's residuals where they are far above their floor.
+/// Returns the scatter of the geometric residuals, if it is far above the noise floor.
 fn scatter(gaps: &BTreeMap<Channel, ChannelGap>, model_error: &ModelError) -> Option<Finding> {
     let channel = Channel::Geometry;
     let gap = gaps.get(&channel)?;
@@ -51,7 +51,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_far_above_the_floor_is_told_with_its_size() {
+    fn scatter_far_above_the_floor_is_reported_with_its_size() {
         let nothing = ModelError::default();
         assert_eq!(scatter_at(0.6, &nothing), None);
         let found = Finding::Scatter { channel: Channel::Geometry, size: 1.4, floor: 0.5 };
@@ -59,8 +59,8 @@ mod tests {
     }
 
     #[test]
-    fn a_model_that_explains_much_may_be_off_by_a_part_of_it() {
-        // A model that explains 30 pixels may be off by one.
+    fn scatter_within_the_model_error_is_not_reported() {
+        // A model that explains 30 pixels may be off by 1.2 pixels.
         assert_eq!(scatter_at(1.4, &ModelError::by(Quantity::LineOffset, 30.0)), None);
     }
 }

@@ -80,14 +80,14 @@ pub(crate) fn gaps(
     let mut last: BTreeMap<Quantity, f64> = BTreeMap::new();
     let mut next = 0;
     for frame in found.split.held_out() {
-        let rows = &found.linearized.frames[frame];
+        let linearized = &found.linearized.frames[frame];
         // Neighbours are measurements in one picture; for the odometry they are successive steps.
         last.retain(|quantity, _| quantity.is_odometry() && frame == next);
         next = frame + 1;
-        for (index, row) in rows.measurements.iter().enumerate() {
+        for (index, measurement) in linearized.measurements.iter().enumerate() {
             let (b, a) = (before.residuals[frame][index], after.residuals[frame][index]);
             let refitted = after.refitted[frame][index];
-            let sigma = found.linearized.system.sigmas.get(&row.quantity).copied().unwrap_or(0.0);
+            let sigma = found.linearized.system.sigmas.get(&measurement.quantity).copied().unwrap_or(0.0);
             // Outliers do not count: they are not measurements of a line or of carpet.
             if !(b.is_finite()
                 && a.is_finite()
@@ -95,12 +95,13 @@ pub(crate) fn gaps(
             {
                 continue;
             }
-            let sums = sums.entry(row.quantity.channel()).or_default();
+            let sums = sums.entry(measurement.quantity.channel()).or_default();
             sums.before += b * b;
             sums.after += a * a;
             sums.count += 1.0;
-            sums.poses += pose_variance(&rows.pose_gradients[index], &found.linearized.system.pose_sigmas);
-            if let Some(previous) = last.insert(row.quantity, refitted) {
+            sums.poses +=
+                pose_variance(&linearized.pose_gradients[index], &found.linearized.system.pose_sigmas);
+            if let Some(previous) = last.insert(measurement.quantity, refitted) {
                 sums.steps += 0.5 * (refitted - previous).powi(2);
                 sums.pairs += 1.0;
             }
@@ -145,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_floor_is_the_scatter_of_neighbours_and_what_poses_errors_make() {
+    fn the_noise_floor_is_the_scatter_of_neighbours_together_with_that_of_pose_errors() {
         let squares = Squares { before: 40.0, after: 36.0, count: 4.0, poses: 16.0, steps: 10.0, pairs: 2.0 };
         let gap = squares.gap();
         assert_eq!((gap.before, gap.after, gap.floor), (10.0_f64.sqrt(), 3.0, 3.0));

@@ -41,10 +41,10 @@ pub(crate) fn minus_log_likelihood(
     for (frame, weights) in split.training().zip(&own.weights) {
         let frame = &linearized.frames[frame];
         let fitted = FittedResiduals::new(frame, weights, &fit.delta, &system.pose_sigmas);
-        let rows = frame.measurements.iter().zip(&fitted.residuals);
-        for (row, residual) in rows.filter(|(_, residual)| residual.is_finite()) {
-            if let Some(sigma) = system.sigmas.get(&row.quantity) {
-                let mean = means.entry(row.quantity).or_default();
+        let residuals = frame.measurements.iter().zip(&fitted.residuals);
+        for (measurement, residual) in residuals.filter(|(_, residual)| residual.is_finite()) {
+            if let Some(sigma) = system.sigmas.get(&measurement.quantity) {
+                let mean = means.entry(measurement.quantity).or_default();
                 let most = THRESHOLDS.compared_residual_sigmas * THRESHOLDS.compared_residual_sigmas;
                 mean.0 += (residual / sigma).powi(2).min(most);
                 mean.1 += 1.0;
@@ -54,12 +54,12 @@ pub(crate) fn minus_log_likelihood(
     // Models differ in the number of lines that they find. Hence each quantity counts by its mean, times the number of
     // independent measurements.
     let counted = means.iter().map(|(quantity, (sum, count))| {
-        let rows = if quantity.is_odometry() {
+        let independent = if quantity.is_odometry() {
             THRESHOLDS.odometry_rows
         } else {
             INDEPENDENT * THRESHOLDS.picture_rows
         };
-        0.5 * rows * sum / count.max(1.0)
+        0.5 * independent * sum / count.max(1.0)
     });
     counted.sum::<f64>() + nuisance_penalty
 }

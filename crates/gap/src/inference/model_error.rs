@@ -1,4 +1,4 @@
-//! Model error, which is taken to be a fraction of what the effects found explain, since no model is exact.
+//! Model error: no model is exact, so its error is taken to be a fraction of what its effects explain.
 
 use std::collections::BTreeMap;
 
@@ -18,10 +18,12 @@ impl ModelError {
         let mut sums: BTreeMap<Quantity, (f64, f64)> = BTreeMap::new();
         for frame in found.split.held_out() {
             let residuals = before.residuals[frame].iter().zip(&after.residuals[frame]);
-            for (row, (before, after)) in found.linearized.frames[frame].measurements.iter().zip(residuals) {
+            for (measurement, (before, after)) in
+                found.linearized.frames[frame].measurements.iter().zip(residuals)
+            {
                 let change = before - after;
                 if change.is_finite() {
-                    let sum = sums.entry(row.quantity).or_default();
+                    let sum = sums.entry(measurement.quantity).or_default();
                     *sum = (sum.0 + change * change, sum.1 + 1.0);
                 }
             }
@@ -52,7 +54,7 @@ mod tests {
     use crate::measurement::quantity::ColorChannel;
 
     #[test]
-    fn a_model_may_be_off_by_a_part_of_what_it_explains_and_by_nothing_where_it_explains_nothing() {
+    fn the_model_error_is_a_fraction_of_what_the_model_explains() {
         let explained = ModelError::by(Quantity::LineLevel(ColorChannel::Blue), 0.5);
         assert_eq!(
             explained.off(Quantity::LineLevel(ColorChannel::Blue)),

@@ -12,6 +12,9 @@ use crate::{
     recording::ReferenceSource,
 };
 
+/// Version of the format of `report.json`. It changes when a reader of earlier reports would misread newer ones or the reverse.
+pub(crate) const VERSION: u32 = 1;
+
 /// Verdict on a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -162,7 +165,8 @@ pub struct PosesReport {
 
 /// Everything that was found in a recording.
 ///
-/// Its [`serde::Serialize`] writes `report.json`, with the words beside the numbers, and [`Report::read`] reads that file.
+/// Its [`serde::Serialize`] writes `report.json`, with the version of the format and the words beside the numbers, and
+/// [`Report::read`] reads that file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Report {
     /// Name of the recording.

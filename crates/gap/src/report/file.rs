@@ -5,9 +5,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use serde::{Deserialize, de::IgnoredAny};
+
 use crate::{
     measurement::quantity::Channel,
-    report::data::{Map, Maps, Report},
+    report::data::{Map, Maps, Report, VERSION},
 };
 
 /// Largest size of a report's file, bytes. Larger files are something else.
@@ -49,6 +51,12 @@ pub enum ReportFault {
     /// The file is not JSON, or not that of a report.
     #[error("is not a report ({})", without_place(.0))]
     Malformed(#[source] serde_json::Error),
+    /// The report has another format version than this library's, or none, as those of earlier releases.
+    #[error("{}, and this release reads version {VERSION}: analyse the recording again", FormatVersion(*.found))]
+    Version {
+        /// Format version of the file.
+        found: Option<u32>,
+    },
     /// The numbers of a map or a time course are inconsistent.
     #[error("the maps of {}: {contradiction}", .channel.name())]
     Contradiction {
@@ -82,14 +90,23 @@ fn without_place(error: &serde_json::Error) -> String {
 
 impl Report {
     /// Reads the report from `report.json` in a folder, in the form that its [`serde::Serialize`] writes. Maps of the result
-    /// have as many values as cells and an extent with an area; time courses have as many values as times. The error names
-    /// the file and the fault.
+    /// have as many values as cells and an extent with an area; time courses have as many values as times.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error that names the file and the fault: [`ReportFault::Version`] for a report of another format version.
     pub fn read(folder: &Path) -> Result<Self, ReportError> {
         let path = folder.join(FILE);
         let fail = |line, fault| ReportError { path: path.clone(), line, fault };
         let text = text(&path).map_err(|fault| fail(None, fault))?;
-        let report: Self = serde_json::from_str(&text)
-            .map_err(|error| fail((error.line() > 0).then(|| error.line()), ReportFault::Malformed(error)))?;
+        let malformed = |error: serde_json::Error| {
+            fail((error.line() > 0).then(|| error.line()), ReportFault::Malformed(error))
+        };
+        let header: Header = serde_json::from_str(&text).map_err(malformed)?;
+        if header.is_of_another_version() {
+            return Err(fail(None, ReportFault::Version { found: header.version }));
+        }
+        let report: Self = serde_json::from_str(&text).map_err(malformed)?;
         report.contradiction().map_or(Ok(()), |fault| Err(fail(None, fault)))?;
         Ok(report)
     }
@@ -139,6 +156,33 @@ fn text(path: &Path) -> Result<String, ReportFault> {
         () => {
             let bytes = fs::read(path).map_err(ReportFault::Unreadable)?;
             String::from_utf8(bytes).map_err(|_| ReportFault::NotText)
+        }
+    }
+}
+
+/// Fields that tell which version of the format a file has.
+#[derive(Deserialize)]
+struct Header {
+    version: Option<u32>,
+    /// Present in reports of every version.
+    verdict: Option<IgnoredAny>,
+}
+
+impl Header {
+    /// Whether the file is a report of another version. A file that has neither a version nor a verdict is no report.
+    fn is_of_another_version(&self) -> bool {
+        self.version != Some(VERSION) && (self.version.is_some() || self.verdict.is_some())
+    }
+}
+
+/// Format version of a file, in words.
+struct FormatVersion(Option<u32>);
+
+impl fmt::Display for FormatVersion {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Some(version) => write!(formatter, "has format version {version}"),
+            None => formatter.write_str("has no format version"),
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::{
     report::{
         data::{
             Course, EffectReport, Estimate, Gap, Limit, Map, Maps, NotFoundReport, PosesReport, Report,
-            Unobservable, Verdict,
+            Unobservable, VERSION, Verdict,
         },
         text,
     },
@@ -26,6 +26,7 @@ type ByChannel<T> = BTreeMap<&'static str, T>;
 
 #[derive(Serialize)]
 struct Written<'a> {
+    version: u32,
     recording: &'a str,
     frames: usize,
     held_out_frames: usize,
@@ -134,6 +135,7 @@ impl Serialize for Report {
 impl<'a> From<&'a Report> for Written<'a> {
     fn from(report: &'a Report) -> Self {
         Self {
+            version: VERSION,
             recording: &report.recording,
             frames: report.frames,
             held_out_frames: report.held_out_frames,
@@ -379,15 +381,44 @@ mod tests {
         }
     }
 
+    /// Writes a report's file into a folder of its own and reads it.
+    fn read_again(name: &str, file: &str) -> Result<Report, ReportError> {
+        let folder = std::env::temp_dir().join(format!("reality-sim-report-{name}-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join("report.json"), file).unwrap();
+        let report = Report::read(&folder);
+        fs::remove_dir_all(&folder).unwrap();
+        report
+    }
+
     #[test]
     fn a_report_that_is_written_and_read_again_is_the_same() {
-        let folder = std::env::temp_dir().join(format!("reality-sim-report-{}", std::process::id()));
-        fs::create_dir_all(&folder).unwrap();
         for report in [full(), testing::report()] {
-            fs::write(folder.join("report.json"), serde_json::to_string_pretty(&report).unwrap()).unwrap();
-            assert_eq!(Report::read(&folder).unwrap(), report);
+            let file = serde_json::to_string_pretty(&report).unwrap();
+            assert_eq!(read_again("same", &file).unwrap(), report);
         }
-        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn a_report_of_another_version_is_refused_as_such_and_other_files_are_no_reports() {
+        let with_version = |version: Option<u32>| {
+            let mut written = serde_json::to_value(full()).unwrap();
+            let fields = written.as_object_mut().unwrap();
+            match version {
+                Some(version) => fields.insert("version".to_owned(), version.into()),
+                None => fields.remove("version"),
+            };
+            written.to_string()
+        };
+        assert!(read_again("version", &with_version(Some(VERSION))).is_ok());
+        for other in [None, Some(VERSION + 1)] {
+            let error = read_again("version", &with_version(other)).unwrap_err();
+            assert!(matches!(error.fault, ReportFault::Version { found } if found == other), "{error}");
+        }
+        for file in ["{}", "[]", "{\"version\": \"first\"}", "{\"version\": 1}", "{\"version\": 1"] {
+            let error = read_again("version", file).unwrap_err();
+            assert!(matches!(error.fault, ReportFault::Malformed(_)), "{file}: {error}");
+        }
     }
 
     #[test]

@@ -32,9 +32,8 @@ pub(crate) fn maps(
     let field_rows = [cells.x as usize, cells.y as usize];
     let mut maps = BTreeMap::new();
     for channel in Channel::ALL {
-        let of = |held_out: &HeldOutResiduals| -> Vec<(usize, Measurement, f64)> {
-            residuals(found, held_out, channel)
-        };
+        let of =
+            |all: &HeldOutResiduals| -> Vec<(usize, Measurement, f64)> { residuals(found, all, channel) };
         let (before, after) = (of(before), of(after));
         if after.is_empty() {
             continue;
@@ -43,13 +42,13 @@ pub(crate) fn maps(
             columns: grid[0],
             rows: grid[1],
             extent,
-            before: means(&before, grid, place),
-            after: means(&after, grid, place),
+            before: medians(&before, grid, place),
+            after: medians(&after, grid, place),
         };
-        let in_picture = |row: &Measurement| (row.pixel + 0.5) / size;
+        let in_picture = |measurement: &Measurement| (measurement.pixel + 0.5) / size;
         // The field's map begins at the upper left as seen from above, with x to the right and y up.
-        let on_field = |row: &Measurement| {
-            let place = (row.ground + half) / (2.0 * half);
+        let on_field = |measurement: &Measurement| {
+            let place = (measurement.ground + half) / (2.0 * half);
             DVec2::new(place.x, 1.0 - place.y)
         };
         let extent = [0.0, 0.0, size.x, size.y];
@@ -69,31 +68,36 @@ pub(crate) fn maps(
 /// Returns a channel's residuals without outliers, each with its frame and measurement.
 fn residuals(
     found: &SelectedModel,
-    held_out: &HeldOutResiduals,
+    all: &HeldOutResiduals,
     channel: Channel,
 ) -> Vec<(usize, Measurement, f64)> {
-    let frames = found.linearized.frames.iter().zip(&held_out.residuals).enumerate();
+    let frames = found.linearized.frames.iter().zip(&all.residuals).enumerate();
     frames
-        .flat_map(|(frame, (rows, residuals))| {
-            rows.measurements.iter().zip(residuals).map(move |(row, residual)| (frame, *row, *residual))
+        .flat_map(|(frame, (linearized, residuals))| {
+            let residuals = linearized.measurements.iter().zip(residuals);
+            residuals.map(move |(measurement, residual)| (frame, *measurement, *residual))
         })
-        .filter(|(_, row, residual)| row.quantity.channel() == channel && residual.is_finite())
+        .filter(|(_, measurement, residual)| {
+            measurement.quantity.channel() == channel && residual.is_finite()
+        })
         .collect()
 }
 
-fn means(
-    rows: &[(usize, Measurement, f64)],
+/// Returns the median of each cell's residuals, row by row. `place` maps the grid to 0 to 1 along both axes. None for a cell
+/// with too few measurements.
+fn medians(
+    residuals: &[(usize, Measurement, f64)],
     grid: [usize; 2],
     place: &dyn Fn(&Measurement) -> DVec2,
 ) -> Vec<Option<f64>> {
     let mut values: Vec<Vec<f64>> = vec![Vec::new(); grid[0] * grid[1]];
-    for (_, row, residual) in rows {
-        let cell = place(row) * DVec2::new(grid[0] as f64, grid[1] as f64);
+    for (_, measurement, residual) in residuals {
+        let cell = place(measurement) * DVec2::new(grid[0] as f64, grid[1] as f64);
         if cell.cmpge(DVec2::ZERO).all() && cell.x < grid[0] as f64 && cell.y < grid[1] as f64 {
             values[cell.y as usize * grid[0] + cell.x as usize].push(*residual);
         }
     }
-    // Medians are robust against a robot in the way.
+    // Medians are robust against robots that hide the field.
     let median = |values: &mut Vec<f64>| {
         (values.len() >= THRESHOLDS.least_map_measurements).then(|| median(values.iter().copied()))
     };
@@ -109,9 +113,9 @@ fn course(
     let count = recording.frames.len();
     let mut held_out = vec![false; count];
     found.split.held_out().for_each(|frame| held_out[frame] = true);
-    let sizes = |rows: &[(usize, Measurement, f64)]| -> Vec<Option<f64>> {
+    let sizes = |residuals: &[(usize, Measurement, f64)]| -> Vec<Option<f64>> {
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); count];
-        rows.iter().for_each(|(frame, _, residual)| values[*frame].push(residual.abs()));
+        residuals.iter().for_each(|(frame, _, residual)| values[*frame].push(residual.abs()));
         let robust =
             |values: &mut Vec<f64>| (!values.is_empty()).then(|| 1.4826 * median(values.iter().copied()));
         values.iter_mut().map(robust).collect()

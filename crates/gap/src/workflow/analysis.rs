@@ -291,9 +291,9 @@ fn frame_residuals<'a>(
 fn shown_frame(recording: &Recording<'_>, found: &SelectedModel, before: &HeldOutResiduals) -> usize {
     let most = THRESHOLDS.most_shown_sigmas * THRESHOLDS.most_shown_sigmas;
     let size = |frame: usize| -> f64 {
-        let rows = found.linearized.frames[frame].measurements.iter().zip(&before.residuals[frame]);
-        let squares = rows.filter_map(|(row, residual)| {
-            let sigma = found.linearized.system.sigmas.get(&row.quantity)?;
+        let measurements = found.linearized.frames[frame].measurements.iter();
+        let squares = measurements.zip(&before.residuals[frame]).filter_map(|(measurement, residual)| {
+            let sigma = found.linearized.system.sigmas.get(&measurement.quantity)?;
             residual.is_finite().then(|| (residual / sigma).powi(2).min(most))
         });
         squares.sum()

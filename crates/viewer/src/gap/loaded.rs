@@ -6,7 +6,7 @@ use eframe::egui::ColorImage;
 use image::{ImageReader, RgbImage};
 use reality_sim_core::preprocess::LUMA_WEIGHTS;
 use reality_sim_gap::{
-    Channel, ChannelGap,
+    Channel, ChannelGap, ReportFault,
     report::{EffectReport, Report},
 };
 
@@ -18,6 +18,8 @@ const LARGEST_SIDE: u32 = 8192;
 
 /// Remedy for a report that cannot be read.
 const REMEDY: &str = "give a folder that `reality-sim gap` wrote, or write it again";
+/// Remedy for a report of another format version.
+const NEW_REPORT: &str = "`reality-sim gap` writes a new report";
 
 /// Everything shown of a report.
 pub struct Loaded {
@@ -37,7 +39,10 @@ pub struct Loaded {
 impl Loaded {
     /// Reads a report's folder. Without the pictures, the rest is still read; without the report, reading fails.
     pub fn read(folder: &Path) -> Result<Self, String> {
-        let report = Report::read(folder).map_err(|error| format!("{error}: {REMEDY}"))?;
+        let report = Report::read(folder).map_err(|error| {
+            let remedy = if matches!(error.fault, ReportFault::Version { .. }) { NEW_REPORT } else { REMEDY };
+            format!("{error}: {remedy}")
+        })?;
         let mut problems = Vec::new();
         let mut read = |name: &str| {
             let picture = picture(&folder.join("pictures").join(name));

@@ -57,7 +57,7 @@ fn maps() -> Maps {
 /// Returns a report with content in every part.
 pub fn report() -> Report {
     let channel = ChannelGap { before: 0.2, after: 0.05, floor: 0.04 };
-    let rival = EffectReport {
+    let confusable = EffectReport {
         confusable_with: vec!["black_level".to_owned()],
         ..effect("tone_curve", "gamma_change")
     };
@@ -69,7 +69,7 @@ pub fn report() -> Report {
         held_out_frames: 3,
         left_out: vec!["images/000007.jpg".to_owned()],
         verdict: Verdict::Confusable,
-        effects: vec![effect("vignetting", "strength"), rival],
+        effects: vec![effect("vignetting", "strength"), confusable],
         in_model: vec![effect("defocus", "sigma_px")],
         unexplained: vec![Finding::Pattern { channel: Channel::Noise, strongest, size: 0.3, p_value: 1e-5 }],
         gap: Gap {

@@ -1,4 +1,4 @@
-//! What residuals are binned by.
+//! Coordinates that residuals are binned by.
 
 use glam::DVec2;
 
@@ -15,10 +15,10 @@ const FIELD_CELL_M: f64 = THRESHOLDS.field_cell_m;
 const TIME_CELL_S: f64 = THRESHOLDS.time_cell_s;
 const SPEED_CELL: f64 = THRESHOLDS.speed_cell;
 
-/// A cell, by its indices along the one or two axes of a locus.
+/// Cell by its indices along the one or two axes of a locus.
 pub(super) type Cell = (i32, i32);
 
-/// What residuals are binned by.
+/// Coordinate that residuals are binned by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) enum Locus {
     /// Place in the picture.
@@ -27,27 +27,28 @@ pub(super) enum Locus {
     Field,
     /// Time since the recording's start.
     Time,
-    /// Speed across the line of what is seen.
+    /// Speed at which a line moves across itself in the picture.
     Speed,
 }
 
 impl Locus {
     /// Returns the cell of a measurement in a frame of a recording that starts at `start_s`.
-    pub(super) fn cell(self, row: &Measurement, frame: &FrameResiduals<'_>, start_s: f64) -> Cell {
+    pub(super) fn cell(self, measurement: &Measurement, frame: &FrameResiduals<'_>, start_s: f64) -> Cell {
         match self {
-            Self::Picture => picture_cell(row.pixel, frame.size),
-            Self::Field => {
-                ((row.ground.x / FIELD_CELL_M).floor() as i32, (row.ground.y / FIELD_CELL_M).floor() as i32)
-            }
+            Self::Picture => picture_cell(measurement.pixel, frame.size),
+            Self::Field => (
+                (measurement.ground.x / FIELD_CELL_M).floor() as i32,
+                (measurement.ground.y / FIELD_CELL_M).floor() as i32,
+            ),
             Self::Time => (((frame.time_s - start_s) / TIME_CELL_S).floor() as i32, 0),
             Self::Speed => {
-                let widths_per_s = row.speed_px_s.abs() / f64::from(frame.size[0]);
+                let widths_per_s = measurement.speed_px_s.abs() / f64::from(frame.size[0]);
                 ((widths_per_s.sqrt() / SPEED_CELL).floor() as i32, 0)
             }
         }
     }
 
-    /// Returns a cell in numbers that mean something outside of the grid.
+    /// Returns a cell in units of the picture, the field, time or speed.
     pub(super) fn pattern_cell(self, cell: Cell) -> PatternCell {
         let middle = |index: i32, side: f64| side * (f64::from(index) + 0.5);
         match self {
@@ -64,7 +65,7 @@ impl Locus {
     }
 }
 
-/// The cell of the picture's grid.
+/// Returns the cell of the picture's grid that a pixel is in.
 fn picture_cell(pixel: DVec2, size: [u32; 2]) -> Cell {
     let cell = |value: f64, size: u32, cells: usize| {
         ((value + 0.5) / f64::from(size) * cells as f64).clamp(0.0, cells as f64 - 1.0) as i32
@@ -84,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_of_the_field_and_of_speed_are_given_by_their_middle() {
+    fn cells_of_the_field_and_of_speed_are_stated_by_their_middle_and_those_of_time_by_their_start() {
         assert_eq!(Locus::Field.pattern_cell((1, -1)), PatternCell::Field { x_m: 1.5, y_m: -0.5 });
         let PatternCell::Speed { widths_per_s } = Locus::Speed.pattern_cell((2, 0)) else { panic!() };
         assert!((widths_per_s - 0.25).abs() < 1e-12);

@@ -1,7 +1,7 @@
-//! Residuals that keep a pattern: in the picture, on the field, over time, or by the speed of the picture.
+//! Patterns of residuals: in the picture, on the field, over time, or by the speed of the picture.
 //!
-//! Residuals are binned by where and when they were measured. Bins that keep their mean from one part of the recording
-//! to the others are no chance: as for effects, frames are judged by the means of the other parts.
+//! Residuals are binned by where and when they were measured. A pattern is significant if the bins' means in some parts of the
+//! recording predict the residuals in the others (cross-validation), or if the mean of a single bin is significant.
 
 mod bins;
 mod locus;
@@ -27,7 +27,7 @@ use crate::{
 
 const THRESHOLDS: PatternThresholds = Thresholds::DEFAULT.diagnostics.patterns;
 
-/// Finds patterns of residuals.
+/// Detector of patterns of residuals.
 pub(crate) struct ResidualPatterns;
 
 impl Detector for ResidualPatterns {
@@ -37,29 +37,29 @@ impl Detector for ResidualPatterns {
     }
 }
 
-/// A pattern that no effect of the library explains.
+/// Pattern that no effect of the library explains.
 #[derive(Debug, Clone, PartialEq)]
 struct Pattern {
     channel: Channel,
     locus: Locus,
-    /// Gain of frames by the means of others.
+    /// Gain in log-likelihood of frames that are predicted by the means of others.
     gain: Gain,
-    /// Root mean square of the pattern where it is strongest, in the channel's unit.
+    /// Root mean square of the largest means, in the channel's unit.
     size: f64,
-    /// Cell whose mean is least likely chance.
+    /// Cell with the largest significant mean, or with the smallest p-value if none is significant.
     strongest: Cell,
-    /// How unlikely that is, corrected for all cells of all patterns.
+    /// P-value of that cell's mean, corrected for all cells of all patterns.
     p_value: f64,
-    /// Mean there.
+    /// Length of that cell's mean, in the channel's unit.
     strongest_size: f64,
-    /// Size below which it does not matter.
+    /// Size below which the pattern does not matter, in the channel's unit.
     material: f64,
 }
 
 impl Pattern {
-    /// `tested` cells in all are what p-values are corrected for.
-    fn of(binned: &Binned, sigma: f64, material: f64, tested: f64) -> Option<Self> {
-        // Of the cells that are no chance the one with the largest mean; where all may be chance, the least likely.
+    /// Summarises binned residuals with standard deviation `sigma`; `tested` is the number of cells of all patterns, for which
+    /// p-values are corrected. None if no cell is seen often enough.
+    fn new(binned: &Binned, sigma: f64, material: f64, tested: f64) -> Option<Self> {
         let cells = binned.p_values().map(|(cell, p_value)| {
             let p_value = (tested * p_value).min(1.0);
             let rank = if p_value < SIGNIFICANCE { 1.0 + binned.mean(cell) } else { 1.0 - p_value };
@@ -78,19 +78,20 @@ impl Pattern {
         })
     }
 
-    fn is_all_over(&self) -> bool {
+    /// Whether the means of all bins together are significant and large enough to matter.
+    fn is_overall_significant(&self) -> bool {
         self.gain.score() > THRESHOLDS.least_score && self.size > self.material
     }
 
     fn is_significant(&self) -> bool {
         let in_one_cell = self.p_value < SIGNIFICANCE && self.strongest_size > self.material;
-        self.is_all_over() || in_one_cell
+        self.is_overall_significant() || in_one_cell
     }
 
-    /// The larger of its size all over and in one cell, as far as each is significant.
+    /// Returns the larger one of the overall size and the strongest cell's, as far as each is significant.
     fn reported_size(&self) -> f64 {
         if self.p_value < SIGNIFICANCE {
-            self.strongest_size.max(if self.is_all_over() { self.size } else { 0.0 })
+            self.strongest_size.max(if self.is_overall_significant() { self.size } else { 0.0 })
         } else {
             self.size
         }
@@ -106,8 +107,8 @@ impl Pattern {
     }
 }
 
-/// Sizes below which a pattern does not matter, in the channel's unit; `blur_px2` is the usual variance of
-/// the blur.
+/// Returns the size below which a pattern does not matter, in the channel's unit. `blur_px2` is the median variance of the
+/// blur.
 fn material(channel: Channel, blur_px2: f64) -> f64 {
     match channel {
         Channel::Geometry => THRESHOLDS.material_geometry_px,
@@ -121,14 +122,14 @@ fn material(channel: Channel, blur_px2: f64) -> f64 {
     }
 }
 
-/// Every significant pattern of a recording that starts at `start_s`.
+/// Returns all significant patterns of a recording that starts at `start_s`.
 fn patterns(
     frames: &[FrameResiduals<'_>],
     sigmas: &BTreeMap<Quantity, f64>,
     model_error: &ModelError,
     start_s: f64,
 ) -> Vec<Pattern> {
-    let blur_px2 = middle(frames, Channel::Sharpness);
+    let blur_px2 = median_measurement(frames, Channel::Sharpness);
     let material = |channel: Channel| material(channel, blur_px2) + model_error.most_off(channel);
     let pairs =
         SOURCES.into_iter().flat_map(|source| source.loci().iter().map(move |&locus| (source, locus)));
@@ -136,17 +137,16 @@ fn patterns(
     let tested = binned.iter().map(Binned::tested).sum::<usize>() as f64;
     let found = binned.iter().filter_map(|binned| {
         let source = binned.source;
-        Pattern::of(binned, source.usual_sigma(frames, sigmas), material(source.channel), tested)
+        Pattern::new(binned, source.usual_sigma(frames, sigmas), material(source.channel), tested)
     });
     found.filter(Pattern::is_significant).collect()
 }
 
-/// The median of a channel's measurements.
-fn middle(frames: &[FrameResiduals<'_>], channel: Channel) -> f64 {
-    let rows =
-        frames.iter().flat_map(|frame| frame.measurements).filter(|row| row.quantity.channel() == channel);
-    let values: Vec<f64> = rows.map(|row| row.measured).filter(|value| value.is_finite()).collect();
-    median(values)
+/// Returns the median of a channel's measurements.
+fn median_measurement(frames: &[FrameResiduals<'_>], channel: Channel) -> f64 {
+    let measurements = frames.iter().flat_map(|frame| frame.measurements);
+    let values = measurements.filter(|one| one.quantity.channel() == channel).map(|one| one.measured);
+    median(values.filter(|value| value.is_finite()).collect::<Vec<f64>>())
 }
 
 #[cfg(test)]

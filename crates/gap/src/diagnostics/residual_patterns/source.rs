@@ -1,4 +1,4 @@
-//! Which residuals are binned together.
+//! Sets of measurements whose residuals are binned together.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use crate::{
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Source {
     pub(super) channel: Channel,
-    /// One quantity of the channel; all of them where none is given.
+    /// One quantity of the channel; `None` for all of them.
     quantity: Option<Quantity>,
 }
 
@@ -26,7 +26,8 @@ impl Source {
         Self { channel: quantity.channel(), quantity: Some(quantity) }
     }
 
-    /// What it is binned by. Where lines are and how sharp they are may change as the picture moves.
+    /// Returns the coordinates by which the residuals are binned. The offset and the sharpness of lines may depend on the speed
+    /// of the picture.
     pub(super) fn loci(&self) -> &'static [Locus] {
         match self.channel {
             Channel::Geometry | Channel::Sharpness => {
@@ -36,21 +37,22 @@ impl Source {
         }
     }
 
-    pub(super) fn has(&self, row: &Measurement) -> bool {
-        row.quantity.channel() == self.channel
-            && self.quantity.is_none_or(|quantity| row.quantity == quantity)
+    /// Whether a measurement is one of these.
+    pub(super) fn has(&self, measurement: &Measurement) -> bool {
+        measurement.quantity.channel() == self.channel
+            && self.quantity.is_none_or(|quantity| measurement.quantity == quantity)
     }
 
-    /// Returns the standard deviation of all its measurements together, root mean square over them.
+    /// Returns the root mean square over all these measurements of their residuals' standard deviations.
     pub(super) fn usual_sigma(self, frames: &[FrameResiduals<'_>], sigmas: &BTreeMap<Quantity, f64>) -> f64 {
-        let rows = frames.iter().flat_map(|frame| frame.measurements).filter(|row| self.has(row));
-        let squares = rows.filter_map(|row| Some(sigmas.get(&row.quantity)?.powi(2)));
-        let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+        let measurements = frames.iter().flat_map(|frame| frame.measurements);
+        let sigmas = measurements.filter(|one| self.has(one)).filter_map(|one| sigmas.get(&one.quantity));
+        let (sum, count) = sigmas.fold((0.0, 0.0), |(sum, count), sigma| (sum + sigma.powi(2), count + 1.0));
         f64::sqrt(sum / f64::max(count, 1.0))
     }
 }
 
-/// Red and blue are bent to opposite sides by a lens: together they would cancel.
+/// All sources. A lens displaces red and blue in opposite directions, so that together they would cancel.
 pub(super) const SOURCES: [Source; 6] = [
     Source::whole(Channel::Geometry),
     Source::whole(Channel::Photometry),

@@ -10,7 +10,7 @@ use crate::{
 const SIGMA: f64 = 0.05;
 const SIZE: [u32; 2] = [320, 240];
 
-/// Pictures five a second whose residuals are these, by the picture's number and the row's.
+/// Returns pictures at intervals of 0.2 s. `residual` gives a residual from the numbers of the picture and the measurement.
 fn frames(
     rows: &[Vec<Measurement>],
     residual: impl Fn(u32, u32, &Measurement) -> f64,
@@ -25,8 +25,8 @@ fn frames(
     framed.collect()
 }
 
-/// Patterns of the carpet's brightness in 24 pictures, where a block's residual is noise and this, by the picture's
-/// number, the place in the picture and that on the field.
+/// Returns the patterns of the carpet's level in 24 pictures. A block's residual is noise plus `residual` of the picture's
+/// number, the block's pixel and its place on the field.
 fn found(residual: impl Fn(u32, DVec2, DVec2) -> f64) -> Vec<Pattern> {
     let noise = |frame: u32, index: u32| {
         let mut state = u64::from(frame * 7919 + index).wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -51,7 +51,7 @@ fn found(residual: impl Fn(u32, DVec2, DVec2) -> f64) -> Vec<Pattern> {
 }
 
 #[test]
-fn red_and_blue_that_are_off_to_opposite_sides_are_two_patterns() {
+fn red_and_blue_that_are_displaced_in_opposite_directions_are_two_patterns() {
     let rows: Vec<Measurement> = (0..1200_u32)
         .flat_map(|index| {
             let pixel = 8.0 * DVec2::new(f64::from(index % 40), f64::from(index / 40));
@@ -80,8 +80,8 @@ fn red_and_blue_that_are_off_to_opposite_sides_are_two_patterns() {
 }
 
 #[test]
-fn lines_that_are_seen_late_are_off_by_how_fast_the_picture_moves() {
-    // Half of the lines' normals point to where the picture moves, half away; quick ones are seen in turns anywhere.
+fn lines_that_are_seen_late_form_a_pattern_by_speed() {
+    // Half of the lines' normals point along the motion of the picture, half against it; fast lines are everywhere in turn.
     let rows_of = |frame: u32| -> Vec<Measurement> {
         (0..300_u32)
             .map(|index| {
@@ -113,7 +113,7 @@ fn noise_has_no_pattern() {
 }
 
 #[test]
-fn dirt_on_the_lens_is_found_where_it_is_with_its_size() {
+fn dirt_on_the_lens_is_found_with_its_place_and_size() {
     let dirt = |pixel: DVec2| -0.15 * f64::from(u8::from(pixel.distance(DVec2::new(60.0, 180.0)) < 45.0));
     let found = found(|_, pixel, _| dirt(pixel));
     let pattern = found.iter().find(|pattern| pattern.locus == Locus::Picture).unwrap();
@@ -133,15 +133,15 @@ fn a_stain_on_the_field_is_found_on_the_field() {
 }
 
 #[test]
-fn a_thing_on_a_part_of_a_place_is_no_pattern_of_it() {
-    let thing = |ground: DVec2| {
+fn an_object_on_a_part_of_a_cell_is_no_pattern() {
+    let object = |ground: DVec2| {
         let inside = ground - ground.floor();
         if ground.floor() == DVec2::new(4.0, 1.0) && inside.x < 0.4 { -0.15 } else { 0.0 }
     };
-    assert_eq!(found(|_, _, ground| thing(ground)), []);
+    assert_eq!(found(|_, _, ground| object(ground)), []);
 }
 
 #[test]
-fn what_is_too_small_to_matter_is_not_told() {
+fn a_pattern_below_its_material_size_is_not_reported() {
     assert_eq!(found(|_, pixel, _| if pixel.x < 160.0 { 0.02 } else { -0.02 }), []);
 }

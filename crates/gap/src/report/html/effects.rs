@@ -52,7 +52,7 @@ fn effect(effect: &EffectReport) -> String {
         number(&gain(&effect.held_out_gain)),
         if closes.is_empty() { "–".to_owned() } else { closes.join("<br/>") },
         escape(effect_because(effect)),
-        rivals(effect)
+        confusable(effect)
     )
 }
 
@@ -71,16 +71,17 @@ fn parameters(effect: &EffectReport) -> String {
     }
 }
 
-fn rivals(effect: &EffectReport) -> String {
+/// Returns the effects that this one is confusable with, and what to record to tell them apart; empty if there are none.
+fn confusable(effect: &EffectReport) -> String {
     if effect.confusable_with.is_empty() {
         return String::new();
     }
-    let rivals: Vec<String> =
+    let others: Vec<String> =
         effect.confusable_with.iter().map(|id| format!("<code>{}</code>", escape(id))).collect();
     let recordings = deciding_recordings(effect).join("; or ");
     let remedy =
         if recordings.is_empty() { String::new() } else { format!(" To find out, {}.", escape(&recordings)) };
-    format!(" These frames cannot tell it from {}.{remedy}", rivals.join(", "))
+    format!(" These frames cannot tell it from {}.{remedy}", others.join(", "))
 }
 
 fn gain(gain: &Estimate) -> String {

@@ -114,12 +114,12 @@ fn most_closed(effect: &EffectReport, gap: &Gap) -> Option<(Channel, f64)> {
 
 /// Returns "Either A or B: these frames cannot tell; to find out, …".
 fn either(effect: &EffectReport) -> String {
-    let rivals: Vec<&str> = effect.confusable_with.iter().map(|id| library_name(id)).collect();
+    let others: Vec<&str> = effect.confusable_with.iter().map(|id| library_name(id)).collect();
     let name =
         format!("{} ({})", effect_name(effect), effect_size(effect).replace(" (", ", ").replace(')', ""));
     let recordings = deciding_recordings(effect).join("; or ");
     let remedy = if recordings.is_empty() { String::new() } else { format!("; to find out, {recordings}") };
-    format!("either {name} or {}: these frames cannot tell{remedy}", rivals.join(" or "))
+    format!("either {name} or {}: these frames cannot tell{remedy}", others.join(" or "))
 }
 
 /// Returns a sentence for each of the first patterns.
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rival_makes_it_either_or() {
+    fn confusable_effects_are_stated_as_alternatives() {
         let pitch = EffectReport { confusable_with: vec!["principal_point".to_owned()], ..pitch() };
         let remedy = effect("principal_point").unwrap().recording_that_would_decide();
         assert_eq!(
