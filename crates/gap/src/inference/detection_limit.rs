@@ -131,6 +131,7 @@ fn missing_input(recording: &Recording<'_>, effect: &dyn Effect) -> Option<Missi
     })
 }
 
+/// Whether a recording's files have an input.
 fn provides(recording: &Recording<'_>, need: Need) -> bool {
     let photometry = recording.sequence.setup.photometry;
     match need {
@@ -141,6 +142,7 @@ fn provides(recording: &Recording<'_>, need: Need) -> bool {
     }
 }
 
+/// Returns why a recording that has all inputs cannot show an effect.
 fn unobservable_cause(recording: &Recording<'_>, effect: &dyn Effect) -> UnobservableCause {
     let moves = recording.moves();
     let views = recording.views().last().map_or(0, |last| last + 1);

@@ -18,6 +18,7 @@ const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
 /// Test of one effect beside others.
 #[derive(Debug, Clone)]
 pub(crate) struct EffectTest {
+    /// Tested effect.
     pub(crate) effect: EffectIndex,
     /// P-value, corrected for the number of effects tested (Bonferroni).
     pub(crate) p_value: f64,
@@ -25,6 +26,7 @@ pub(crate) struct EffectTest {
     pub(crate) gain: Gain,
     /// Whether the effect is large enough to matter.
     pub(crate) material: bool,
+    /// Fit of the effect together with the others.
     pub(crate) fit: Fit,
 }
 

@@ -42,11 +42,12 @@ impl<'a> Evidence<'a> {
         3 * self.views() / (2 * (LAG + 1))
     }
 
+    /// Fits the free columns by least squares with their priors; the other columns are neutral. None if the fit is singular.
     pub(crate) fn fit(&self, free: &[ColumnIndex]) -> Option<Fit> {
         self.total.fit(free, &self.base)
     }
 
-    /// Fits the free columns while the others change by `held`.
+    /// Fits the free columns while the others change by `held`, in the columns' coordinates.
     pub(crate) fn fit_beside(&self, free: &[ColumnIndex], held: &DVector<f64>) -> Option<Fit> {
         self.total.fit_beside(free, &self.base, held)
     }
@@ -96,6 +97,7 @@ impl<'a> Evidence<'a> {
         with_counts.map(|(covariance, count)| self.p_of(fit, tested, covariance, count)).fold(0.0, f64::max)
     }
 
+    /// P-value of the tested columns by one covariance, which was estimated from `count` clusters.
     fn p_of(&self, fit: &Fit, tested: &[ColumnIndex], covariance: &DMatrix<f64>, count: usize) -> f64 {
         let places: Vec<usize> = tested.iter().filter_map(|&column| fit.position(column)).collect();
         let number = places.len();

@@ -10,7 +10,9 @@ use crate::{
 /// Gain in log-likelihood on frames that the fit has not seen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Gain {
+    /// Gain, natural logarithm of the likelihood.
     pub(crate) value: f64,
+    /// Standard deviation of the gain.
     pub(crate) sigma: f64,
     /// Score of a rank test that the gain is above zero, in standard deviations.
     rank_score: f64,
@@ -50,6 +52,7 @@ impl HeldOutGains {
         if sum.sigma > 0.0 { sum.value / sum.sigma } else { 0.0 }
     }
 
+    /// Returns the differences of the frames' gains.
     fn differences(&self, other: &Self) -> Vec<f64> {
         self.frames.iter().zip(&other.frames).map(|(of, over)| of - over).collect()
     }

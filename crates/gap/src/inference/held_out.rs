@@ -118,15 +118,18 @@ const MOVED: f64 = Thresholds::DEFAULT.inference.least_gap_change;
 struct Squares {
     before: f64,
     after: f64,
+    /// Number of residuals.
     count: f64,
     /// Sum of the variances due to the reference poses' errors.
     poses: f64,
     /// Sum of half the squared differences between neighbouring measurements.
     steps: f64,
+    /// Number of pairs of neighbours.
     pairs: f64,
 }
 
 impl Squares {
+    /// Returns the root mean squares.
     fn gap(&self) -> ChannelGap {
         let mean = |sum: f64| sum / self.count.max(1.0);
         let (before, after) = (mean(self.before).sqrt(), mean(self.after).sqrt());
@@ -137,6 +140,7 @@ impl Squares {
     }
 }
 
+/// Variance of a measurement due to the pose's errors, from its gradient and the standard deviations of the pose.
 fn pose_variance(gradient: &Vector6<f64>, sigmas: &[f64; 6]) -> f64 {
     gradient.iter().zip(sigmas).map(|(gradient, sigma)| (gradient * sigma).powi(2)).sum()
 }

@@ -71,6 +71,7 @@ impl LinearizedRecording {
 
 /// Source of linearised recordings, which are measured anew at each model.
 pub(crate) trait Linearize {
+    /// Measures and linearises the recording at a model.
     fn linearize(&self, model: Model) -> Result<LinearizedRecording, MeasureError>;
 
     /// Returns the starting values of an effect that is not in the model yet.

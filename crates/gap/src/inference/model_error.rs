@@ -14,6 +14,7 @@ use crate::{
 pub(crate) struct ModelError(BTreeMap<Quantity, f64>);
 
 impl ModelError {
+    /// Computes the model error from residuals with the given model and with the extended one, on held-out frames.
     pub(crate) fn new(found: &SelectedModel, before: &HeldOutResiduals, after: &HeldOutResiduals) -> Self {
         let mut sums: BTreeMap<Quantity, (f64, f64)> = BTreeMap::new();
         for frame in found.split.held_out() {

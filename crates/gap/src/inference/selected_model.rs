@@ -14,7 +14,9 @@ use crate::linear_model::parameters::FittedParameter;
 
 /// Outcome of the selection: a model with the effects that are supported.
 pub(crate) struct SelectedModel {
+    /// Fitted parameters, in the order of their columns.
     pub(crate) columns: Vec<FittedParameter>,
+    /// Split of the recording's frames.
     pub(crate) split: HeldOutSplit,
     /// Recording linearised at the final model.
     pub(crate) linearized: LinearizedRecording,

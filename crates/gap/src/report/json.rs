@@ -272,6 +272,7 @@ mod tests {
         diagnostics::finding::{FieldLine, Movement, NominalValue, OdometryComponent, PatternCell},
         inference::detection_limit::MissingInput,
         measurement::quantity::ColorChannel,
+        report::file::{ReportError, ReportFault},
         testing::{self, effect_report},
     };
 

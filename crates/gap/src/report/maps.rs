@@ -104,6 +104,7 @@ fn medians(
     values.iter_mut().map(median).collect()
 }
 
+/// Returns the sizes of a channel's residuals frame by frame.
 fn course(
     recording: &Recording<'_>,
     found: &SelectedModel,

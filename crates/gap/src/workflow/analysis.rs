@@ -54,7 +54,7 @@ pub fn analyse(
     effects.sort_by(|a, b| b.held_out_gain.value.total_cmp(&a.held_out_gain.value));
     let in_model = effect_reports(recording, &tests, &found, (&found.given, model), &after)?;
     let unexplained = if tests.fits.evidence.views() < LEAST_VIEWS {
-        // A pattern of a single view may come from that place.
+        // A pattern in a single view may be due to that place.
         Vec::new()
     } else {
         findings(recording, &found, &channels, &ModelError::new(&found, &before, &after))
@@ -123,6 +123,7 @@ fn whole_gap(channels: BTreeMap<Channel, ChannelGap>) -> Gap {
     Gap { before: mean(|gap| gap.before), after: mean(|gap| gap.after), floor: 1.0, channels }
 }
 
+/// Returns the source of the reference poses with their estimated scatter.
 fn poses(recording: &Recording<'_>, found: &SelectedModel) -> PosesReport {
     let [a, b, c, d, e, f] = found.linearized.system.pose_sigmas;
     PosesReport { source: recording.source, rotation_sigma_rad: [a, b, c], position_sigma_m: [d, e, f] }
@@ -147,10 +148,12 @@ fn effect_reports(
     made.map(report).collect()
 }
 
+/// Returns a gain as an estimate without a unit.
 fn gain(gain: Gain) -> Estimate {
     Estimate { value: gain.value, sigma: gain.sigma, unit: None }
 }
 
+/// Reports a tested effect. `closes` is the part of each channel's gap that the effect closes.
 fn effect_report(
     fits: &EffectFits<'_>,
     test: &EffectTest,
@@ -265,6 +268,7 @@ fn nuisance_fit(found: &SelectedModel) -> DVector<f64> {
     delta
 }
 
+/// Returns the residuals of the training frames after a change `delta` of all columns, with the poses refitted.
 fn frame_residuals<'a>(
     recording: &Recording<'_>,
     found: &'a SelectedModel,

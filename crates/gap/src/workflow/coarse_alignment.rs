@@ -54,6 +54,7 @@ pub(crate) fn coarsely_aligned(
 struct LineCounts(BTreeMap<usize, [f64; 2]>);
 
 impl LineCounts {
+    /// Returns the numbers of pieces found and expected of all curves.
     fn sums(&self) -> [f64; 2] {
         self.0.values().fold([0.0; 2], |sum, curve| [sum[0] + curve[0], sum[1] + curve[1]])
     }
@@ -129,6 +130,7 @@ impl<'a> PictureSample<'a> {
         variants
     }
 
+    /// Returns a model with another value of one parameter.
     fn with_parameter(&self, model: &Model, column: &FittedParameter, value: f64) -> Model {
         let effect = column.effect();
         let values = model
@@ -183,6 +185,7 @@ impl<'a> PictureSample<'a> {
     }
 }
 
+/// Returns the values of a parameter that are tried, evenly spaced over its range.
 fn values(column: &FittedParameter) -> impl Iterator<Item = f64> {
     let [low, high] = column.parameter().range;
     (0..=THRESHOLDS.alignment_values)

@@ -72,6 +72,7 @@ const KEY: &str = "<path class=\"before\" d=\"M60 193H85\"/><text x=\"90\" y=\"1
                    <circle class=\"judged\" cx=\"345\" cy=\"193\" r=\"2.5\"/>\
                    <text x=\"353\" y=\"197\">frame kept for judging</text>";
 
+/// Returns what the curves show, with the unit.
 fn caption(channel: Channel, unit: &str) -> String {
     let unit = if unit.is_empty() { String::new() } else { format!(", {unit}") };
     escape(&format!(
@@ -91,6 +92,7 @@ fn scale(before: &[(f64, f64, bool)], after: &[(f64, f64, bool)], floor: Option<
     Some(Scale { from_s, duration_s: positive(to_s - from_s), largest: 1.05 * positive(largest) })
 }
 
+/// Draws the ticks of both axes with their labels.
 fn axes(scale: &Scale) -> String {
     let mut svg = String::new();
     let [left, top, right, bottom] = PLOT;
@@ -116,6 +118,7 @@ fn axes(scale: &Scale) -> String {
     svg
 }
 
+/// Draws a horizontal line at a value.
 fn level(scale: &Scale, value: f64) -> String {
     format!("<path class=\"floor\" d=\"M{} {:.1}H{}\"/>", PLOT[0], scale.y(value), PLOT[2])
 }

@@ -24,6 +24,7 @@ pub(super) fn section(gap: &Gap) -> String {
     )
 }
 
+/// Returns a row of the table: sizes before and after and the noise floor, multiplied by a factor and in a unit.
 fn row(class: &str, title: &str, sizes: [f64; 3], (factor, unit): (f64, &str)) -> String {
     let [before, after, floor] = sizes;
     let part = closed(before, after, floor)

@@ -38,11 +38,11 @@ pub fn finding_place(finding: &Finding) -> String {
             format!("in its {}, {}", steps(*component), following(*follows))
         }
         Finding::NominalValue { value, .. } => format!(
-            "in all pictures, most of all {}: farther from what camera.toml says than that is trusted",
+            "in all pictures, most of all {}: farther from the value in camera.toml than its tolerance allows",
             nominal_value(*value)
         ),
         Finding::Scatter { .. } => {
-            "in each picture in its own way: by more than noise and the poses' errors make".to_owned()
+            "differently in each picture, by more than noise and errors of the poses cause".to_owned()
         }
     }
 }
@@ -60,6 +60,7 @@ pub(super) fn place_has_size(finding: &Finding) -> bool {
     )
 }
 
+/// Returns where a pattern is strongest.
 fn pattern(strongest: PatternCell) -> String {
     match strongest {
         PatternCell::Picture { column, row, grid } => {
@@ -205,17 +206,17 @@ mod tests {
             (odometry(OdometryComponent::Turn), "in its turns, as it turns", "0.012 rad"),
             (
                 nominal(NominalValue::CarpetLevel(ColorChannel::Red), 0.42),
-                "in all pictures, most of all red of carpet: farther from what camera.toml says than that is trusted",
+                "in all pictures, most of all red of carpet: farther from the value in camera.toml than its tolerance allows",
                 "42 %",
             ),
             (
                 nominal(NominalValue::Blur, 0.2),
-                "in all pictures, most of all the blur: farther from what camera.toml says than that is trusted",
+                "in all pictures, most of all the blur: farther from the value in camera.toml than its tolerance allows",
                 "0.20 px²",
             ),
             (
                 Finding::Scatter { channel: Channel::Geometry, size: 1.4, floor: 0.5 },
-                "in each picture in its own way: by more than noise and the poses' errors make",
+                "differently in each picture, by more than noise and errors of the poses cause",
                 "1.4 px",
             ),
         ]);

@@ -1,4 +1,4 @@
-//! Report in words: all words of a report are made here, from its numbers.
+//! Report in words, all of which are made here from the report's numbers.
 
 mod channel;
 mod effect;

@@ -18,7 +18,7 @@ use crate::{
 
 /// Number of detection limits named if nothing was found.
 const LIMITS: usize = 3;
-/// Number of unexplained patterns, or of unobservable effects, that are named.
+/// Number of unexplained findings, or of unobservable effects, that are named.
 const NAMED: usize = 2;
 
 /// Returns the verdict as one to a few sentences.
@@ -122,7 +122,7 @@ fn either(effect: &EffectReport) -> String {
     format!("either {name} or {}: these frames cannot tell{remedy}", others.join(" or "))
 }
 
-/// Returns a sentence for each of the first patterns.
+/// Returns a sentence for each of the first findings, and the number of further ones.
 fn unknown(unexplained: &[Finding]) -> String {
     let mut sentences = vec!["something is at work that no effect of the library explains".to_owned()];
     sentences.extend(unexplained.iter().take(NAMED).map(said));
@@ -184,6 +184,7 @@ fn shown_from(not_found: &[NotFoundReport]) -> Option<String> {
     (!limits.is_empty()).then(|| enumerated(&limits))
 }
 
+/// Returns which effects these frames cannot show, and what to record to see them.
 fn inconclusive(unobservable: &[Unobservable]) -> String {
     let first = || unobservable.iter().take(NAMED);
     let names: Vec<String> = first().map(|effect| format!("whether {}", library_name(&effect.id))).collect();

@@ -21,7 +21,7 @@ pub fn unobservable_reason(cause: &UnobservableCause) -> &'static str {
         }
         UnobservableCause::RobotAtRest => "the robot hardly moves: its odometry has nothing to report",
         UnobservableCause::FewViews { .. } => {
-            "the frames show one and the same view, or a few: what is odd in it may be the place's"
+            "the frames show only one view or a few: a deviation may come from that place instead of the camera"
         }
         UnobservableCause::NotSeparable => {
             "what it changes in these pictures, other parts of the model or errors of the poses could change as well"
