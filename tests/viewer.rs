@@ -27,7 +27,7 @@ use x11rb::{
 const WALK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/walk");
 
 /// Time limit, longer than anything takes on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(300);
+const TIMEOUT: Duration = Duration::from_secs(300);
 
 /// Waits for the first answer that is not `None` and returns it.
 #[track_caller]
@@ -37,7 +37,7 @@ fn wait_for<T>(what: &str, mut answer: impl FnMut() -> Option<T>) -> T {
         if let Some(answer) = answer() {
             return answer;
         }
-        assert!(started.elapsed() < PATIENCE, "{what}: does not happen");
+        assert!(started.elapsed() < TIMEOUT, "{what}: does not happen");
         thread::sleep(Duration::from_millis(50));
     }
 }
@@ -131,7 +131,7 @@ impl Home {
 /// Window of a viewer with its program and its display.
 struct Viewer {
     process: Process,
-    complaints: PathBuf,
+    stderr_file: PathBuf,
     connection: RustConnection,
     root: Window,
     window: Window,
@@ -140,19 +140,19 @@ struct Viewer {
 impl Viewer {
     /// Starts the program and waits for its window.
     fn start(home: &Home, display: &Display) -> Self {
-        let complaints = home.path("stderr.txt");
+        let stderr_file = home.path("stderr.txt");
         let mut command = home.viewer(WALK);
-        command.env("DISPLAY", &display.name).stderr(File::create(&complaints).unwrap());
+        command.env("DISPLAY", &display.name).stderr(File::create(&stderr_file).unwrap());
         let mut process = Process(command.spawn().unwrap());
         let (connection, screen) = RustConnection::connect(Some(&display.name)).unwrap();
         let root = connection.setup().roots[screen].root;
         let window = wait_for("a window", || {
             let ended = process.0.try_wait().unwrap();
-            assert!(ended.is_none(), "{ended:?}: {}", fs::read_to_string(&complaints).unwrap());
+            assert!(ended.is_none(), "{ended:?}: {}", fs::read_to_string(&stderr_file).unwrap());
             let windows = connection.query_tree(root).unwrap().reply().unwrap().children;
             windows.into_iter().find(|window| title(&connection, *window) == "Reality Sim")
         });
-        Self { process, complaints, connection, root, window }
+        Self { process, stderr_file, connection, root, window }
     }
 
     /// Presses Ctrl and a letter once the window listens, again and again until `happens` returns something.
@@ -223,8 +223,8 @@ impl Viewer {
     }
 
     /// Returns what the program wrote to standard error.
-    fn complaints(&self) -> String {
-        fs::read_to_string(&self.complaints).unwrap()
+    fn stderr(&self) -> String {
+        fs::read_to_string(&self.stderr_file).unwrap()
     }
 }
 
@@ -237,10 +237,10 @@ fn title(connection: &RustConnection, window: Window) -> String {
 
 /// Runs a viewer that must not open a window, and returns its one line on standard error.
 fn refusal(command: &mut Command) -> String {
-    let complaints = tempfile::NamedTempFile::new().unwrap();
-    let mut process = Process(command.stderr(complaints.reopen().unwrap()).spawn().unwrap());
+    let stderr_file = tempfile::NamedTempFile::new().unwrap();
+    let mut process = Process(command.stderr(stderr_file.reopen().unwrap()).spawn().unwrap());
     let status = wait_for("the end of the program", || process.0.try_wait().unwrap());
-    let message = fs::read_to_string(complaints.path()).unwrap();
+    let message = fs::read_to_string(stderr_file.path()).unwrap();
     assert_eq!(status.code(), Some(1), "{message}");
     assert_eq!(message.lines().count(), 1, "{message}");
     assert!(message.starts_with("error: ") && !message.contains(".rs:"), "{message}");
@@ -288,7 +288,7 @@ fn the_window_opens_saves_a_screenshot_and_remembers_its_settings() {
     let colors: HashSet<_> = picture.pixels().collect();
     assert!(colors.len() > 16, "{} colours", colors.len());
     let status = viewer.press_ctrl_until('q', "the end of the program", Viewer::ended);
-    assert_eq!((status.code(), viewer.complaints().as_str()), (Some(0), ""));
+    assert_eq!((status.code(), viewer.stderr().as_str()), (Some(0), ""));
     assert!(home.settings().unwrap().contains("theme"));
 }
 
@@ -301,5 +301,5 @@ fn the_viewer_works_without_a_writable_home() {
     let mut viewer = Viewer::start(&home, &display);
     viewer.close();
     let status = wait_for("the end of the program", || viewer.ended());
-    assert_eq!(status.code(), Some(0), "{}", viewer.complaints());
+    assert_eq!(status.code(), Some(0), "{}", viewer.stderr());
 }

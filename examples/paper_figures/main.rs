@@ -17,6 +17,8 @@ use anyhow::{Context, bail};
 use crate::recording::Recording;
 
 const OUT: &str = "docs/figures";
+/// Cargo's profile, which changes the times only.
+const PROFILE: &str = if cfg!(debug_assertions) { "dev" } else { "release" };
 const USAGE: &str = "usage: paper_figures figures|sweep FRAMES SEEDS SEQUENCE...";
 
 fn main() -> anyhow::Result<()> {
@@ -48,8 +50,8 @@ fn main() -> anyhow::Result<()> {
 /// Describes how the file was made.
 fn header(arguments: &str, recordings: &[Recording]) -> anyhow::Result<String> {
     let mut text = format!(
-        "Made by `bash scripts/figures`, which makes the recordings that are not part of the repository, and runs \
-         `cargo run --release --example paper_figures -- {arguments}`.\n\n| sequence | name | pictures |\n|---|---|---|\n"
+        "Made by `bash scripts/figures {PROFILE}`, which makes the recordings that are not part of the repository, and runs \
+         `cargo run --profile {PROFILE} --example paper_figures -- {arguments}`.\n\n| sequence | name | pictures |\n|---|---|---|\n"
     );
     for Recording { sequence, pictures } in recordings {
         writeln!(text, "| `{}` | {} | {} |", sequence.folder.display(), sequence.name, pictures.len())?;

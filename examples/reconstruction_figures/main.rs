@@ -23,6 +23,8 @@ use reality_sim::{
 
 const OUT: &str = "docs/reconstruction.md";
 const IMAGES: &str = "docs/images";
+/// Cargo's profile, which changes the times only.
+const PROFILE: &str = if cfg!(debug_assertions) { "dev" } else { "release" };
 const USAGE: &str = "usage: reconstruction_figures RECORDING";
 
 fn main() -> anyhow::Result<()> {
@@ -31,8 +33,8 @@ fn main() -> anyhow::Result<()> {
     let (walk, probes) = parts(&Sequence::open(Path::new(folder))?);
     fs::create_dir_all(IMAGES).with_context(|| format!("{IMAGES}: cannot be made"))?;
     let mut text = format!(
-        "# Reconstruction, measured\n\nMade by `bash scripts/figures`, which makes the ray-traced recording `{folder}` and runs \
-         `cargo run --release --example reconstruction_figures -- {folder}`. The first {} pictures of the recording are the \
+        "# Reconstruction, measured\n\nMade by `bash scripts/figures {PROFILE}`, which makes the ray-traced recording `{folder}` and runs \
+         `cargo run --profile {PROFILE} --example reconstruction_figures -- {folder}`. The first {} pictures of the recording are the \
          database; of the others, in which the robot walks on through the same hall, {} are reconstructed. The poses of the \
          recording have the noise of motion capture: 3 mm and 0.14° in every axis.\n",
         walk.frames.len(),

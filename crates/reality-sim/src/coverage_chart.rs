@@ -12,13 +12,13 @@ const SCALE: f64 = 80.0;
 /// Margin around the fields, pixels.
 const MARGIN: f64 = 28.0;
 /// Height of the text above and below each field, pixels.
-const WORDS: f64 = 64.0;
+const TEXT_HEIGHT: f64 = 64.0;
 
 /// Draws two fields from above, side by side: how many pictures were taken where and in which directions, and how far
 /// every place is from the nearest picture. The opponent's goal (+x) is on the right.
 pub fn coverage_svg(coverage: &Coverage, field: &FieldDimensions, title: &str) -> String {
     let [columns, rows] = coverage.size.map(|cells| cells as f64 * coverage.cell_m * SCALE);
-    let (width, height) = (2.0 * columns + 3.0 * MARGIN, rows + 2.0 * WORDS);
+    let (width, height) = (2.0 * columns + 3.0 * MARGIN, rows + 2.0 * TEXT_HEIGHT);
     let mut svg = format!(
         r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0} {height:.0}" width="{width:.0}" height="{height:.0}" font-family="sans-serif" font-size="15"><rect width="100%" height="100%" fill="#ffffff"/>"##
     );
@@ -60,7 +60,7 @@ struct Panel<'a> {
 // Writing into a string cannot fail.
 impl Panel<'_> {
     fn at(&self, x_m: f64, y_m: f64) -> (f64, f64) {
-        (self.left + 0.5 * self.size[0] + SCALE * x_m, WORDS + 0.5 * self.size[1] - SCALE * y_m)
+        (self.left + 0.5 * self.size[0] + SCALE * x_m, TEXT_HEIGHT + 0.5 * self.size[1] - SCALE * y_m)
     }
 
     fn head(&self, svg: &mut String, title: &str, text: &str) {
@@ -124,7 +124,7 @@ impl Panel<'_> {
 
     fn legend(&self, svg: &mut String, first: &str, last: &str, unit: &str, color: impl Fn(f64) -> String) {
         const STEPS: u32 = 24;
-        let (top, step) = (WORDS + self.size[1] + 14.0, 7.0);
+        let (top, step) = (TEXT_HEIGHT + self.size[1] + 14.0, 7.0);
         for number in 0..STEPS {
             let share = f64::from(number) / f64::from(STEPS - 1);
             let _ = write!(

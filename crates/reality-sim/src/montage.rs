@@ -7,7 +7,7 @@ const STRIP_WIDTH: u32 = 320;
 /// Space between pictures, pixels.
 const GAP: u32 = 4;
 /// Colour behind the pictures.
-const PAPER: image::Rgb<u8> = image::Rgb([255; 3]);
+const BACKGROUND: image::Rgb<u8> = image::Rgb([255; 3]);
 
 /// Arranges pictures from left to right, four in a row, as in the paper's Fig. 12.
 pub fn strip(pictures: &[RgbImage]) -> RgbImage {
@@ -23,7 +23,8 @@ pub fn grid(rows: &[&[RgbImage]], width: u32) -> RgbImage {
     let heights: Vec<u32> =
         scaled.iter().map(|row| row.iter().map(RgbImage::height).max().unwrap_or(0)).collect();
     let total_height = heights.iter().map(|height| height + GAP).sum::<u32>().saturating_sub(GAP);
-    let mut all = RgbImage::from_pixel((columns * (width + GAP)).saturating_sub(GAP), total_height, PAPER);
+    let mut all =
+        RgbImage::from_pixel((columns * (width + GAP)).saturating_sub(GAP), total_height, BACKGROUND);
     let mut top = 0;
     for (row, height) in scaled.iter().zip(heights) {
         for (column, picture) in row.iter().enumerate() {

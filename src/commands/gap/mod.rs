@@ -87,6 +87,6 @@ fn words(stage: Progress) -> &'static str {
         Progress::Measuring => "measuring lines and carpet in the pictures",
         Progress::Testing => "testing every effect",
         Progress::Fitting => "fitting the extended model",
-        Progress::Evaluating => "judging on frames that no fit has seen",
+        Progress::Evaluating => "measuring the gap on held-out frames",
     }
 }

@@ -43,8 +43,8 @@ pub fn reference(args: &GapArgs, sequence: &Sequence) -> anyhow::Result<Referenc
     let poses = estimates.into_iter().map(|estimate| estimate.map(|estimate| estimate.pose));
     Ok(match source {
         PoseSource::GroundTruth => Reference { poses: poses.collect(), source: ReferenceSource::Measured },
-        PoseSource::File { .. } => tagged(sequence, poses.map(|pose| pose.map(CameraPose::planar))),
-        PoseSource::Filter { .. } => tagged(sequence, settled.into_iter()),
+        PoseSource::File { .. } => estimated(sequence, poses.map(|pose| pose.map(CameraPose::planar))),
+        PoseSource::Filter { .. } => estimated(sequence, settled.into_iter()),
     })
 }
 
@@ -61,7 +61,7 @@ fn plan(args: &GapArgs, sequence: &Sequence) -> Plan {
 
 /// Combines planar poses from the pictures with the height, pitch and roll that the robot knows. Height, pitch and roll from
 /// the pictures would absorb an error of the mount pose.
-fn tagged(sequence: &Sequence, planar: impl Iterator<Item = Option<Pose2>>) -> Reference {
+fn estimated(sequence: &Sequence, planar: impl Iterator<Item = Option<Pose2>>) -> Reference {
     let height_m = sequence.setup.mount_height_m;
     let pose = |(planar, frame): (Option<Pose2>, &reality_sim::sequence::FrameRecord)| {
         planar.map(|planar| CameraPose::new(planar, height_m, frame.pitch_rad, frame.roll_rad))
