@@ -67,7 +67,7 @@ fn path_in(folder: &TempDir) -> PathBuf {
 
 fn ingest(path: &Path, recording: &Sequence, poses: &[Option<PoseEstimate>]) {
     let mut database = Database::create_or_open(path).expect("a database");
-    let report = database.ingest(recording, poses, &PoseSource::GroundTruth, |_| {}).expect("pictures");
+    let report = database.ingest(recording, poses, &PoseSource::GroundTruth).expect("pictures");
     assert_eq!(report.added, recording.frames.len(), "all of them are new");
 }
 

@@ -62,7 +62,7 @@ fn store(walk: &Sequence) -> (TempDir, Arc<Archive>) {
     };
     let poses: Vec<_> = walk.reference_poses().enumerate().map(estimate).collect();
     let mut database = Database::create_or_open(&path).expect("a database");
-    database.ingest(walk, &poses, &PoseSource::GroundTruth, |_| ()).expect("pictures of the walk");
+    database.ingest(walk, &poses, &PoseSource::GroundTruth).expect("pictures of the walk");
     let archive = Archive::open(&path, 1 << 30).expect("a database");
     (folder, Arc::new(archive))
 }

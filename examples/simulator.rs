@@ -80,6 +80,6 @@ fn line_to_the_left(picture: &RgbImage, camera: &Camera, usual: CameraPose) -> O
 fn demonstration(path: &Path) -> Result<&Path, Box<dyn Error>> {
     let walk = Sequence::open(Path::new("assets/walk"))?;
     let poses: Vec<_> = walk.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
-    Database::create_or_open(path)?.ingest(&walk, &poses, &PoseSource::GroundTruth, |_| ())?;
+    Database::create_or_open(path)?.ingest(&walk, &poses, &PoseSource::GroundTruth)?;
     Ok(path)
 }

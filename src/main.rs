@@ -27,7 +27,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             let advice = advice(&error).map_or_else(String::new, |advice| format!(" ({advice})"));
-            eprintln!("error: {}{advice}", one_line(&format!("{error:#}")));
+            eprintln!("error: {}{advice}", message(&error));
             ExitCode::FAILURE
         }
     }
@@ -38,4 +38,17 @@ fn main() -> ExitCode {
 fn quiet_drivers() {
     // SAFETY: the program has no other thread yet that could read the environment at the same time.
     unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+}
+
+/// Joins the messages of an error and its causes on one line. A cause that the message already quotes is left out.
+fn message(error: &anyhow::Error) -> String {
+    error.chain().map(one_line).fold(String::new(), |message, cause| {
+        if message.is_empty() {
+            cause
+        } else if message.contains(&cause) {
+            message
+        } else {
+            format!("{message}: {cause}")
+        }
+    })
 }

@@ -58,7 +58,7 @@ fn synthesizer(sequence: &Sequence) -> anyhow::Result<(tempfile::TempDir, Synthe
     let path = folder.path().join("walk.db");
     let mut database = Database::create_or_open(&path)?;
     let poses: Vec<_> = sequence.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
-    database.ingest(sequence, &poses, &PoseSource::GroundTruth, |_| ())?;
+    database.ingest(sequence, &poses, &PoseSource::GroundTruth)?;
     let archive = Archive::open(&path, 1 << 30)?;
     if let Some(hall) = measure_hall(&archive)? {
         database.set_hall(archive.images()[0].field_id, &hall)?;

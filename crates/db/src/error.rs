@@ -1,6 +1,7 @@
 //! Errors of a database: which file, what is wrong with it, and the remedy, in one line.
 
 use std::{
+    error::Error,
     io,
     path::{Path, PathBuf},
 };
@@ -18,6 +19,7 @@ pub enum DbError {
         /// Path of the database.
         path: PathBuf,
         /// What is wrong.
+        #[source]
         fault: DbFault,
     },
     /// The fault is in one of a recording's files, or in a picture, camera or field in the database. In the latter case
@@ -44,10 +46,10 @@ pub enum DbFault {
     #[error("is not a regular file: give the database's file")]
     NotAFile,
     /// The file can be neither read nor created.
-    #[error("cannot be opened ({message}): check that its folder exists, and the permissions of both")]
+    #[error("cannot be opened ({}): check that its folder exists, and the permissions of both", one_line(.source))]
     CannotOpen {
-        /// Message of SQLite or the operating system.
-        message: String,
+        /// Error of SQLite or the operating system.
+        source: Box<dyn Error + Send + Sync>,
     },
     /// The file is of another kind, empty, or another program's database.
     #[error(
@@ -81,10 +83,10 @@ pub enum DbFault {
         expected_bytes: u64,
     },
     /// SQLite has found damage.
-    #[error("is damaged ({message}): copy it again, or build it again")]
+    #[error("is damaged ({}): copy it again, or build it again", one_line(.source))]
     Damaged {
-        /// Message of SQLite.
-        message: String,
+        /// Error of SQLite.
+        source: Box<dyn Error + Send + Sync>,
     },
     /// A row contains something that no program of this version writes.
     #[error("is damaged ({table} {id}: {problem}): copy it again, or build it again")]
@@ -120,10 +122,10 @@ pub enum DbFault {
     #[error("the disk is full: make space, then start again; what is in it stays")]
     DiskFull,
     /// The operating system failed to read or write.
-    #[error("cannot be read or written ({message}): check the disk")]
+    #[error("cannot be read or written ({}): check the disk", one_line(.source))]
     Io {
-        /// Message of SQLite.
-        message: String,
+        /// Error of SQLite.
+        source: Box<dyn Error + Send + Sync>,
     },
     /// The image does not exist.
     #[error("there is no image {id}: take one that the list of images holds")]
@@ -170,8 +172,6 @@ pub enum DbFault {
 
 impl From<rusqlite::Error> for DbFault {
     fn from(error: rusqlite::Error) -> Self {
-        // SQLite may quote a statement of several lines.
-        let message = one_line(&error.to_string());
         let extended = error.sqlite_error().map_or(0, |error| error.extended_code);
         match error.sqlite_error_code() {
             Some(ErrorCode::NotADatabase) => Self::NotADatabase,
@@ -179,10 +179,12 @@ impl From<rusqlite::Error> for DbFault {
             Some(ErrorCode::ReadOnly) if extended == ffi::SQLITE_READONLY_ROLLBACK => Self::UnfinishedWrite,
             Some(ErrorCode::ReadOnly) => Self::ReadOnly,
             Some(ErrorCode::DiskFull) => Self::DiskFull,
-            Some(ErrorCode::CannotOpen | ErrorCode::PermissionDenied) => Self::CannotOpen { message },
-            Some(ErrorCode::SystemIoFailure) => Self::Io { message },
+            Some(ErrorCode::CannotOpen | ErrorCode::PermissionDenied) => {
+                Self::CannotOpen { source: error.into() }
+            },
+            Some(ErrorCode::SystemIoFailure) => Self::Io { source: error.into() },
             // The tables are this program's own: contents that do not fit them are damage.
-            _ => Self::Damaged { message },
+            _ => Self::Damaged { source: error.into() },
         }
     }
 }
@@ -192,7 +194,7 @@ impl From<io::Error> for DbFault {
         if error.kind() == io::ErrorKind::NotFound {
             Self::Missing
         } else {
-            Self::CannotOpen { message: error.to_string() }
+            Self::CannotOpen { source: error.into() }
         }
     }
 }

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Largest number of frames that are committed together.
-const BATCH_FRAMES: usize = 64;
+pub(crate) const BATCH_FRAMES: usize = 64;
 
 /// Size at which a transaction is committed, bytes: until then all of it stays in the writer's memory.
 const BATCH_BYTES: usize = 16 << 20;
@@ -33,61 +33,28 @@ pub struct IngestReport {
 impl Database {
     /// Adds a sequence's pictures, as their files are, with one pose per frame; frames without a pose are left out.
     ///
-    /// Frames are committed in batches; after each, `progress` gets the number of frames done. After an error, or when the
-    /// program is killed, all committed batches stay, and the next call continues where this one ended. Frames that are
-    /// already in the database are compared: another picture, pose, camera or field is [`DbFault::Changed`]. A sequence is
-    /// recognised, wherever it is, by its name and the record of its first frame.
+    /// Frames are committed in batches. After an error, or when the program is killed, all committed batches stay, and the
+    /// next call continues where this one ended. Frames that are already in the database are compared: another picture,
+    /// pose, camera or field is [`DbFault::Changed`]. A sequence is recognised, wherever it is, by its name and the record
+    /// of its first frame.
     pub fn ingest(
         &mut self,
         sequence: &Sequence,
         poses: &[Option<PoseEstimate>],
         source: &PoseSource,
-        progress: impl FnMut(usize),
     ) -> Result<IngestReport, DbError> {
-        self.ingest_batches(sequence, poses, source, |_| true, progress)
+        self.ingest_while(sequence, poses, source, |_| true)
     }
 
-    /// Works like [`Database::ingest`], but calls `progress` with the number of frames done after every frame, before it
-    /// is committed, and stops when `progress` returns false: the frames done are committed, and the rest is left for
+    /// Works like [`Database::ingest`] while `goes_on` returns true. It gets the number of frames done after every frame,
+    /// before that frame is committed; once it returns false, the frames done are committed, and the rest is left for
     /// another call.
     pub fn ingest_while(
         &mut self,
         sequence: &Sequence,
         poses: &[Option<PoseEstimate>],
         source: &PoseSource,
-        progress: impl FnMut(usize) -> bool,
-    ) -> Result<IngestReport, DbError> {
-        self.ingest_batches(sequence, poses, source, progress, |_| {})
-    }
-
-    /// Adds one image in its own transaction. An image that the database already holds, recognised by its frame number in
-    /// the recording, is compared: another picture, pose, time, camera or field is [`DbFault::Changed`].
-    pub fn insert(&mut self, recording: &Recording, image: &NewImage<'_>) -> Result<Insertion, DbError> {
-        let path = self.path().to_path_buf();
-        let fail = |fault| DbError::new(&path, fault);
-        if !self.is_writer {
-            return Err(fail(DbFault::OpenedForReading));
-        }
-        insert::check(&path, recording, image)?;
-        let insert_now = |connection: &mut Connection| -> Result<Insertion, DbFault> {
-            let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
-            let shared = Shared::find_or_add(&transaction, recording)?;
-            let insertion = insert(&transaction, recording, &shared, image)?;
-            transaction.commit()?;
-            Ok(insertion)
-        };
-        let connection = self.connection.get_mut().unwrap_or_else(PoisonError::into_inner);
-        insert_now(connection).map_err(fail)
-    }
-
-    /// Ingests in batches; `goes_on` gets the number of frames done after every frame, `committed` after every batch.
-    fn ingest_batches(
-        &mut self,
-        sequence: &Sequence,
-        poses: &[Option<PoseEstimate>],
-        source: &PoseSource,
         mut goes_on: impl FnMut(usize) -> bool,
-        mut committed: impl FnMut(usize),
     ) -> Result<IngestReport, DbError> {
         let path = self.path().to_path_buf();
         let fail = |fault| DbError::new(&path, fault);
@@ -110,9 +77,28 @@ impl Database {
             };
             done = frames.add_batch(&transaction, done, &mut report, &mut goes_on)?;
             transaction.commit().map_err(|error| fail(error.into()))?;
-            committed(done);
         }
         Ok(report)
+    }
+
+    /// Adds one image in its own transaction. An image that the database already holds, recognised by its frame number in
+    /// the recording, is compared: another picture, pose, time, camera or field is [`DbFault::Changed`].
+    pub fn insert(&mut self, recording: &Recording, image: &NewImage<'_>) -> Result<Insertion, DbError> {
+        let path = self.path().to_path_buf();
+        let fail = |fault| DbError::new(&path, fault);
+        if !self.is_writer {
+            return Err(fail(DbFault::OpenedForReading));
+        }
+        insert::check(&path, recording, image)?;
+        let insert_now = |connection: &mut Connection| -> Result<Insertion, DbFault> {
+            let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+            let shared = Shared::find_or_add(&transaction, recording)?;
+            let insertion = insert(&transaction, recording, &shared, image)?;
+            transaction.commit()?;
+            Ok(insertion)
+        };
+        let connection = self.connection.get_mut().unwrap_or_else(PoisonError::into_inner);
+        insert_now(connection).map_err(fail)
     }
 }
 
@@ -125,7 +111,7 @@ fn check_poses(sequence: &Sequence, poses: &[Option<PoseEstimate>]) -> Result<()
     poses.iter().position(is_bad).map_or(Ok(()), |frame_index| Err(DbFault::PoseImpossible { frame_index }))
 }
 
-/// Frames of a folder with everything that they share.
+/// Frames of a sequence with everything that they share.
 struct Frames<'a> {
     path: &'a Path,
     sequence: &'a Sequence,

@@ -29,7 +29,7 @@
 //! let walk = Sequence::open(Path::new("assets/walk"))?;
 //! let poses: Vec<_> = walk.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
 //! let mut database = Database::create_or_open(file)?;
-//! let report = database.ingest(&walk, &poses, &PoseSource::GroundTruth, |_| ())?;
+//! let report = database.ingest(&walk, &poses, &PoseSource::GroundTruth)?;
 //! assert_eq!(report.added, 60);
 //!
 //! let poses: Vec<_> = database.images()?.iter().map(|image| image.pose).collect();

@@ -41,7 +41,7 @@
 //! # let file = file.as_path();
 //! let walk = Sequence::open(Path::new("assets/walk"))?;
 //! let poses: Vec<_> = walk.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
-//! Database::create_or_open(file)?.ingest(&walk, &poses, &PoseSource::GroundTruth, |_| ())?;
+//! Database::create_or_open(file)?.ingest(&walk, &poses, &PoseSource::GroundTruth)?;
 //!
 //! let archive = Arc::new(Archive::open(file, 256 << 20)?);
 //! let usual = archive.usual_pose();

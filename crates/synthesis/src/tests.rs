@@ -28,7 +28,7 @@ fn stored(sequence: &Sequence) -> (TempDir, Archive) {
     let poses: Vec<Option<PoseEstimate>> =
         sequence.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
     let mut database = Database::create_or_open(&path).unwrap();
-    database.ingest(sequence, &poses, &PoseSource::GroundTruth, |_| ()).unwrap();
+    database.ingest(sequence, &poses, &PoseSource::GroundTruth).unwrap();
     let archive = Archive::open(&path, 64 << 20).unwrap();
     (folder, archive)
 }
@@ -103,7 +103,7 @@ fn the_recorded_picture_is_that_of_the_lens_wanted() {
     walk.frames[9].reference_pose = Some(beside);
     let poses: Vec<_> = walk.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
     let mut database = Database::create_or_open(&path).unwrap();
-    database.ingest(&walk, &poses, &PoseSource::GroundTruth, |_| ()).unwrap();
+    database.ingest(&walk, &poses, &PoseSource::GroundTruth).unwrap();
     let synthesizer = Synthesizer::new(Arc::new(Archive::open(&path, 64 << 20).unwrap()));
     assert_eq!(synthesizer.camera(), archive.camera_of(7), "of equals the first one");
     assert_eq!(synthesizer.image_at(beside, &Auto).unwrap().picture, recorded);

@@ -26,7 +26,7 @@ fn database(folder: &Path) -> PathBuf {
     let path = folder.join("walk.db");
     let poses: Vec<_> = sequence.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
     let mut database = Database::create_or_open(&path).unwrap();
-    database.ingest(&sequence, &poses, &PoseSource::GroundTruth, |_| {}).unwrap();
+    database.ingest(&sequence, &poses, &PoseSource::GroundTruth).unwrap();
     path
 }
 

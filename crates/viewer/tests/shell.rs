@@ -32,7 +32,7 @@ fn database() -> (TempDir, PathBuf) {
     let folder = tempdir().unwrap();
     let path = folder.path().join("walk.db");
     let mut database = Database::create_or_open(&path).unwrap();
-    database.ingest(&sequence, &poses, &PoseSource::GroundTruth, |_| {}).unwrap();
+    database.ingest(&sequence, &poses, &PoseSource::GroundTruth).unwrap();
     (folder, path)
 }
 

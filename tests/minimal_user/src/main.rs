@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     walk.frames.truncate(6);
     let field: &FieldDimensions = &walk.field;
     let poses: Vec<_> = walk.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
-    Database::create_or_open(database)?.ingest(&walk, &poses, &PoseSource::GroundTruth, |_| ())?;
+    Database::create_or_open(database)?.ingest(&walk, &poses, &PoseSource::GroundTruth)?;
 
     // The camera is a simulator's own, without distortion.
     let camera = Camera::new([160, 120], [80.0, 80.0, 79.5, 59.5], Distortion::Pinhole)?;

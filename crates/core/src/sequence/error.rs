@@ -16,6 +16,7 @@ pub struct SequenceError {
     /// Line in the file, from 1, if the fault has one.
     pub line: Option<usize>,
     /// Fault of the file or folder.
+    #[source]
     pub fault: Fault,
 }
 
@@ -55,10 +56,10 @@ pub enum Fault {
     },
     /// The operating system cannot read the file.
     #[error("cannot be read ({0}): check the permissions and the disk")]
-    Unreadable(io::Error),
+    Unreadable(#[source] io::Error),
     /// The operating system cannot write the file.
     #[error("cannot be written ({0}): check the permissions and the space on the disk")]
-    Unwritable(io::Error),
+    Unwritable(#[source] io::Error),
     /// The file is not UTF-8 text.
     #[error("is not UTF-8 text: save the file as UTF-8")]
     NotUtf8,
@@ -102,10 +103,10 @@ pub enum Fault {
     },
     /// The camera's parameters cannot be used.
     #[error("{0}: correct the camera's numbers")]
-    Camera(InvalidCamera),
+    Camera(#[source] InvalidCamera),
     /// The field cannot be drawn.
     #[error("{0}: correct the field's dimensions")]
-    Field(InvalidField),
+    Field(#[source] InvalidField),
     /// A file name is empty, absolute or leads out of the sequence's folder.
     #[error(
         "{name} is not a path inside the sequence's folder: give it relative to the folder, without `..`"
@@ -245,7 +246,8 @@ pub(super) fn excerpt(text: &str) -> String {
 }
 
 /// Puts a message on one line: replaces line breaks and other control characters by spaces, and joins runs of spaces.
-pub fn one_line(message: &str) -> String {
+pub fn one_line(message: impl fmt::Display) -> String {
+    let message = message.to_string();
     let printable: String =
         message.chars().map(|letter| if is_unprintable(letter) { ' ' } else { letter }).collect();
     printable.split_whitespace().collect::<Vec<_>>().join(" ")

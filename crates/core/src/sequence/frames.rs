@@ -45,7 +45,7 @@ pub(super) fn parse_frames(path: &Path, text: &str) -> Result<Vec<FrameRecord>, 
         let fail = |fault| SequenceError::at(path, record_line(text, offset), fault);
         let more = reader
             .read_record(&mut record)
-            .map_err(|error| fail(Fault::Csv { message: one_line(&error.to_string()) }))?;
+            .map_err(|error| fail(Fault::Csv { message: one_line(error) }))?;
         if !more {
             break;
         }

@@ -56,7 +56,7 @@ pub fn save_image(path: &Path, picture: &RgbImage) -> Result<(), SequenceError> 
         ),
         _ => return Err(fail(Fault::ImageFormat)),
     };
-    written.map_err(|error| fail(Fault::ImageDamaged { message: one_line(&error.to_string()) }))?;
+    written.map_err(|error| fail(Fault::ImageDamaged { message: one_line(error) }))?;
     create_parent(path)?;
     write_atomically(path, &bytes)
 }
@@ -126,7 +126,7 @@ fn decode_fault(error: &ImageError) -> Fault {
         ImageError::Unsupported(error) if matches!(error.kind(), UnsupportedErrorKind::Format(_)) => {
             Fault::ImageFormat
         }
-        error => Fault::ImageDamaged { message: one_line(&error.to_string()) },
+        error => Fault::ImageDamaged { message: one_line(error) },
     }
 }
 

@@ -29,7 +29,7 @@ pub(super) fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, S
 /// Prints values as TOML text.
 pub(super) fn print<T: Serialize>(path: &Path, values: &T) -> Result<String, SequenceError> {
     toml::to_string(values)
-        .map_err(|error| SequenceError::of_file(path, Fault::Toml { message: one_line(&error.to_string()) }))
+        .map_err(|error| SequenceError::of_file(path, Fault::Toml { message: one_line(error) }))
 }
 
 /// Returns the line, from 1, of a value given by its keys: `["mount", "height_m"]`.

@@ -40,11 +40,8 @@ fn frames_without_a_pose_are_left_out_until_they_have_one() {
     let mut poses = estimates(&sequence);
     poses[3] = None;
     poses[59] = None;
-    let mut seen = Vec::new();
-    let report =
-        database.ingest(&sequence, &poses, &PoseSource::GroundTruth, |done| seen.push(done)).unwrap();
+    let report = database.ingest(&sequence, &poses, &PoseSource::GroundTruth).unwrap();
     assert_eq!(report, IngestReport { added: 58, already_there: 0, without_pose: 2 });
-    assert_eq!(seen, [60]);
     assert!(database.images().unwrap().iter().all(|image| image.frame_index != 3));
     let report = add(&mut database, &sequence).unwrap();
     assert_eq!(report, IngestReport { added: 2, already_there: 58, without_pose: 0 });
@@ -174,12 +171,17 @@ fn large_pictures_are_committed_before_they_fill_the_memory() {
     (sequence.setup.camera.width, sequence.setup.camera.height) = noise.dimensions();
     sequence.folder = folder.path().to_path_buf();
     sequence.frames.iter_mut().for_each(|frame| frame.image = "noise.png".into());
-    let mut database = Database::create_or_open(&folder.path().join("a.db")).unwrap();
-    let mut seen = Vec::new();
+    let path = folder.path().join("a.db");
+    let mut database = Database::create_or_open(&path).unwrap();
+    let mut committed = Vec::new();
+    let count_committed = |_| {
+        committed.push(Database::open(&path).unwrap().images().unwrap().len());
+        true
+    };
     database
-        .ingest(&sequence, &estimates(&sequence), &PoseSource::GroundTruth, |done| seen.push(done))
+        .ingest_while(&sequence, &estimates(&sequence), &PoseSource::GroundTruth, count_committed)
         .unwrap();
-    assert_eq!(seen, [2, 4, 5]);
+    assert_eq!(committed, [0, 0, 2, 2, 4]);
     assert_eq!(database.picture(5).unwrap(), noise);
 }
 
@@ -201,7 +203,7 @@ fn poses_that_are_no_numbers_or_too_few_are_refused() {
     let path = folder.path().join("a.db");
     let mut database = Database::create_or_open(&path).unwrap();
     let mut ingest = |poses: &[Option<PoseEstimate>], part: &str| {
-        let error = database.ingest(&sequence, poses, &PoseSource::GroundTruth, |_| {}).unwrap_err();
+        let error = database.ingest(&sequence, poses, &PoseSource::GroundTruth).unwrap_err();
         assert_message(&error, &path, &[part]);
     };
     let good = estimates(&sequence);

@@ -11,6 +11,7 @@ use std::{
 };
 
 use super::*;
+use crate::ingest::BATCH_FRAMES;
 
 /// Environment variable that names the database for the writer.
 const DATABASE: &str = "REALITY_SIM_DB_TEST_DATABASE";
@@ -28,8 +29,16 @@ fn the_writer_that_is_killed() {
     let mut progress: File = OpenOptions::new().append(true).create(true).open(progress_file(&path)).unwrap();
     let sequence = long_walk(FRAMES);
     let mut database = Database::create_or_open(&path).unwrap();
-    let commit = |_| progress.write_all(b".").unwrap();
-    database.ingest(&sequence, &estimates(&sequence), &PoseSource::GroundTruth, commit).unwrap();
+    let mut is_committed = || progress.write_all(b".").unwrap();
+    let note_batches = |done: usize| {
+        // Once a batch has its first frame, the batches before it are committed.
+        if done > 1 && done % BATCH_FRAMES == 1 {
+            is_committed();
+        }
+        true
+    };
+    database.ingest_while(&sequence, &estimates(&sequence), &PoseSource::GroundTruth, note_batches).unwrap();
+    is_committed();
 }
 
 fn start_writer(database: &Path) -> Child {
@@ -68,7 +77,7 @@ fn killed_at_any_moment_it_holds_what_was_committed_and_goes_on() {
         let _ = fs::remove_file(progress_file(&path));
         let mut writer = start_writer(&path);
         // The batches that are already there are compared first.
-        let wanted = (held / 64 + attempt % 2).min(FRAMES / 64);
+        let wanted = (held / BATCH_FRAMES + attempt % 2).min(FRAMES / BATCH_FRAMES);
         kills +=
             usize::from(kill_after(&mut writer, &path, wanted, Duration::from_micros(2700 * attempt as u64)));
         let Ok(database) = Database::open(&path) else {
@@ -76,7 +85,7 @@ fn killed_at_any_moment_it_holds_what_was_committed_and_goes_on() {
             continue;
         };
         let count = database.images().unwrap().len();
-        assert!(count >= held.max(64 * batches(&path)), "{count} images, {held} before");
+        assert!(count >= held.max(BATCH_FRAMES * batches(&path)), "{count} images, {held} before");
         let intact: String = database
             .connection
             .lock()

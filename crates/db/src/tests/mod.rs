@@ -47,7 +47,7 @@ fn estimates(sequence: &Sequence) -> Vec<Option<PoseEstimate>> {
 }
 
 fn add(database: &mut Database, sequence: &Sequence) -> Result<IngestReport, DbError> {
-    database.ingest(sequence, &estimates(sequence), &PoseSource::GroundTruth, |_| {})
+    database.ingest(sequence, &estimates(sequence), &PoseSource::GroundTruth)
 }
 
 /// Makes a database of a sequence; its folder is otherwise empty.

@@ -1,5 +1,7 @@
 //! Files that are not a complete image database of this version.
 
+use std::error::Error;
+
 use super::*;
 
 #[test]
@@ -23,6 +25,15 @@ fn what_is_not_a_database_is_refused_and_left_alone() {
     }
     let error = Database::create_or_open(&folder.path().join("none/a.db")).unwrap_err();
     assert_message(&error, folder.path(), &["cannot be opened", "check that its folder exists"]);
+}
+
+#[test]
+fn what_sqlite_says_is_kept_as_the_source_of_the_fault() {
+    let folder = tempfile::tempdir().unwrap();
+    let error = Database::create_or_open(&folder.path().join("none/a.db")).unwrap_err();
+    let fault = error.source().unwrap();
+    assert!(matches!(fault.downcast_ref(), Some(DbFault::CannotOpen { .. })));
+    assert!(fault.source().is_some_and(<dyn Error>::is::<rusqlite::Error>));
 }
 
 #[test]

@@ -44,7 +44,7 @@ fn every_kind_of_pose_source_and_no_covariance_come_out_as_they_went_in() {
         let pose = sequence.frames[index].reference_pose.unwrap();
         let mut poses = vec![None; sequence.frames.len()];
         poses[index] = Some(PoseEstimate { pose, covariance: None });
-        database.ingest(&sequence, &poses, source, |_| {}).unwrap();
+        database.ingest(&sequence, &poses, source).unwrap();
     }
     let images = database.images().unwrap();
     let stored = database.pose_sources().unwrap();
