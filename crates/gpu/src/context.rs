@@ -129,8 +129,9 @@ impl GpuContext {
         &self.adapter
     }
 
-    /// Returns an error with everything that has failed on the device so far.
-    pub fn status(&self) -> Result<(), GpuError> {
+    /// Fails if the device has failed. The device reports a failure aside from the call that caused it, so every function
+    /// of this package that submits work and reads nothing back ends with this check; [`GpuContext::read`] contains it.
+    pub(crate) fn check(&self) -> Result<(), GpuError> {
         let errors = self.errors.lock().unwrap_or_else(PoisonError::into_inner);
         if errors.is_empty() { Ok(()) } else { Err(GpuError::Failed { reason: errors.join("; ") }) }
     }
@@ -159,7 +160,7 @@ impl GpuContext {
             let _ = sender.send(result);
         });
         self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| failed(error.to_string()))?;
-        self.status()?;
+        self.check()?;
         match receiver.try_recv() {
             Ok(Ok(())) => {}
             Ok(Err(error)) => return Err(failed(error.to_string())),

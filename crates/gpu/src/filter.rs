@@ -94,7 +94,7 @@ impl GpuFilter {
         let picture = PictureStage::new(&context, camera, &model)?;
         let scoring = LineScoring::new(&context, model)?;
         let (buffers, kernels) = bound(&context, &config, &picture, &scoring)?;
-        context.status()?;
+        context.check()?;
         Ok(Self {
             context,
             config,
@@ -228,7 +228,7 @@ impl Filter for GpuFilter {
         self.scoring.set_levels(picture.levels);
         self.picture.load(&self.context, picture);
         self.picture_waits = true;
-        Ok(self.context.status()?)
+        Ok(self.context.check()?)
     }
 
     fn prefetch(&mut self, next: &Arc<RgbImage>) {
@@ -248,7 +248,7 @@ impl Filter for GpuFilter {
         // Any motion before this moment no longer matters: the particles now have new poses.
         self.motion_waits = None;
         self.write_particles(&placed(&self.config, modes, sigma, stream));
-        Ok(self.context.status()?)
+        Ok(self.context.check()?)
     }
 
     fn predict(&mut self, motion: Option<Motion2>) -> Result<(), BackendError> {
@@ -270,7 +270,7 @@ impl Filter for GpuFilter {
         let mirrored: Vec<CameraPose> =
             self.read_particles()?.into_iter().map(CameraPose::mirrored).collect();
         self.write_particles(&mirrored);
-        Ok(())
+        Ok(self.context.check()?)
     }
 
     fn particles(&self) -> Result<Vec<CameraPose>, BackendError> {
@@ -430,7 +430,7 @@ mod tests {
             let is_residual = config.resampling == Resampling::Residual;
             assert_same_particles(&gpu.particles().unwrap(), cpu.particles(), is_residual, &about);
         }
-        context.status().unwrap();
+        context.check().unwrap();
     }
 
     /// Allows for a particle whose expected number of copies is nearly whole: it may get one more or less, and in the
@@ -465,7 +465,7 @@ mod tests {
         let too_many = FilterConfig { particles: 1_000_000_000, ..FilterConfig::default() };
         let error = filter_on(&context, too_many).unwrap_err();
         assert!(matches!(error, GpuError::TooLarge { .. }), "{error}");
-        context.status().unwrap();
+        context.check().unwrap();
     }
 
     #[test]
@@ -481,6 +481,7 @@ mod tests {
             assert!(matches!(error.get_ref().downcast_ref(), Some(GpuError::Failed { .. })), "{error}");
             assert!(error.to_string().len() < 2000, "{error}");
             assert!(filter.particles().is_err() && filter.alternatives().is_empty());
+            assert!(filter.initialize(&[(Pose2::default(), 1.0)], SIGMA).is_err(), "it writes and reads nothing");
         }
         assert!(filter_on(&context, FilterConfig::default()).is_err());
     }

@@ -343,6 +343,6 @@ mod tests {
                 }
             }
         }
-        context.status().unwrap();
+        context.check().unwrap();
     }
 }

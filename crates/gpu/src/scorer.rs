@@ -54,7 +54,7 @@ impl GpuScorer {
         let picture = PictureStage::new(&context, camera, &model)?;
         let scoring = LineScoring::new(&context, model)?;
         let poses = Mutex::new(PoseBuffers::new(&context, &picture, &scoring, 1024)?);
-        context.status()?;
+        context.check()?;
         Ok(Self { context, picture, scoring, poses })
     }
 
@@ -92,7 +92,7 @@ impl Scorer for GpuScorer {
         self.scoring.set_levels(picture.levels);
         self.picture.load(&self.context, picture);
         self.context.submit(|encoder| run_steps(encoder, self.picture.steps()));
-        Ok(self.context.status()?)
+        Ok(self.context.check()?)
     }
 
     fn log_weights(&self, poses: &[CameraPose]) -> Result<Vec<f64>, BackendError> {

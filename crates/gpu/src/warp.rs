@@ -74,7 +74,7 @@ impl GpuWarper {
             kept: Mutex::new(kept),
             context,
         };
-        warper.context.status()?;
+        warper.context.check()?;
         Ok(warper)
     }
 
@@ -296,6 +296,6 @@ mod tests {
             assert!(error.to_string().contains(words), "{error}");
         }
         drawn(&warper, [20, 16], &[plain([40, 30], 50)]);
-        context.status().unwrap();
+        context.check().unwrap();
     }
 }
