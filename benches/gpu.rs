@@ -17,6 +17,7 @@ use reality_sim::{
     gpu::{GpuBackend, GpuContext, GpuFilter},
     mount::MountPoseSigma,
     observation::{CpuScorer, ObservationConfig},
+    refine::{RefineConfig, Refiner},
     search::{GlobalSearch, SearchConfig, SearchGrid},
 };
 
@@ -154,10 +155,10 @@ fn search(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dyn Back
     let mut group = criterion.benchmark_group("grid_search");
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(poses as u64));
     for (device, backend) in backends {
-        let (config, sigma) = (SearchConfig::default(), MountPoseSigma::default());
-        let search = GlobalSearch::with_backend(&walk.setup.camera, &walk.field, config, sigma, *backend);
+        let (camera, config) = (&walk.setup.camera, SearchConfig::default().with_grid(Some(GRID)));
+        let refiner = Refiner::new(camera, &walk.field, RefineConfig::default(), MountPoseSigma::default());
+        let search = GlobalSearch::with_backend(camera, &walk.field, config, refiner, *backend);
         let mut search = search.expect("a device that works");
-        search.set_grid(GRID);
         group.bench_function(BenchmarkId::new(*device, poses), |bencher| {
             bencher.iter(|| search.best_on_grid(scene.prepared(), scene.mount(), None));
         });

@@ -24,7 +24,7 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
         let mut group = criterion.benchmark_group(format!("scaling/{threads}_threads"));
         group.sampling_mode(SamplingMode::Flat);
         for particles in PARTICLES {
-            let config = FilterConfig { particles, iterations: 1, ..FilterConfig::default() };
+            let config = FilterConfig::default().with_particles(particles).with_iterations(1);
             let filter = ParticleFilter::new(config, scene.pose(), sigma);
             group.throughput(Throughput::Elements(particles as u64));
             group.bench_function(BenchmarkId::from_parameter(particles), |bencher| {

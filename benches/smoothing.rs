@@ -31,7 +31,8 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     let mut group = criterion.benchmark_group("smoothing");
     group.throughput(Throughput::Elements(FRAMES as u64));
     group.bench_function("trajectory", |bencher| {
-        bencher.iter(|| smooth_trajectory(&frames, config.mount_sigma, config.filter.noise));
+        bencher
+            .iter(|| smooth_trajectory(&frames, &config.smoothing, config.mount_sigma, config.filter.noise));
     });
     group.finish();
 }

@@ -23,7 +23,8 @@ pub fn write(recordings: &[Recording], seeds: u64, text: &mut String) -> anyhow:
         for blur_sigma_px in BLURS_PX {
             for &alpha in alphas {
                 let label = format!("{} px, α {alpha}{}", blur_sigma_px, unmasked(mask_border));
-                let config = ObservationConfig { blur_sigma_px, alpha, mask_border, ..gauss };
+                let config =
+                    gauss.with_blur_sigma_px(blur_sigma_px).with_alpha(alpha).with_mask_border(mask_border);
                 row(recordings, seeds, &label, config, text)?;
             }
         }
@@ -33,7 +34,8 @@ pub fn write(recordings: &[Recording], seeds: u64, text: &mut String) -> anyhow:
     for (mask_border, alphas) in [(true, &DISTANCE_ALPHAS[..]), (false, &DISTANCE_ALPHAS[1..2])] {
         for &alpha in alphas {
             let label = format!("α {alpha}{}", unmasked(mask_border));
-            row(recordings, seeds, &label, ObservationConfig { alpha, mask_border, ..distance }, text)?;
+            let config = distance.with_alpha(alpha).with_mask_border(mask_border);
+            row(recordings, seeds, &label, config, text)?;
         }
     }
     Ok(())

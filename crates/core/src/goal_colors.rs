@@ -3,17 +3,19 @@
 use glam::DVec3;
 use image::RgbImage;
 
-use crate::{camera::Camera, field::FieldDimensions, pose::CameraPose};
+use crate::{camera::Camera, field::FieldDimensions, pose::CameraPose, setters::setters};
 
 /// Evidence that the colours of goals give.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct GoalColorConfig {
-    /// Number of samples along each post and crossbar, 24.
+    /// Number of samples along each post and crossbar, 24: one every 4 to 10 cm, which is a few pixels apart.
     pub samples: u32,
-    /// Log-odds of one sample whose colour is clearly that of one goal, 0.1: neighbouring samples are not independent.
+    /// Log-odds of one sample whose colour is clearly that of one goal, 0.1: neighbouring samples are not independent, so
+    /// that a whole goal in view gives about as much as one picture may.
     pub sample_log_odds: f64,
-    /// Maximum log-odds of one picture, 2: pictures of the same wall are not independent.
+    /// Maximum log-odds of one picture, 2: pictures of the same wall are not independent. Two pictures are needed for
+    /// [`crate::localization::TrackConfig::max_mirrored_probability`].
     pub max_log_odds: f64,
     /// Minimum distance between the goals' chromaticities, 0.05: nearer ones count as one colour.
     pub min_color_distance: f64,
@@ -21,6 +23,14 @@ pub struct GoalColorConfig {
     /// 0.35: below one half no sample matches both.
     pub color_reach: f64,
 }
+
+setters!(GoalColorConfig {
+    with_samples: samples = u32,
+    with_sample_log_odds: sample_log_odds = f64,
+    with_max_log_odds: max_log_odds = f64,
+    with_min_color_distance: min_color_distance = f64,
+    with_color_reach: color_reach = f64,
+});
 
 impl Default for GoalColorConfig {
     fn default() -> Self {

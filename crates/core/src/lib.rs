@@ -63,6 +63,7 @@ pub mod preprocess;
 pub mod refine;
 pub mod search;
 pub mod sequence;
+mod setters;
 pub mod statistics;
 pub mod warp;
 

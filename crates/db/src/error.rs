@@ -181,7 +181,7 @@ impl From<rusqlite::Error> for DbFault {
             Some(ErrorCode::DiskFull) => Self::DiskFull,
             Some(ErrorCode::CannotOpen | ErrorCode::PermissionDenied) => {
                 Self::CannotOpen { source: error.into() }
-            },
+            }
             Some(ErrorCode::SystemIoFailure) => Self::Io { source: error.into() },
             // The tables are this program's own: contents that do not fit them are damage.
             _ => Self::Damaged { source: error.into() },

@@ -350,7 +350,7 @@ fn bound(
 #[cfg(test)]
 mod tests {
     use reality_sim_core::{
-        filter::ParticleFilter,
+        filter::{KldConfig, ParticleFilter},
         observation::{CpuScorer, ObservationKind, Scorer},
         preprocess::Preprocessor,
     };
@@ -384,20 +384,15 @@ mod tests {
         let camera = &twins::cameras().unwrap()[0];
         let preprocessor = Preprocessor::new(camera, field.line_width_m);
         for seed in 0..24_u64 {
-            let config = FilterConfig {
-                seed: seed << 31 | seed,
-                particles: [1, 37, 800, 3000][seed as usize % 4],
-                iterations: 1,
-                resampling: Resampling::ALL[(seed / 4) as usize % 4],
-                estimator: Estimator::ALL[seed as usize % 3],
-                mount_sigma: seed.is_multiple_of(2).then(MountPoseSigma::default),
-                ..FilterConfig::default()
-            };
-            let observation = ObservationConfig {
-                alpha: 3000.0,
-                mask_border: false,
-                ..ObservationConfig::new(ObservationKind::Gauss)
-            };
+            let config = FilterConfig::default()
+                .with_seed(seed << 31 | seed)
+                .with_particles([1, 37, 800, 3000][seed as usize % 4])
+                .with_iterations(1)
+                .with_resampling(Resampling::ALL[(seed / 4) as usize % 4])
+                .with_estimator(Estimator::ALL[seed as usize % 3])
+                .with_mount_sigma(seed.is_multiple_of(2).then(MountPoseSigma::default));
+            let observation =
+                ObservationConfig::new(ObservationKind::Gauss).with_alpha(3000.0).with_mask_border(false);
             let (picture, poses) = twins::scene(camera, seed);
             let (mount, start) = (MountPose::of(poses[0]), poses[0].planar());
             let prepared = preprocessor.prepare(picture, mount);
@@ -459,10 +454,10 @@ mod tests {
     #[test]
     fn what_the_device_cannot_do_is_refused_before_it_is_tried() {
         let context = test_context();
-        let adaptive = FilterConfig { adaptive: Some(Default::default()), ..FilterConfig::default() };
+        let adaptive = FilterConfig::default().with_adaptive(Some(KldConfig::default()));
         let error = filter_on(&context, adaptive).unwrap_err();
         assert!(error.to_string().contains("use the CPU"), "{error}");
-        let too_many = FilterConfig { particles: 1_000_000_000, ..FilterConfig::default() };
+        let too_many = FilterConfig::default().with_particles(1_000_000_000);
         let error = filter_on(&context, too_many).unwrap_err();
         assert!(matches!(error, GpuError::TooLarge { .. }), "{error}");
         context.check().unwrap();
@@ -481,7 +476,10 @@ mod tests {
             assert!(matches!(error.get_ref().downcast_ref(), Some(GpuError::Failed { .. })), "{error}");
             assert!(error.to_string().len() < 2000, "{error}");
             assert!(filter.particles().is_err() && filter.alternatives().is_empty());
-            assert!(filter.initialize(&[(Pose2::default(), 1.0)], SIGMA).is_err(), "it writes and reads nothing");
+            assert!(
+                filter.initialize(&[(Pose2::default(), 1.0)], SIGMA).is_err(),
+                "it writes and reads nothing"
+            );
         }
         assert!(filter_on(&context, FilterConfig::default()).is_err());
     }

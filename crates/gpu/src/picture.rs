@@ -315,7 +315,7 @@ mod tests {
                 (ObservationKind::Distance, 0.0),
                 (ObservationKind::Contrast, 0.7),
             ] {
-                let config = ObservationConfig { blur_sigma_px, ..ObservationConfig::new(kind) };
+                let config = ObservationConfig::new(kind).with_blur_sigma_px(blur_sigma_px);
                 let model = LineModel::new(&camera, &field, config);
                 let mut stage = PictureStage::new(&context, &camera, &model).unwrap();
                 for seed in 0..6 {

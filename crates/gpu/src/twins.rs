@@ -54,7 +54,7 @@ pub fn compare_scores(context: &Arc<GpuContext>, scenes: u64) -> Result<Vec<Scor
     let mut comparisons = Vec::new();
     for kind in ObservationKind::ALL {
         // A picture of noise has no field border.
-        let config = ObservationConfig { mask_border: false, ..ObservationConfig::new(kind) };
+        let config = ObservationConfig::new(kind).with_mask_border(false);
         for camera in &cameras {
             let gpu = GpuScorer::new(context.clone(), camera, &field, config)?;
             let cpu = CpuScorer::new(camera, &field, config);
@@ -88,21 +88,16 @@ impl FilterComparison {
 pub fn compare_filters(context: &Arc<GpuContext>, scenes: u64) -> Result<FilterComparison, BackendError> {
     let field = FieldDimensions::preset("humanoid-kidsize-2010").expect("a preset of the core");
     let camera = &cameras().expect("lenses that are valid")[0];
-    let observation = ObservationConfig {
-        mask_border: false,
-        alpha: 3000.0,
-        ..ObservationConfig::new(ObservationKind::Gauss)
-    };
+    let observation =
+        ObservationConfig::new(ObservationKind::Gauss).with_mask_border(false).with_alpha(3000.0);
     let sigma = PlanarSigma { position_m: 0.1, yaw_rad: 0.08 };
     let mut comparison = FilterComparison::default();
     for seed in 0..scenes {
-        let config = FilterConfig {
-            seed,
-            iterations: 1,
-            resampling: Resampling::Systematic,
-            mount_sigma: Some(MountPoseSigma::default()),
-            ..FilterConfig::default()
-        };
+        let config = FilterConfig::default()
+            .with_seed(seed)
+            .with_iterations(1)
+            .with_resampling(Resampling::Systematic)
+            .with_mount_sigma(Some(MountPoseSigma::default()));
         let (picture, poses) = scene(camera, seed);
         let mount = MountPose::of(poses[0]);
         let prepared = Preprocessor::new(camera, field.line_width_m).prepare(picture, mount);

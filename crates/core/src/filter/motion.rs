@@ -2,28 +2,40 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::pose::Motion2;
+use crate::{pose::Motion2, setters::setters};
 
 /// Noise of the motion between two pictures: standard deviations that grow with the motion (Thrun, Burgard and Fox,
 /// "Probabilistic Robotics", 2005, section 5.4, in the frame of the camera).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct MotionNoise {
-    /// Position noise while standing still, metres: the camera sways with every step.
+    /// Position noise while standing still, 0.02 m: the camera of a humanoid sways with every step.
     pub still_m: f64,
-    /// Heading noise while standing still, radians.
+    /// Heading noise while standing still, 0.02 rad.
     pub still_rad: f64,
-    /// Position noise per metre moved.
+    /// Position noise, 0.15 m per metre moved: feet slip.
     pub m_per_m: f64,
-    /// Heading noise per radian turned.
+    /// Heading noise, 0.1 rad per radian turned.
     pub rad_per_rad: f64,
-    /// Heading noise, radians per metre moved.
+    /// Heading noise, 0.05 rad per metre moved.
     pub rad_per_m: f64,
-    /// Position noise between two pictures without odometry, metres: the paper's prediction.
+    /// Position noise between two pictures without odometry, 0.06 m: the paper's prediction, for a robot that walks 0.3 m/s
+    /// and takes five pictures a second.
     pub unknown_m: f64,
-    /// Heading noise between two pictures without odometry, radians.
+    /// Heading noise between two pictures without odometry, 0.12 rad: it turns 0.6 rad/s.
     pub unknown_rad: f64,
 }
+
+setters!(MotionNoise {
+    with_still_m: still_m = f64,
+    with_still_rad: still_rad = f64,
+    with_m_per_m: m_per_m = f64,
+    with_rad_per_rad: rad_per_rad = f64,
+    with_rad_per_m: rad_per_m = f64,
+    with_unknown_m: unknown_m = f64,
+    with_unknown_rad: unknown_rad = f64,
+});
 
 impl Default for MotionNoise {
     fn default() -> Self {

@@ -10,7 +10,7 @@ use crate::{
     goal_colors::GoalColors,
     pose::Pose2,
     preprocess::Preprocessor,
-    refine::{RefineConfig, Refiner},
+    refine::Refiner,
     search::GlobalSearch,
 };
 
@@ -52,15 +52,19 @@ impl LocalizerBuilder<'_> {
     /// Builds the localizer. Fails if the device cannot do what the settings ask for.
     pub fn build(self) -> Result<Localizer, LocalizationError> {
         let Self { camera, field, config, backend, start } = self;
-        let refine = RefineConfig { mount_sigma: config.mount_sigma, ..RefineConfig::default() };
-        let search = config.relocalization.search;
+        let refiner = Refiner::new(camera, field, config.refine, config.mount_sigma);
         Ok(Localizer {
             config,
             size: [camera.width, camera.height],
             preprocessor: Preprocessor::new(camera, field.line_width_m),
             filter: backend.filter(camera, field, config.observation, config.filter)?,
-            refiner: Refiner::new(camera, field, refine),
-            search: GlobalSearch::with_backend(camera, field, search, config.mount_sigma, &*backend)?,
+            search: GlobalSearch::with_backend(
+                camera,
+                field,
+                config.relocalization.search,
+                refiner,
+                &*backend,
+            )?,
             goal_colors: GoalColors::new(camera, field, config.goal_colors),
             start,
             track: None,

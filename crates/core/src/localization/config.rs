@@ -5,7 +5,9 @@ use crate::{
     goal_colors::GoalColorConfig,
     mount::MountPoseSigma,
     observation::{ObservationConfig, ObservationKind},
+    refine::{RefineConfig, SmoothingConfig},
     search::SearchConfig,
+    setters::setters,
 };
 
 /// Settings of a [`super::Localizer`]. The same defaults serve all cameras and fields.
@@ -16,14 +18,21 @@ pub struct LocalizerConfig {
     pub observation: ObservationConfig,
     /// Settings of the particle filter.
     pub filter: FilterConfig,
-    /// Whether to use the odometry. Without it, each picture is predicted from the previous one alone, as in the paper.
+    /// Whether to use the odometry, true. Without it, each picture is predicted from the previous one alone, as in the
+    /// paper.
     pub uses_odometry: bool,
-    /// Whether to search the field when the filter is lost.
+    /// Whether to search the field when the filter is lost, true.
     pub relocalizes: bool,
-    /// Whether to fit all six degrees of freedom of each pose with sub-pixel accuracy.
+    /// Whether to fit all six degrees of freedom of each pose with sub-pixel accuracy, true for
+    /// [`ObservationKind::Contrast`] only: the paper's models run as in the paper.
     pub refines: bool,
-    /// Uncertainty of the mount pose from joints and IMU.
+    /// Uncertainty of the mount pose from joints and IMU, for searches, fits and smoothing; the filter has its own, see
+    /// [`FilterConfig::mount_sigma`], and [`LocalizerConfig::with_mount_sigma`] sets both.
     pub mount_sigma: MountPoseSigma,
+    /// How poses are fitted with sub-pixel accuracy.
+    pub refine: RefineConfig,
+    /// How all poses of a recording are estimated together.
+    pub smoothing: SmoothingConfig,
     /// Uncertainty of a given start pose, 5 cm and 0.05 rad: a robot placed by hand.
     pub start_sigma: PlanarSigma,
     /// Thresholds for a pose to be sure, likely or lost.
@@ -47,21 +56,13 @@ impl LocalizerConfig {
             relocalizes: true,
             refines: six,
             mount_sigma,
+            refine: RefineConfig::default(),
+            smoothing: SmoothingConfig::default(),
             start_sigma: PlanarSigma { position_m: 0.05, yaw_rad: 0.05 },
             track: TrackConfig::default(),
             relocalization: RelocalizationConfig::default(),
             goal_colors: GoalColorConfig::default(),
         }
-    }
-
-    /// Replaces the observation model and its settings.
-    pub fn with_observation(self, observation: ObservationConfig) -> Self {
-        Self { observation, ..self }
-    }
-
-    /// Replaces the settings of the particle filter.
-    pub fn with_filter(self, filter: FilterConfig) -> Self {
-        Self { filter, ..self }
     }
 
     /// Sets the random seed; the same seed gives the same poses.
@@ -70,21 +71,27 @@ impl LocalizerConfig {
         self
     }
 
-    /// Turns the use of odometry on or off.
-    pub fn with_odometry(self, uses_odometry: bool) -> Self {
-        Self { uses_odometry, ..self }
-    }
-
-    /// Turns relocalization, the search for a lost pose, on or off.
-    pub fn with_relocalization(self, relocalizes: bool) -> Self {
-        Self { relocalizes, ..self }
-    }
-
-    /// Turns the sub-pixel fit on or off.
-    pub fn with_refinement(self, refines: bool) -> Self {
-        Self { refines, ..self }
+    /// Sets the uncertainty of the mount pose, also for the filter's particles where they differ in height, pitch and roll.
+    pub fn with_mount_sigma(mut self, mount_sigma: MountPoseSigma) -> Self {
+        self.mount_sigma = mount_sigma;
+        self.filter.mount_sigma = self.filter.mount_sigma.map(|_| mount_sigma);
+        self
     }
 }
+
+setters!(LocalizerConfig {
+    with_observation: observation = ObservationConfig,
+    with_filter: filter = FilterConfig,
+    with_odometry: uses_odometry = bool,
+    with_relocalization: relocalizes = bool,
+    with_refinement: refines = bool,
+    with_refine_config: refine = RefineConfig,
+    with_smoothing_config: smoothing = SmoothingConfig,
+    with_start_sigma: start_sigma = PlanarSigma,
+    with_track_config: track = TrackConfig,
+    with_relocalization_config: relocalization = RelocalizationConfig,
+    with_goal_color_config: goal_colors = GoalColorConfig,
+});
 
 impl Default for LocalizerConfig {
     fn default() -> Self {
@@ -110,6 +117,15 @@ pub struct RelocalizationConfig {
     /// Poses nearer to each other than this are the same place, 0.3 m and 0.2 rad: particles around one find the other.
     pub same_place: PlanarSigma,
 }
+
+setters!(RelocalizationConfig {
+    with_search: search = SearchConfig,
+    with_found_sigma: found_sigma = PlanarSigma,
+    with_clear_margin: clear_margin = f64,
+    with_move_margin: move_margin = f64,
+    with_alternative_margin: alternative_margin = f64,
+    with_same_place: same_place = PlanarSigma,
+});
 
 impl Default for RelocalizationConfig {
     fn default() -> Self {
@@ -140,7 +156,8 @@ pub struct TrackConfig {
     pub lost_sigma: PlanarSigma,
     /// Maximum number of doubtful pictures that are counted, 8: by then the prior is 4.5 m wide.
     pub max_doubtful_frames: u32,
-    /// Uncertainty of a prediction above which the particles cannot cover it and the field is searched, 0.3 m.
+    /// Uncertainty of a prediction above which the particles cannot cover it and the field is searched, 0.3 m: a thousand
+    /// particles in three dimensions are then 6 cm apart, more than a line's width.
     pub search_sigma_m: f64,
     /// Uncertainty of a prediction above which it may have led to the wrong one of two places that fit, 0.15 m: half of what
     /// triggers a search.
@@ -150,7 +167,7 @@ pub struct TrackConfig {
     pub reset_jump_m: f64,
     /// Weight of the newest picture in the slow average of the line fraction, 0.05 (Thrun's α_slow; about 20 pictures).
     pub line_fraction_weight: f64,
-    /// Fraction of the slow average below which the filter may be lost, 0.5.
+    /// Fraction of the slow average below which the filter may be lost, 0.5: an obstacle rarely hides half of the lines.
     pub lost_ratio: f64,
     /// Line fraction below which the filter may be lost whatever the average, 0.15: random poses have about 0.
     pub lost_line_fraction: f64,
@@ -159,13 +176,33 @@ pub struct TrackConfig {
     /// Fraction of the slow average from which a pose fits, 0.55: a little above [`TrackConfig::lost_ratio`], so that
     /// no pose both fits and is lost.
     pub fitting_ratio: f64,
-    /// Number of consecutive pictures that must fit before one of several places counts as confirmed, 4.
+    /// Number of consecutive pictures that must fit before one of several places counts as confirmed, 4: by then the robot
+    /// has moved on, and at a wrong place its lines have run out.
     pub confirming_frames: u32,
     /// How many of these are granted after a long way without lines, 2, because the track was right before it.
     pub confirmed_on_a_long_way: u32,
-    /// Probability of the mirror pose below which a pose can be sure, 0.05.
+    /// Probability of the mirror pose below which a pose can be sure, 0.05: the usual level of significance.
     pub max_mirrored_probability: f64,
 }
+
+setters!(TrackConfig {
+    with_kidnapped_sigma: kidnapped_sigma = PlanarSigma,
+    with_settled_sigma: settled_sigma = PlanarSigma,
+    with_likely_sigma: likely_sigma = PlanarSigma,
+    with_lost_sigma: lost_sigma = PlanarSigma,
+    with_max_doubtful_frames: max_doubtful_frames = u32,
+    with_search_sigma_m: search_sigma_m = f64,
+    with_long_way_sigma_m: long_way_sigma_m = f64,
+    with_reset_jump_m: reset_jump_m = f64,
+    with_line_fraction_weight: line_fraction_weight = f64,
+    with_lost_ratio: lost_ratio = f64,
+    with_lost_line_fraction: lost_line_fraction = f64,
+    with_fitting_line_fraction: fitting_line_fraction = f64,
+    with_fitting_ratio: fitting_ratio = f64,
+    with_confirming_frames: confirming_frames = u32,
+    with_confirmed_on_a_long_way: confirmed_on_a_long_way = u32,
+    with_max_mirrored_probability: max_mirrored_probability = f64,
+});
 
 impl Default for TrackConfig {
     fn default() -> Self {

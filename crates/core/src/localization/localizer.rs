@@ -17,7 +17,7 @@ use crate::{
     mount::MountPose,
     pose::{CameraPose, Motion2, Pose2},
     preprocess::{FieldBorder, Prepared, Preprocessor},
-    refine::{PoseFit, Refiner},
+    refine::PoseFit,
     search::{GlobalSearch, Mode, Prior},
 };
 
@@ -28,7 +28,6 @@ pub struct Localizer {
     pub(super) size: [u32; 2],
     pub(super) preprocessor: Preprocessor,
     pub(super) filter: Box<dyn Filter>,
-    pub(super) refiner: Refiner,
     pub(super) search: GlobalSearch,
     pub(super) goal_colors: Option<GoalColors>,
     pub(super) start: Option<Pose2>,

@@ -24,7 +24,7 @@ pub struct Smoothing {
 impl Localizer {
     /// Returns a smoother for the frames that this localizer has found.
     pub fn smoother(&self) -> Smoother<'_> {
-        Smoother { config: &self.config, preprocessor: &self.preprocessor, refiner: &self.refiner }
+        Smoother { config: &self.config, preprocessor: &self.preprocessor, refiner: self.search.refiner() }
     }
 }
 
@@ -85,7 +85,8 @@ impl Smoother<'_> {
     }
 
     fn pass(&self, frames: &[TrajectoryFrame]) -> Option<Vec<SmoothedPose>> {
-        smooth_trajectory(frames, self.config.mount_sigma, self.config.filter.noise)
+        let LocalizerConfig { smoothing, mount_sigma, filter, .. } = self.config;
+        smooth_trajectory(frames, smoothing, *mount_sigma, filter.noise)
     }
 }
 

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     field::FieldDimensions,
     names::{UnknownName, by_name},
+    setters::setters,
 };
 
 /// Observation model that weighs the particles.
@@ -63,31 +64,47 @@ impl FromStr for ObservationKind {
 /// parameter sweeps behind them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ObservationConfig {
     /// Observation model.
     pub kind: ObservationKind,
-    /// Distance between samples on the ground, metres.
+    /// Distance between samples on the ground, 0.02 m: less than half a line's width on the smallest field.
     pub spacing_m: f64,
-    /// The same distance in line widths; the larger of the two is used. The lines of a large field are wide, and
-    /// samples closer together than that are redundant.
+    /// The same distance in line widths, 0, and 1 for `contrast`; the larger of the two is used. The lines of a large field
+    /// are wide, and samples closer together than that are redundant.
     pub spacing_line_widths: f64,
-    /// Standard deviation of the Gaussian blur, pixels.
+    /// Standard deviation of the Gaussian blur, 1 px (measured: `docs/figures/sweep.md`), and 0.7 px for `contrast`, whose
+    /// flanks must not run into the line.
     pub blur_sigma_px: f32,
-    /// α of Eq. 1 (pixels) and Eq. 2 (grey levels); positive, see `docs/paper.md`.
+    /// α of Eq. 1, 100 px, and of Eq. 2, 300 grey levels (measured: `docs/figures/sweep.md`); positive, see `docs/paper.md`.
     pub alpha: f64,
-    /// Whether everything outside the field's border counts as black.
+    /// Whether everything outside the field's border counts as black, true (measured: `docs/figures/sweep.md`).
     pub mask_border: bool,
-    /// Maximum distance in the distance model, at which all larger ones are clipped, pixels. At most 31.
+    /// Maximum distance in the distance model, at which all larger ones are clipped, 20 px: farther away, the nearest white
+    /// pixel is another line's. At most 31.
     pub max_distance_px: f32,
     /// Nearness to a white line, as a fraction of `max_distance_px`, that is neither evidence for nor against a line in
-    /// the distance model. 0 in the paper.
+    /// the distance model, 0 as in the paper.
     pub distance_neutral: f64,
-    /// Log-weight of a line sample that is found.
+    /// Log-weight of a line sample that is found, 0.4: neighbouring samples are not independent.
     pub contrast_gain: f64,
-    /// Contrast that is neither evidence for nor against a line. Every sample in view that is not found therefore
-    /// counts against a pose.
+    /// Contrast that is neither evidence for nor against a line, 0.15: more than noise makes, less than any line. Every
+    /// sample in view that is not found therefore counts against a pose.
     pub contrast_neutral: f64,
 }
+
+setters!(ObservationConfig {
+    with_kind: kind = ObservationKind,
+    with_spacing_m: spacing_m = f64,
+    with_spacing_line_widths: spacing_line_widths = f64,
+    with_blur_sigma_px: blur_sigma_px = f32,
+    with_alpha: alpha = f64,
+    with_mask_border: mask_border = bool,
+    with_max_distance_px: max_distance_px = f32,
+    with_distance_neutral: distance_neutral = f64,
+    with_contrast_gain: contrast_gain = f64,
+    with_contrast_neutral: contrast_neutral = f64,
+});
 
 impl ObservationConfig {
     /// Returns the defaults of a model.

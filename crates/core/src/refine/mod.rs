@@ -1,11 +1,13 @@
 //! Refinement of approximate poses: of single pictures to a fraction of a pixel, and of whole trajectories.
 
+mod config;
 mod measure;
 mod picture;
 mod trajectory;
 
 pub use self::{
+    config::{RefineConfig, SmoothingConfig},
     measure::{LineOffset, MeasureConfig, measure_offsets},
-    picture::{PoseFit, Reach, RefineConfig, Refiner},
+    picture::{PoseFit, Reach, Refiner},
     trajectory::{SmoothedPose, TrajectoryFrame, smooth_trajectory},
 };

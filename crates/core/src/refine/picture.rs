@@ -4,7 +4,10 @@
 use glam::DVec3;
 use nalgebra::{Matrix6, Vector6};
 
-use super::measure::{LineOffset, MeasureConfig, measure_offsets};
+use super::{
+    config::RefineConfig,
+    measure::{LineOffset, MeasureConfig, measure_offsets},
+};
 use crate::{
     camera::Camera,
     field::{FieldDimensions, LineSample, sample_lines, visible_samples},
@@ -13,42 +16,6 @@ use crate::{
     preprocess::Texture,
     statistics::robust_sigma,
 };
-
-/// Settings of [`Refiner`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RefineConfig {
-    /// Distance between samples on the ground, metres.
-    pub spacing_m: f64,
-    /// Distance between samples in the picture, pixels.
-    pub spacing_px: f64,
-    /// Search range of each round, starting from a rough guess, pixels.
-    pub wide_search_px: [f64; 5],
-    /// Search range of each round, starting from a good guess, pixels.
-    pub narrow_search_px: [f64; 5],
-    /// Minimum standard deviation of one offset, pixels.
-    pub offset_sigma_px: f64,
-    /// Length of line over which the errors of the offsets are fully correlated, pixels.
-    pub correlation_px: f64,
-    /// Uncertainty of the mount pose from joints and IMU.
-    pub mount_sigma: MountPoseSigma,
-    /// Minimum number of offsets for a fit.
-    pub min_offsets: usize,
-}
-
-impl Default for RefineConfig {
-    fn default() -> Self {
-        Self {
-            spacing_m: 0.02,
-            spacing_px: 4.0,
-            wide_search_px: [12.0, 8.0, 5.0, 4.0, 4.0],
-            narrow_search_px: [4.0; 5],
-            offset_sigma_px: 0.08,
-            correlation_px: 40.0,
-            mount_sigma: MountPoseSigma::default(),
-            min_offsets: 12,
-        }
-    }
-}
 
 /// How far from its projection a line is searched for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,6 +64,7 @@ pub struct Refiner {
     field: FieldDimensions,
     samples: Vec<LineSample>,
     config: RefineConfig,
+    mount_sigma: MountPoseSigma,
 }
 
 /// Returns the pose moved by a step in its six numbers.
@@ -112,19 +80,24 @@ pub(super) fn moved(pose: CameraPose, step: &Vector6<f64>) -> CameraPose {
 }
 
 impl Refiner {
-    /// Prepares fits to pictures of this camera on this field.
-    pub fn new(camera: &Camera, field: &FieldDimensions, config: RefineConfig) -> Self {
-        let clearance_m = 1.5 * field.line_width_m;
+    /// Prepares fits to pictures of this camera on this field. `mount_sigma` is the uncertainty of the mount poses.
+    pub fn new(
+        camera: &Camera,
+        field: &FieldDimensions,
+        config: RefineConfig,
+        mount_sigma: MountPoseSigma,
+    ) -> Self {
+        let clearance_m = config.min_clearance_line_widths * field.line_width_m;
         let samples = sample_lines(field, config.spacing_m)
             .into_iter()
             .filter(|sample| sample.clearance_m > clearance_m)
             .collect();
-        Self { camera: camera.clone(), field: field.clone(), samples, config }
+        Self { camera: camera.clone(), field: field.clone(), samples, config, mount_sigma }
     }
 
     /// Returns the uncertainty of the mount pose.
     pub fn mount_sigma(&self) -> MountPoseSigma {
-        self.config.mount_sigma
+        self.mount_sigma
     }
 
     /// Fits a picture, starting from a first guess. Returns `None` if too few lines are found for six degrees of
@@ -146,14 +119,14 @@ impl Refiner {
         for search_px in rounds {
             let visible =
                 visible_samples(&self.field, &self.samples, &self.camera, pose, self.config.spacing_px);
-            let measure = MeasureConfig { search_px, min_contrast: 0.3 * contrast };
+            let measure = MeasureConfig { search_px, min_contrast: self.config.min_contrast * contrast };
             let offsets = measure_offsets(texture, &visible, measure);
             if offsets.len() < self.config.min_offsets {
                 return None;
             }
             let step = self.solve(pose, &offsets, mount)?;
             pose = moved(pose, &step.step);
-            if !pose.is_finite() || pose.height_m < 0.3 * mount.height_m {
+            if !pose.is_finite() || pose.height_m < self.config.min_height_ratio * mount.height_m {
                 return None;
             }
             fit = Some(PoseFit {
@@ -174,14 +147,14 @@ impl Refiner {
             .iter()
             .filter_map(|offset| Some((self.gradient(pose, offset)?, offset.offset_px)))
             .collect();
-        let prior = self.config.mount_sigma.information();
+        let prior = self.mount_sigma.information();
         let mount_error = mount_error(pose, mount);
         // Densely spaced samples share their errors: only one in `repeats` of them is independent.
         let repeats = (self.config.correlation_px / self.config.spacing_px).max(1.0);
         let mut step = Vector6::zeros();
         let mut sigma = robust_sigma(rows.iter().map(|(_, offset)| *offset)).max(self.config.offset_sigma_px);
         let mut information = Matrix6::zeros();
-        for _ in 0..4 {
+        for _ in 0..self.config.iterations {
             let mut right = Vector6::zeros();
             information = Matrix6::zeros();
             let scale = 1.0 / (sigma * sigma * repeats);
@@ -259,7 +232,7 @@ mod tests {
     #[test]
     fn a_disturbed_pose_is_found_again_in_all_six_degrees_of_freedom() {
         let (camera, field) = (test_scene::fisheye(), test_scene::field());
-        let refiner = Refiner::new(&camera, &field, RefineConfig::default());
+        let refiner = Refiner::new(&camera, &field, RefineConfig::default(), MountPoseSigma::default());
         for pose in test_scene::poses() {
             let texture = Texture::pack(&whiteness(&test_scene::render(&camera, pose, &field)));
             let guess = moved(pose, &Vector6::new(0.02, -0.03, 0.015, 0.01, 0.006, -0.005));
@@ -278,7 +251,7 @@ mod tests {
     #[test]
     fn nothing_is_fitted_where_no_line_is() {
         let (camera, field, pose) = (test_scene::fisheye(), test_scene::field(), test_scene::poses()[0]);
-        let refiner = Refiner::new(&camera, &field, RefineConfig::default());
+        let refiner = Refiner::new(&camera, &field, RefineConfig::default(), MountPoseSigma::default());
         let grey = Texture::pack(&image::GrayImage::from_pixel(320, 240, image::Luma([90])));
         assert!(refiner.fit(&grey, pose, MountPose::of(pose), 100.0, Reach::Wide).is_none());
         let nowhere = CameraPose { x_m: f64::NAN, ..pose };

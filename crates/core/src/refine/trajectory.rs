@@ -4,24 +4,16 @@
 
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Vector3, Vector6};
 
-use super::picture::{PoseFit, mount_error, moved, pose_difference};
+use super::{
+    config::SmoothingConfig,
+    picture::{PoseFit, mount_error, moved, pose_difference},
+};
 use crate::{
     filter::MotionNoise,
     mount::{MountPose, MountPoseSigma},
     pose::{CameraPose, Motion2},
     statistics::{median, robust_sigma},
 };
-
-/// Number of Gauss–Newton rounds; few are enough, since the chain is nearly linear.
-const ROUNDS: usize = 6;
-/// Minimum sway of the body between two pictures: standard deviations forwards, to the left (metres) and in heading
-/// (radians).
-const MIN_SWAY: [f64; 3] = [0.003, 0.003, 0.003];
-/// Sway if the pictures cannot determine it.
-const DEFAULT_SWAY: [f64; 3] = [0.02, 0.02, 0.02];
-/// Squared Mahalanobis distance from the chain (χ² of six degrees of freedom) above which a picture's fit is an
-/// outlier, made on the wrong line.
-const OUTLIER_CHI2: f64 = 40.0;
 
 /// Everything known about one picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,18 +43,19 @@ pub struct SmoothedPose {
 /// example without a single fit.
 pub fn smooth_trajectory(
     frames: &[TrajectoryFrame],
+    config: &SmoothingConfig,
     mount_sigma: MountPoseSigma,
     noise: MotionNoise,
 ) -> Option<Vec<SmoothedPose>> {
     if !frames.iter().any(|frame| frame.fit.is_some()) {
         return None;
     }
-    let odometry = OdometryNoise::learn(frames, noise);
+    let odometry = OdometryNoise::learn(frames, config, noise);
     let mut poses: Vec<CameraPose> =
         frames.iter().map(|frame| frame.fit.map_or(frame.guess, |fit| fit.pose)).collect();
     let mut used: Vec<bool> = frames.iter().map(|frame| frame.fit.is_some()).collect();
     let mut covariances = Vec::new();
-    for round in 0..ROUNDS {
+    for round in 0..config.rounds {
         let chain = Chain::build(frames, &poses, &used, &odometry, mount_sigma);
         let (steps, marginals) = chain.solve()?;
         for (pose, step) in poses.iter_mut().zip(&steps) {
@@ -72,7 +65,8 @@ pub fn smooth_trajectory(
         // Fits are judged only after the chain has settled once; a rejected fit may come back.
         if round > 0 {
             for index in 0..frames.len() {
-                used[index] = fits_chain(&frames[index], poses[index], covariances[index], used[index]);
+                let chi2 = chi2_from_chain(&frames[index], poses[index], covariances[index], used[index]);
+                used[index] = chi2.is_some_and(|chi2| chi2 < config.outlier_chi2);
             }
         }
     }
@@ -212,7 +206,7 @@ struct OdometryNoise {
 impl OdometryNoise {
     /// Estimates the sway from how well the odometry agrees with neighbouring fits: the median deviation along each
     /// axis, minus what the fits themselves and the growing part contribute.
-    fn learn(frames: &[TrajectoryFrame], noise: MotionNoise) -> Self {
+    fn learn(frames: &[TrajectoryFrame], config: &SmoothingConfig, noise: MotionNoise) -> Self {
         let growing = MotionNoise { still_m: 0.0, still_rad: 0.0, ..noise };
         let mut odometry = Self { growing, sway: Vector3::zeros() };
         let pairs: Vec<(Vector3<f64>, Vector3<f64>)> = frames
@@ -224,12 +218,12 @@ impl OdometryNoise {
             })
             .collect();
         odometry.sway = Vector3::from_fn(|axis, _| {
-            if pairs.len() < 10 {
-                return DEFAULT_SWAY[axis].powi(2);
+            if pairs.len() < config.min_sway_pairs {
+                return config.default_sway[axis].powi(2);
             }
             let deviation = robust_sigma(pairs.iter().map(|(error, _)| error[axis]));
             let known = median(pairs.iter().map(|(_, known)| known[axis]));
-            (deviation * deviation - known).max(MIN_SWAY[axis].powi(2))
+            (deviation * deviation - known).max(config.min_sway[axis].powi(2))
         });
         odometry
     }
@@ -253,16 +247,21 @@ fn planar_variances(fit: &PoseFit) -> Vector3<f64> {
     Vector3::new(place, place, fit.covariance[(2, 2)])
 }
 
-/// Returns whether a picture's fit agrees with all the others. For a fit that is part of the chain, its deviation from
-/// the chain is compared with the difference of the two covariances; this equals the innovation test against the chain
-/// without the fit.
-fn fits_chain(frame: &TrajectoryFrame, pose: CameraPose, covariance: Matrix6<f64>, used: bool) -> bool {
-    let Some(fit) = frame.fit else { return false };
+/// Returns the squared Mahalanobis distance of a picture's fit from all the others, if it has a fit. For a fit that is part
+/// of the chain, its deviation from the chain is compared with the difference of the two covariances; this equals the
+/// innovation test against the chain without the fit.
+fn chi2_from_chain(
+    frame: &TrajectoryFrame,
+    pose: CameraPose,
+    covariance: Matrix6<f64>,
+    used: bool,
+) -> Option<f64> {
+    let fit = frame.fit?;
     let difference = pose_difference(pose, fit.pose);
     let alone = fit.information.try_inverse().unwrap_or(fit.covariance);
     // Inflating the fit's own covariance a little keeps the difference of two nearly equal ones positive definite.
     let spread = if used { 1.05 * alone - covariance } else { alone + covariance };
-    spread.cholesky().is_some_and(|spread| difference.dot(&spread.solve(&difference)) < OUTLIER_CHI2)
+    spread.cholesky().map(|spread| difference.dot(&spread.solve(&difference)))
 }
 
 #[cfg(test)]
@@ -282,7 +281,7 @@ mod tests {
         unknown_m: 0.0,
         unknown_rad: 0.0,
     };
-    const TOLERANCE: MountPoseSigma = MountPoseSigma { height_m: 0.03, angle_rad: 0.01 };
+    const MOUNT_SIGMA: MountPoseSigma = MountPoseSigma { height_m: 0.03, angle_rad: 0.01 };
 
     /// Simulates a walk whose pictures and odometry err as their covariances say; every third picture shows nothing.
     fn walk(seed: u64, count: u32) -> (Vec<CameraPose>, Vec<TrajectoryFrame>) {
@@ -340,7 +339,13 @@ mod tests {
     fn the_chain_is_solved_as_a_dense_system_would_be() {
         let (truth, frames) = walk(3, 9);
         let used = vec![true; 9];
-        let chain = Chain::build(&frames, &truth, &used, &OdometryNoise::learn(&frames, STEADY), TOLERANCE);
+        let chain = Chain::build(
+            &frames,
+            &truth,
+            &used,
+            &OdometryNoise::learn(&frames, &SmoothingConfig::default(), STEADY),
+            MOUNT_SIGMA,
+        );
         let mut dense = DMatrix::zeros(54, 54);
         let mut right = DVector::zeros(54);
         for i in 0..9 {
@@ -365,7 +370,8 @@ mod tests {
         let (mut single, mut smooth, mut nees, mut gaps) = (0.0, 0.0, Vec::new(), 0.0_f64);
         for seed in 0..12 {
             let (truth, frames) = walk(seed, 60);
-            let smoothed = smooth_trajectory(&frames, TOLERANCE, STEADY).unwrap();
+            let smoothed =
+                smooth_trajectory(&frames, &SmoothingConfig::default(), MOUNT_SIGMA, STEADY).unwrap();
             for ((truth, frame), pose) in truth.iter().zip(&frames).zip(&smoothed) {
                 let error = pose_difference(*truth, pose.pose);
                 match frame.fit {
@@ -392,11 +398,11 @@ mod tests {
         let (truth, mut frames) = walk(5, 40);
         let wrong = frames[21].fit.as_mut().unwrap();
         wrong.pose.x_m += 0.6;
-        let smoothed = smooth_trajectory(&frames, TOLERANCE, STEADY).unwrap();
+        let smoothed = smooth_trajectory(&frames, &SmoothingConfig::default(), MOUNT_SIGMA, STEADY).unwrap();
         assert!(!smoothed[21].picture_used);
         assert!((smoothed[21].pose.x_m - truth[21].x_m).abs() < 0.04);
         let none: Vec<TrajectoryFrame> =
             frames.iter().map(|frame| TrajectoryFrame { fit: None, ..*frame }).collect();
-        assert!(smooth_trajectory(&none, TOLERANCE, STEADY).is_none());
+        assert!(smooth_trajectory(&none, &SmoothingConfig::default(), MOUNT_SIGMA, STEADY).is_none());
     }
 }

@@ -20,7 +20,8 @@ pub struct SearchGrid {
 }
 
 impl SearchGrid {
-    /// Returns a grid as fine as the grid's score needs on this field.
+    /// Returns a grid as fine as the grid's score needs on this field: two line widths, but at least 0.1 m, and 120 headings,
+    /// one every 3°.
     pub fn new(field: &FieldDimensions) -> Self {
         Self { step_m: (2.0 * field.line_width_m).max(0.1), headings: 120 }
     }

@@ -25,9 +25,6 @@ use crate::{
     refine::{Reach, RefineConfig, Refiner},
 };
 
-/// Number of scored grid poses that are compared with each other per pose kept: most lie beside a better one.
-const SCORED_PER_KEPT: usize = 40;
-
 /// Searches the whole field for poses that fit pictures of one camera.
 pub struct GlobalSearch {
     config: SearchConfig,
@@ -37,7 +34,6 @@ pub struct GlobalSearch {
     white_contrast: f64,
     field: FieldDimensions,
     refiner: Refiner,
-    mount_sigma: MountPoseSigma,
 }
 
 impl std::fmt::Debug for GlobalSearch {
@@ -49,33 +45,34 @@ impl std::fmt::Debug for GlobalSearch {
 impl GlobalSearch {
     /// Prepares a search on the CPU.
     pub fn new(camera: &Camera, field: &FieldDimensions, mount_sigma: MountPoseSigma) -> Self {
-        Self::with_backend(camera, field, SearchConfig::default(), mount_sigma, &CpuBackend)
+        let refiner = Refiner::new(camera, field, RefineConfig::default(), mount_sigma);
+        Self::with_backend(camera, field, SearchConfig::default(), refiner, &CpuBackend)
             .unwrap_or_else(|error| unreachable!("this processor never fails: {error}"))
     }
 
-    /// Works as [`GlobalSearch::new`], with the grid scored on the backend's device. Fails if the device does.
+    /// Works as [`GlobalSearch::new`], with other settings, and with the grid scored on the backend's device. `refiner` fits
+    /// the best places; its camera and field are those of the search. Fails if the device does.
     pub fn with_backend(
         camera: &Camera,
         field: &FieldDimensions,
         config: SearchConfig,
-        mount_sigma: MountPoseSigma,
+        refiner: Refiner,
         backend: &dyn Backend,
     ) -> Result<Self, BackendError> {
         Ok(Self {
             config,
-            grid: SearchGrid::new(field),
+            grid: config.grid.unwrap_or_else(|| SearchGrid::new(field)),
             grid_scorer: backend.scorer(camera, field, ObservationConfig::grid(field))?,
             scorer: CpuScorer::new(camera, field, ObservationConfig::coarse_contrast()),
             white_contrast: 1.0,
             field: field.clone(),
-            refiner: Refiner::new(camera, field, RefineConfig { mount_sigma, ..RefineConfig::default() }),
-            mount_sigma,
+            refiner,
         })
     }
 
-    /// Replaces the grid.
-    pub fn set_grid(&mut self, grid: SearchGrid) {
-        self.grid = grid;
+    /// Returns the fits of poses that the search makes; others may use them, too.
+    pub fn refiner(&self) -> &Refiner {
+        &self.refiner
     }
 
     /// Loads a new picture for the methods that do not search the field.
@@ -139,7 +136,8 @@ impl GlobalSearch {
 
     fn mode(&self, pose: CameraPose, mount: MountPose, prior: Option<Prior>) -> Mode {
         let prior = prior.map_or(0.0, |prior| prior.log_probability(pose.planar()));
-        let log_weight = self.scorer.log_weight(&pose) + self.mount_sigma.log_prior(pose, mount) + prior;
+        let log_weight =
+            self.scorer.log_weight(&pose) + self.refiner.mount_sigma().log_prior(pose, mount) + prior;
         Mode { pose, log_weight, probability: 0.0, fit: None }
     }
 
@@ -175,7 +173,7 @@ impl GlobalSearch {
             ));
         }
         scored.sort_by(|a, b| b.1.total_cmp(&a.1));
-        scored.truncate(self.config.kept_poses * SCORED_PER_KEPT);
+        scored.truncate(self.config.kept_poses * self.config.compared_per_kept);
         let mut places = distinct(scored, self.config.same_place, |(pose, _)| *pose);
         places.truncate(self.config.kept_poses);
         Ok(places.into_iter().map(|(pose, _)| pose).collect())
@@ -209,7 +207,7 @@ impl GlobalSearch {
             particles,
             iterations: self.config.iterations,
             seed,
-            mount_sigma: Some(self.mount_sigma),
+            mount_sigma: Some(self.refiner.mount_sigma()),
             ..FilterConfig::default()
         };
         let mut filter = ParticleFilter::new(config, place, sigma);

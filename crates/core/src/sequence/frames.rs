@@ -43,9 +43,8 @@ pub(super) fn parse_frames(path: &Path, text: &str) -> Result<Vec<FrameRecord>, 
     loop {
         let offset = reader.position().byte();
         let fail = |fault| SequenceError::at(path, record_line(text, offset), fault);
-        let more = reader
-            .read_record(&mut record)
-            .map_err(|error| fail(Fault::Csv { message: one_line(error) }))?;
+        let more =
+            reader.read_record(&mut record).map_err(|error| fail(Fault::Csv { message: one_line(error) }))?;
         if !more {
             break;
         }
