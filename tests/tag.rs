@@ -324,6 +324,14 @@ fn inputs_are_never_overwritten() {
 }
 
 #[test]
+fn two_outputs_with_the_same_name_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let same = folder.path().join("same");
+    let same = same.to_str().unwrap();
+    assert_fails(Path::new(WALK), &["--out", same, "--details", same], &["same", "two outputs"]);
+}
+
+#[test]
 fn values_that_cannot_be_used_are_named() {
     let walk = Path::new(WALK);
     assert_fails(walk, &["--frames", "0..61"], &["assets/walk", "60 frames"]);

@@ -66,7 +66,7 @@ pub enum GpuError {
         what: &'static str,
     },
     /// The device has no timestamp counter.
-    #[error("{adapter}: has no time stamps: measure whole updates, or use another adapter")]
+    #[error("{adapter}: has no timestamps: measure whole updates, or use another adapter")]
     CannotTime {
         /// Name of the adapter.
         adapter: String,

@@ -10,17 +10,17 @@ pub(crate) fn timed_steps(context: &GpuContext, steps: &[Step<'_>]) -> Result<Ve
     let count = 2 * steps.len() as u32;
     let bytes = u64::from(count) * size_of::<u64>() as u64;
     let queries = context.device.create_query_set(&wgpu::QuerySetDescriptor {
-        label: Some("time stamps"),
+        label: Some("timestamps"),
         ty: wgpu::QueryType::Timestamp,
         count,
     });
     let stamps = context.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("time stamps"),
+        label: Some("timestamps"),
         size: bytes,
         usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     });
-    let target = readback(context, "the time stamps read back", bytes as usize)?;
+    let target = readback(context, "the timestamps read back", bytes as usize)?;
     context.submit(|encoder| {
         for ((kernel, groups), query) in steps.iter().zip((0..count).step_by(2)) {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {

@@ -147,7 +147,7 @@ impl Chain {
         self.magnification.iter().any(|magnification| *magnification != self.magnification[1])
     }
 
-    /// Returns the camera's true pose in the middle of a row's exposure, for the frame with this time stamp. `trajectory`
+    /// Returns the camera's true pose in the middle of a row's exposure, for the frame with this timestamp. `trajectory`
     /// holds the reference poses; rows run from 0 at the top to 1 at the bottom.
     pub fn pose(&self, trajectory: &Trajectory, time_s: f64, row: f64) -> CameraPose {
         self.mounted(trajectory.at(self.exposure_middle_s(time_s, row)))
@@ -165,7 +165,7 @@ impl Chain {
 
     /// Returns the factors of red, green and blue on the light of a point in the scene: the product of the light on the
     /// ground at `ground` (metres, for a point on the ground), the lens's falloff at `pixel`, and the gain of the frame with
-    /// this time stamp.
+    /// this timestamp.
     pub fn light(&self, time_s: f64, pixel: DVec2, ground: Option<DVec2>) -> [f64; 3] {
         let light = ground.map_or(1.0, |point| self.light_on_ground(point)) * self.falloff(pixel);
         self.gain(time_s).map(|gain| light * gain)
@@ -183,7 +183,7 @@ impl Chain {
         self.lens.iter().map(|used| used.effect.falloff(&used.values, radius)).product()
     }
 
-    /// Returns the gain of red, green and blue in the frame with this time stamp.
+    /// Returns the gain of red, green and blue in the frame with this timestamp.
     pub fn gain(&self, time_s: f64) -> [f64; 3] {
         product(&self.exposure, |used| used.effect.gain(&used.values, time_s))
     }
@@ -217,7 +217,7 @@ impl Chain {
     }
 
     /// Returns the motion that the odometry reports for a true motion of the camera that took `duration_s` seconds. The
-    /// robot's clock is late: between two time stamps, `true_motion` connects the poses [`Chain::clock_s`] after them.
+    /// robot's clock is late: between two timestamps, `true_motion` connects the poses [`Chain::clock_s`] after them.
     pub fn odometry(&self, true_motion: Motion2, duration_s: f64) -> Motion2 {
         let reported = |motion, used: &Used| used.effect.odometry(&used.values, motion, duration_s);
         self.odometry.iter().fold(true_motion, reported)

@@ -48,7 +48,7 @@ pub trait Effect: Sync + Debug {
         1.0
     }
 
-    /// Motion: returns the delay in seconds of the middle of a row's exposure after the frame's time stamp; rows run from 0
+    /// Motion: returns the delay in seconds of the middle of a row's exposure after the frame's timestamp; rows run from 0
     /// at the top to 1 at the bottom.
     fn delay_s(&self, _p: &[f64], _row: f64) -> f64 {
         0.0
@@ -90,7 +90,7 @@ pub trait Effect: Sync + Debug {
         0.0
     }
 
-    /// Exposure: returns the gain of red, green and blue in the frame with this time stamp.
+    /// Exposure: returns the gain of red, green and blue in the frame with this timestamp.
     fn gain(&self, _p: &[f64], _time_s: f64) -> [f64; 3] {
         [1.0; 3]
     }

@@ -37,13 +37,13 @@ impl CameraFromWorld {
 }
 
 impl Chain {
-    /// Prepares the picture with this time stamp for projecting many points.
+    /// Prepares the picture with this timestamp for projecting many points.
     pub fn frame<'a>(&'a self, trajectory: &'a Trajectory, time_s: f64) -> Frame<'a> {
         Frame::new(self, trajectory, time_s)
     }
 
     /// Projects one point, as [`Frame::project`]: from the world, in metres, to its pixel in red (0), green (1) or blue (2)
-    /// of the frame with this time stamp.
+    /// of the frame with this timestamp.
     pub fn project(
         &self,
         trajectory: &Trajectory,

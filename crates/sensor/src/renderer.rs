@@ -112,7 +112,7 @@ impl Renderer {
         Ok(picture)
     }
 
-    /// Draws the picture with a time stamp, seconds, through all stages of a camera whose reference poses are on a
+    /// Draws the picture with a timestamp, seconds, through all stages of a camera whose reference poses are on a
     /// trajectory. Adds noise if a seed is given; the same seed and time give the same noise. No light falls on pixels
     /// beyond the camera's valid angle or outside its image circle.
     pub fn draw_at(

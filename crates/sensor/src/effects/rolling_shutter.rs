@@ -1,7 +1,7 @@
 //! Rolling shutter: the sensor's rows are exposed one after another.
 //!
 //! `delay = readout · (row − ½) + reference`, where the row runs from 0 at the top to 1 at the bottom. The reference says
-//! which row the time stamp belongs to: the middle row for 0, the first row for half the readout.
+//! which row the timestamp belongs to: the middle row for 0, the first row for half the readout.
 
 use crate::{
     effect::{About, Changes, Covariate, Effect, Estimates, Parameter, Stage, values},

@@ -1,6 +1,6 @@
 //! Time offset: the robot's clock differs from the clock of the reference poses.
 //!
-//! Images and odometry are taken this long after the time of the reference pose with the same time stamp.
+//! Images and odometry are taken this long after the time of the reference pose with the same timestamp.
 
 use crate::{
     effect::{About, Changes, Covariate, Effect, Estimates, Opposite, Parameter, Stage, values},
