@@ -15,7 +15,7 @@ pub(crate) struct DiagnosticThresholds {
     /// Smallest share of the carpet that is reported as hidden. Chosen; no measurement.
     pub(crate) least_hidden_share: f64,
     /// Smallest ratio of the geometry's residuals to their noise floor that is reported. Set on draw 0, on which 1.7 and 1.6
-    /// were used before.
+    /// were used before. Halving it changes a report, see `docs/figures/gap_thresholds.md`.
     pub(crate) least_scatter_ratio: f64,
     pub(crate) dynamic_objects: DynamicObjectThresholds,
     pub(crate) flicker: FlickerThresholds,
@@ -42,7 +42,7 @@ pub(crate) struct DynamicObjectThresholds {
     pub(crate) later_s: f64,
     /// Smallest part of the pictures in which the place is seen. Set on nine recordings by another renderer: with six
     /// pictures, standing robots beside a line, which hides their place from most pictures, were called walkers in seven of
-    /// them.
+    /// them. Halving it changes a report, see `docs/figures/gap_thresholds.md`.
     pub(crate) least_seen: f64,
     /// Smallest part of those in which it is plain carpet. Set on draws 0 and 1, together with [`Self::least_share`]; 70 %
     /// before.
@@ -58,9 +58,11 @@ pub(crate) struct DynamicObjectThresholds {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FlickerThresholds {
     /// Bands into which a picture is cut, along its rows and along its columns. Chosen: lamps at 100 Hz flicker three times
-    /// in a picture that is read out in 30 ms, with four bands each time.
+    /// in a picture that is read out in 30 ms, with four bands each time. Doubling it changes a report, see
+    /// `docs/figures/gap_thresholds.md`.
     pub(crate) bands: usize,
-    /// Fewest blocks of carpet in a band. Chosen: the median of five withstands two outliers.
+    /// Fewest blocks of carpet in a band. Chosen: the median of five withstands two outliers. Doubling it changes a report,
+    /// see `docs/figures/gap_thresholds.md`.
     pub(crate) least_blocks: usize,
     /// Material size of bands, root mean square, natural logarithm of light. Chosen: half of
     /// [`PatternThresholds::material_photometry`].
@@ -71,6 +73,7 @@ pub(crate) struct FlickerThresholds {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MissingLineThresholds {
     /// Lines are compared with others of their width: bins of the half width, for each pixel. Chosen; no measurement.
+    /// Doubling it changes a report, see `docs/figures/gap_thresholds.md`.
     pub(crate) width_bins_per_px: f64,
     /// Bin of all lines that are wider than those of the bins before it: 13.3 px of half width or more. Chosen; no
     /// measurement.
@@ -81,9 +84,10 @@ pub(crate) struct MissingLineThresholds {
     /// A piece found farther than this from its predicted place belongs to another line, pixels. Chosen; no measurement.
     pub(crate) near_px: f64,
     /// Fewest expected pieces of the line, and of the lines that it is compared with. Chosen: a part of 24 pieces is known to
-    /// 10 % (√(p (1 − p) / 24), p = 1/2).
+    /// 10 % (√(p (1 − p) / 24), p = 1/2). Doubling it changes a report, see `docs/figures/gap_thresholds.md`.
     pub(crate) least_pieces: f64,
     /// Smallest part of the pieces of other lines that is found: where few are, none is missed. Chosen; no measurement.
+    /// Doubling it changes a report, see `docs/figures/gap_thresholds.md`.
     pub(crate) least_usually_found: f64,
     /// Fewest frames that show the line's place. Chosen; no measurement.
     pub(crate) least_frames: usize,
@@ -109,7 +113,8 @@ pub(crate) struct OdometryThresholds {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PatternThresholds {
     /// Columns and rows of the grid of the picture. Chosen: squares of 40 px at 320 × 240. They are too coarse for a dent in
-    /// the lens that few lines cross: it is silent in 4 of 4 recordings of draw 3.
+    /// the lens that few lines cross: it is silent in 4 of 4 recordings of draw 3. Halving it changes a report, see
+    /// `docs/figures/gap_thresholds.md`.
     pub(crate) picture_grid: [usize; 2],
     /// Side of a cell of the field, metres. Chosen; no measurement.
     pub(crate) field_cell_m: f64,
@@ -136,7 +141,7 @@ pub(crate) struct PatternThresholds {
     /// Material size of patterns of the geometry, pixels. Chosen; no measurement.
     pub(crate) material_geometry_px: f64,
     /// The same of the photometry, natural logarithm of light. Chosen: a little more than a patch of carpet,
-    /// [`super::NuisanceThresholds::patch_level`].
+    /// [`super::NuisanceThresholds::patch_level`]. Doubling it changes a report, see `docs/figures/gap_thresholds.md`.
     pub(crate) material_photometry: f64,
     /// The same of the sharpness, pixels squared. Chosen; no measurement.
     pub(crate) material_sharpness_px2: f64,

@@ -8,7 +8,8 @@ pub(crate) struct InferenceThresholds {
     /// Frames in a row that are held out together, as neighbours see the same things. Fewer in short recordings. Chosen; no
     /// measurement.
     pub(crate) held_out_run_frames: usize,
-    /// One run of so many is held out. Chosen: a quarter of the recording.
+    /// One run of so many is held out. Chosen: a quarter of the recording. Halving it changes a report, see
+    /// `docs/figures/gap_thresholds.md`.
     pub(crate) held_out_every: usize,
 
     /// Folds of the cross-validation. Chosen: between five and ten, as is usual (Hastie, Tibshirani and Friedman 2009,
@@ -19,7 +20,8 @@ pub(crate) struct InferenceThresholds {
     pub(crate) fold_run_frames: usize,
     /// Neighbouring views whose scores are taken to be correlated: the bandwidth of Bartlett's kernel (Newey and West 1987).
     /// Derived: the rule of thumb 4 (n / 100)^(2/9) (Newey and West 1994) gives 3 for 28 to 99 views. A test in `evidence.rs`
-    /// has p-values held to their level with it, on errors that frames share.
+    /// has p-values held to their level with it, on errors that frames share. Doubling it changes a report, see
+    /// `docs/figures/gap_thresholds.md`.
     pub(crate) correlated_clusters: usize,
     /// A column has no scatter over the field where its variance by places is below this part of that by views: the odometry.
     /// Chosen: far above rounding, and far below what any measurement with a place has.

@@ -29,7 +29,8 @@ pub(crate) struct LinearModelThresholds {
 /// Standard deviations of the nuisance parameters.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NuisanceThresholds {
-    /// Brightness of a line, natural logarithm. Chosen: worn and dusty lines differ by a few percent.
+    /// Brightness of a line, natural logarithm. Chosen: worn and dusty lines differ by a few percent. Halving it changes a
+    /// report, see `docs/figures/gap_thresholds.md`.
     pub(crate) line_level: f64,
     /// Brightness of the carpet, natural logarithm. Chosen: rolls and dirt.
     pub(crate) carpet_level: f64,

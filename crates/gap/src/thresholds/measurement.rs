@@ -78,9 +78,9 @@ pub(crate) struct ProfileThresholds {
     /// asks for.
     pub(crate) least_contrast: f64,
     /// Distance of the line's inner part, whose colour is measured, from the line's side: standard deviations of the blur.
-    /// Chosen: the side has risen to 97.7 % there.
+    /// Chosen: the side has risen to 97.7 % there. Doubling it changes a report, see `docs/figures/gap_thresholds.md`.
     pub(crate) inner_margin_sigmas: f64,
-    /// And pixels beside that. Chosen; no measurement.
+    /// And pixels beside that. Chosen; no measurement. Doubling it changes a report, see `docs/figures/gap_thresholds.md`.
     pub(crate) inner_margin_px: f64,
     /// Smallest half width of that inner part, pixels. Chosen; no measurement.
     pub(crate) least_inner_half_width_px: f64,
@@ -97,7 +97,8 @@ pub(crate) struct CarpetThresholds {
     /// and the 640 px of the study's pictures, so that a block shows as much carpet in both.
     pub(crate) large_blocks_from_width_px: u32,
     /// Lowest and highest frequency in which noise is measured, as the sum of the coefficient's row and column. Chosen: lower
-    /// ones hold the carpet's texture, and of higher ones a JPEG file keeps little.
+    /// ones hold the carpet's texture, and of higher ones a JPEG file keeps little. Doubling it changes a report, see
+    /// `docs/figures/gap_thresholds.md`.
     pub(crate) noise_frequencies: [usize; 2],
     /// Largest quantisation step of a coefficient in which noise is measured, grey levels. Chosen: of noise of 3 grey levels,
     /// 5 % of the coefficients are then rounded to something else than 0.

@@ -7,10 +7,12 @@
 //! | Set on | other values were tried on the recordings that are named, and the results decided |
 //! | Chosen: … | a judgement. What follows is the reason that was given, or what the number amounts to; it is no evidence |
 //! | Chosen, when … | a judgement, made for a case that is named. No other value is known to have been tried |
-//! | Chosen; no measurement | a judgement, and nothing else is known of it |
+//! | Chosen; no measurement | a judgement without a known reason |
 //!
 //! Draws are those of the study in `docs/gap.md`, draw 0 with the recordings of its first runs. No number was set on draw 3, whose
 //! figures that page has.
+//! `docs/figures/gap_thresholds.md` shows what halving and doubling each number changes in a few recordings. The numbers with which a
+//! verdict, a name or a kind of finding changed point there.
 //!
 //! Numbers of the arithmetic (steps of differences, ends of iterations, guards against division by zero) stand where they are
 //! used; sizes from which on an effect matters stand with the effect, in `reality_sim_sensor`.
