@@ -10,11 +10,11 @@ use crate::thresholds::{ProfileThresholds, Thresholds};
 const MAX_STEPS: usize = 12;
 const THRESHOLDS: ProfileThresholds = Thresholds::DEFAULT.measurement.profile;
 
-/// Parameters of the bar: middle, variance of the blur, and the linear levels of the line and of the flanks before and
-/// after it.
+/// Parameters of the bar: middle (pixels), variance of the blur (pixels squared), and the linear levels of the line and of
+/// the flanks before and after it.
 type Values = SVector<f64, 5>;
 
-/// A fitted bar.
+/// Fitted bar.
 pub(super) struct Bar {
     pub(super) values: Values,
     /// Standard deviations of the parameters.
@@ -23,8 +23,8 @@ pub(super) struct Bar {
     pub(super) residual: f64,
 }
 
-/// Fits a bar by the Levenberg–Marquardt method (Marquardt 1963); `None` where the fit ends at the edge of what is
-/// believed.
+/// Fits a bar by the Levenberg–Marquardt method (Marquardt 1963). None if the fit does not end well
+/// inside the permitted range.
 pub(super) fn fit_bar(samples: &[Sample], gamma: f64, piece: &LinePiece, found_px: f64) -> Option<Bar> {
     let mut values = start(samples, gamma, piece, found_px)?;
     let mut damping = 1e-3;
@@ -68,7 +68,7 @@ pub(super) fn fit_bar(samples: &[Sample], gamma: f64, piece: &LinePiece, found_p
     })
 }
 
-/// Initial values: levels are means over the samples well inside and well outside the line. Where the line is divided for that
+/// Returns the initial values. Levels are means over the samples well inside and well outside the line. Where the line is divided for that
 /// only changes where the fit begins.
 fn start(samples: &[Sample], gamma: f64, piece: &LinePiece, found_px: f64) -> Option<Values> {
     let mut sums = [(0.0, 0.0); 3];

@@ -1,4 +1,4 @@
-//! Offsets of the colour channels against luma across a line, and the line's own colour.
+//! Offsets of the colour channels against luma across a line, and the colour of the line.
 
 use super::samples::Sample;
 use crate::{
@@ -8,8 +8,9 @@ use crate::{
 
 const THRESHOLDS: ProfileThresholds = Thresholds::DEFAULT.measurement.profile;
 
-/// Offsets of red and blue against luma, by the centroid of the contrast against the flanks, and each colour's share of
-/// luma's contrast. Averaging moves no centroid, so that chroma stored at half the resolution does not bias it.
+/// Returns the offsets of red and blue against luma, from the centroids of the contrast with the flanks, and each colour's
+/// share in the contrast of luma. Averaging does not move centroids, so chroma stored at half the resolution does not bias
+/// the offsets.
 pub(super) fn colors(
     samples: &[Sample],
     center: f64,
@@ -40,7 +41,7 @@ pub(super) fn colors(
     for sample in samples {
         let across = sample.across_px - center;
         if across.abs() <= window {
-            // The flank runs from the one side's level to the other's under the line.
+            // Under the line, the level of the flanks is interpolated between both sides.
             let fraction = 0.5 + 0.5 * across / window;
             for (channel, value) in with_luma(sample).into_iter().enumerate() {
                 let stands_out =
@@ -69,7 +70,7 @@ fn add(sums: &mut [f64; 5], values: &[f64; 4], weight: f64) {
     }
 }
 
-/// Mean encoded values within some distance of the middle; `None` where too few pixels are.
+/// Returns the mean encoded values within some distance of the middle. None if there are too few pixels.
 pub(super) fn inner_level(samples: &[Sample], center: f64, within_px: f64) -> Option<[f64; 3]> {
     (within_px > THRESHOLDS.least_inner_half_width_px).then_some(())?;
     let inside = samples.iter().filter(|sample| (sample.across_px - center).abs() < within_px);

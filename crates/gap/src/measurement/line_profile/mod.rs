@@ -1,8 +1,8 @@
-//! A white line's profile in the picture: where its middle is, how sharp its sides are, and where each colour has it.
+//! Profile of a white line in the picture: its middle, the blur of its edges, and the offsets of its colours.
 //!
-//! All pixels of a short piece of line are taken at their distance from the line's middle: as the line crosses the
-//! grid of pixels at a slant, its side is sampled far finer than by one row of pixels (the slanted edge of ISO 12233).
-//! The profile fitted is a bright bar between two flanks in linear light, blurred by a Gaussian, then encoded.
+//! The samples are all pixels of a short piece of line, by their distance from its middle. As the line crosses the grid of
+//! pixels at a slant, they sample its edges far more finely than one row of pixels does (slanted-edge method of ISO 12233).
+//! The fitted profile is a bright bar between two flanks in linear light, blurred by a Gaussian, then encoded.
 
 mod bar_fit;
 mod color_offset;
@@ -27,11 +27,11 @@ const THRESHOLDS: ProfileThresholds = Thresholds::DEFAULT.measurement.profile;
 pub(crate) struct Profile {
     /// Offset of its middle from the predicted one along the normal, pixels.
     pub(crate) offset_px: f64,
-    /// Standard deviation of the offset by the fit alone.
+    /// Standard deviation of the offset by the fit alone, pixels.
     pub(crate) offset_sigma_px: f64,
     /// Variance of the blur along the normal, the pixel's own included, pixels squared.
     pub(crate) variance_px2: f64,
-    /// Standard deviation of the variance by the fit alone.
+    /// Standard deviation of the variance by the fit alone, pixels squared.
     pub(crate) variance_sigma_px2: f64,
     /// Offsets of red and of blue against luma along the normal, pixels.
     pub(crate) color_offset_px: Option<[f64; 2]>,
@@ -41,8 +41,8 @@ pub(crate) struct Profile {
     pub(crate) level: Option<[f64; 3]>,
 }
 
-/// Fits the profile of a piece that a coarser search has found `found_px` from the predicted middle along the normal;
-/// `None` where no line fits.
+/// Fits the profile of a piece that the coarse search has found `found_px` from the predicted middle along the normal. None
+/// if no line fits.
 pub(crate) fn fit(picture: &RgbImage, gamma: f64, piece: &LinePiece, found_px: f64) -> Option<Profile> {
     let samples = samples(picture, piece, found_px)?;
     let bar = fit_bar(&samples, gamma, piece, found_px)?;

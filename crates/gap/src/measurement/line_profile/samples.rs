@@ -1,4 +1,4 @@
-//! Pixels of a piece of line, by their distance from its middle.
+//! Pixels of a piece of line, with their distances from its middle.
 
 use glam::DVec2;
 use image::RgbImage;
@@ -10,20 +10,20 @@ use crate::{
 
 const THRESHOLDS: ProfileThresholds = Thresholds::DEFAULT.measurement.profile;
 
-/// A piece of line whose profile is to be measured.
+/// Piece of line whose profile is measured.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LinePiece {
-    /// Predicted pixel of its middle.
+    /// Predicted pixel of the middle.
     pub(crate) pixel: DVec2,
-    /// Unit vector across it.
+    /// Unit vector across the line in the picture.
     pub(crate) normal: DVec2,
-    /// Half its width along the normal, pixels.
+    /// Half the width along the normal, pixels.
     pub(crate) half_width_px: f64,
     /// Predicted variance of the blur, the pixel's own aperture included, pixels squared.
     pub(crate) variance_px2: f64,
 }
 
-/// A pixel of the piece.
+/// Pixel of the piece.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
     /// Distance from the line's predicted middle along the normal, pixels.
@@ -33,7 +33,7 @@ pub(super) struct Sample {
     pub(super) luma: f64,
 }
 
-/// Returns the piece's pixels around `found_px` along the normal; `None` where some are outside the picture.
+/// Returns the piece's pixels around `found_px` along the normal. None if some are outside the picture.
 pub(super) fn samples(picture: &RgbImage, piece: &LinePiece, found_px: f64) -> Option<Vec<Sample>> {
     let reach =
         piece.half_width_px + THRESHOLDS.flank_sigmas * piece.variance_px2.sqrt() + THRESHOLDS.flank_px;

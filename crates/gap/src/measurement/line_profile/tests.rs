@@ -9,12 +9,12 @@ use crate::measurement::luma::LUMA;
 
 const GAMMA: f64 = 2.2;
 
-/// A white bar on green, at a slant, its middle `offset_px` from the picture's; each colour shifted on its own. Every
-/// pixel is the mean of 8 × 8 points of a bar blurred by `sigma_px`: summed up, not by the fitted formula.
+/// Returns a slanted white bar on green, its middle `offset_px` from that of the picture, with each colour shifted. Every
+/// pixel is the mean of 8 × 8 points of a bar blurred by `sigma_px`, summed numerically instead of by the fitted formula.
 fn bar(angle_rad: f64, offset_px: f64, half_width_px: f64, sigma_px: f64, shifts_px: [f64; 3]) -> RgbImage {
     let normal = DVec2::from_angle(angle_rad);
     let covered = |across: f64| {
-        // The Gaussian as 41 equal steps of ± 4 standard deviations.
+        // Gaussian at 41 equal steps within ± 4 standard deviations.
         let (mut sum, mut total) = (0.0, 0.0);
         for step in -20..=20 {
             let z = f64::from(step) * 0.2;
@@ -83,8 +83,8 @@ proptest! {
     }
 }
 
-/// As a JPEG file keeps it: red and blue against luma as means of 2 × 2 pixels, drawn again by weights 3 and 1 along
-/// each axis.
+/// Returns the picture as a JPEG file stores it: red and blue against luma are averaged over 2 × 2 pixels, and interpolated
+/// with weights 3 and 1 along each axis.
 fn with_halved_colors(picture: &RgbImage) -> RgbImage {
     let luma =
         |rgb: [u8; 3]| rgb.iter().zip(LUMA).map(|(value, weight)| f64::from(*value) * weight).sum::<f64>();
