@@ -15,7 +15,7 @@ const RADIAL: u32 = 1u;
 const MIXED: u32 = 2u;
 
 /// Picture to be drawn.
-struct Scene {
+struct Drawing {
     eye: Placement,
     proxy: ProxyGeometry,
     width: u32,
@@ -47,7 +47,7 @@ struct Source {
     padding: u32,
 }
 
-@group(0) @binding(0) var<uniform> scene: Scene;
+@group(0) @binding(0) var<uniform> drawing: Drawing;
 @group(0) @binding(1) var<uniform> sources: array<Source, SOURCES>;
 /// `RayTable`: blocks of sixteen pixels of a row, 0 where a pixel sees nothing.
 @group(0) @binding(2) var<storage, read> rays: array<f32>;
@@ -68,7 +68,7 @@ struct Opinion {
 var<private> opinions: array<Opinion, SOURCES>;
 
 fn ray(column: u32, row: u32) -> vec3<f32> {
-    let blocks_in_row = (scene.width + LANES - 1u) / LANES;
+    let blocks_in_row = (drawing.width + LANES - 1u) / LANES;
     let first = (row * blocks_in_row + column / LANES) * (3u * LANES) + column % LANES;
     return vec3<f32>(rays[first], rays[first + LANES], rays[first + 2u * LANES]);
 }
@@ -104,13 +104,13 @@ fn source_weight(number: u32, point: ProxyPoint, pixel: Pixel) -> f32 {
     // Ratio of pixels per length on the surface, the target's to the source's: squared, it falls with the square of the
     // distance, and on the ground once more for the oblique view.
     let nearer = 1.0 / (point.distance * pixel.nearness);
-    let flatter = nearer * scene.eye.position.z / position.z;
+    let flatter = nearer * drawing.eye.position.z / position.z;
     let density = nearer * nearer * (1.0 + ground * (flatter - 1.0));
-    let per_angle = scene.angle_above + ground * (scene.angle_on_ground - scene.angle_above);
+    let per_angle = drawing.angle_above + ground * (drawing.angle_on_ground - drawing.angle_above);
     let penalty =
-        scene.softness + per_angle * (1.0 - cosine) + scene.resolution * max(density - 1.0, 0.0) / 3.0;
+        drawing.softness + per_angle * (1.0 - cosine) + drawing.resolution * max(density - 1.0, 0.0) / 3.0;
     let to_border = min(pixel.place, sources[number].camera.largest_px - pixel.place);
-    let fade = min((min(to_border.x, to_border.y) + 1.0) / scene.border_px, 1.0);
+    let fade = min((min(to_border.x, to_border.y) + 1.0) / drawing.border_px, 1.0);
     return fade / (penalty * penalty);
 }
 
@@ -128,7 +128,7 @@ fn opinion_of(number: u32, point: ProxyPoint) -> Opinion {
 /// Weighted mean colour, and the sum of the weights.
 fn weighted_mean() -> vec4<f32> {
     var sum = vec4<f32>(0.0);
-    for (var number = 0u; number < scene.sources; number++) {
+    for (var number = 0u; number < drawing.sources; number++) {
         let opinion = opinions[number];
         sum += opinion.weight * vec4<f32>(opinion.color, 1.0);
     }
@@ -137,17 +137,17 @@ fn weighted_mean() -> vec4<f32> {
 
 /// Mean colour with less weight for outliers, and the sum of the weights; the weights keep their reduced values.
 fn agreed(before: vec4<f32>) -> vec4<f32> {
-    if scene.sources < 3u {
+    if drawing.sources < 3u {
         return before;
     }
-    let per_square = 1.0 / (scene.disagreement * scene.disagreement);
+    let per_square = 1.0 / (drawing.disagreement * drawing.disagreement);
     var priors: array<f32, SOURCES>;
-    for (var number = 0u; number < scene.sources; number++) {
+    for (var number = 0u; number < drawing.sources; number++) {
         priors[number] = opinions[number].weight;
     }
     var mean = before;
     for (var round = 0u; round < 3u; round++) {
-        for (var number = 0u; number < scene.sources; number++) {
+        for (var number = 0u; number < drawing.sources; number++) {
             let difference = opinions[number].color - mean.xyz;
             opinions[number].weight = priors[number] / (1.0 + per_square * dot(difference, difference));
         }
@@ -159,7 +159,7 @@ fn agreed(before: vec4<f32>) -> vec4<f32> {
 /// Result for a point: its colour and source in one word, then the trust.
 fn mixed(point: ProxyPoint) -> vec2<u32> {
     var best = 0.0;
-    for (var number = 0u; number < scene.sources; number++) {
+    for (var number = 0u; number < drawing.sources; number++) {
         opinions[number] = opinion_of(number, point);
         best = max(best, opinions[number].weight);
     }
@@ -167,12 +167,12 @@ fn mixed(point: ProxyPoint) -> vec2<u32> {
     let mean = agreed(before);
     var source = NOWHERE;
     var largest = 0.0;
-    for (var number = 0u; number < scene.sources; number++) {
+    for (var number = 0u; number < drawing.sources; number++) {
         let weight = opinions[number].weight;
         source = select(source, number, weight > largest);
         largest = max(largest, weight);
     }
-    let penalty = 1.0 / sqrt(max(best, 1e-12)) - scene.softness;
+    let penalty = 1.0 / sqrt(max(best, 1e-12)) - drawing.softness;
     let agreement = mean.w / max(before.w, 1e-12);
     let trust = select(min(agreement / (1.0 + max(penalty, 0.0)), 1.0), 0.0, source == NOWHERE);
     let color = vec3<u32>(mean.xyz + 0.5);
@@ -186,13 +186,13 @@ fn blend(
     @builtin(local_invocation_index) thread: u32,
 ) {
     let index = (group.y * groups.x + group.x) * THREADS + thread;
-    if index >= scene.width * scene.height {
+    if index >= drawing.width * drawing.height {
         return;
     }
-    let in_camera = ray(index % scene.width, index / scene.width);
+    let in_camera = ray(index % drawing.width, index / drawing.width);
     if all(in_camera == vec3<f32>(0.0)) {
         warped[index] = vec2<u32>(NOWHERE << 24u, 0u);
         return;
     }
-    warped[index] = mixed(proxy_point(scene.eye, in_camera));
+    warped[index] = mixed(proxy_point(drawing.eye, in_camera));
 }

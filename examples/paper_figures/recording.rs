@@ -5,11 +5,10 @@ use std::{path::Path, sync::Arc};
 use image::RgbImage;
 use reality_sim::{
     Camera, FieldDimensions, Localizer, LocalizerConfig, Observation, Sequence,
-    backend::{Backend, BackendError, CpuBackend},
+    backend::{Backend, BackendError},
     evaluation::{PoseError, percentile},
     filter::{Filter, FilterConfig, ScoredFilter},
-    observation::{NormalSearch, ObservationConfig, Scorer},
-    warp::Warper,
+    observation::{NormalSearch, ObservationConfig},
 };
 
 /// Pictures of a sequence, decoded once for all runs.
@@ -31,15 +30,6 @@ pub enum Model {
 struct NormalSearchBackend;
 
 impl Backend for NormalSearchBackend {
-    fn scorer(
-        &self,
-        camera: &Camera,
-        field: &FieldDimensions,
-        config: ObservationConfig,
-    ) -> Result<Box<dyn Scorer>, BackendError> {
-        CpuBackend.scorer(camera, field, config)
-    }
-
     fn filter(
         &self,
         camera: &Camera,
@@ -49,10 +39,6 @@ impl Backend for NormalSearchBackend {
     ) -> Result<Box<dyn Filter>, BackendError> {
         let scorer = NormalSearch::new(camera, field, observation);
         Ok(Box::new(ScoredFilter::new(Box::new(scorer), config)))
-    }
-
-    fn warper(&self) -> Result<Arc<dyn Warper>, BackendError> {
-        CpuBackend.warper()
     }
 }
 

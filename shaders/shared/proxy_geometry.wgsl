@@ -56,7 +56,7 @@ fn holds(billboard: Billboard, wider: f32, across: f32, up: f32) -> bool {
 fn proxy_point(eye: Placement, ray: vec3<f32>) -> ProxyPoint {
     let position = eye.position.xyz;
     let direction = eye.right.xyz * ray.x + eye.down.xyz * ray.y + eye.forward.xyz * ray.z;
-    let end = select(scene.proxy.high.xyz, scene.proxy.low.xyz, direction < vec3<f32>(0.0)) - position;
+    let end = select(drawing.proxy.high.xyz, drawing.proxy.low.xyz, direction < vec3<f32>(0.0)) - position;
     // A ray parallel to a wall never meets it: this avoids a division by 0.
     let is_across = abs(direction) > vec3<f32>(1e-12);
     let to_wall = select(vec3<f32>(FAR_M), end / direction, is_across);
@@ -64,7 +64,7 @@ fn proxy_point(eye: Placement, ray: vec3<f32>) -> ProxyPoint {
     var on_ground = select(0.0, 1.0, to_wall.z < distance && direction.z < 0.0);
     distance = min(distance, to_wall.z);
     for (var number = 0u; number < BILLBOARDS; number++) {
-        let billboard = scene.proxy.billboards[number];
+        let billboard = drawing.proxy.billboards[number];
         let to_billboard = (billboard.x - position.x) / direction.x;
         let y = position.y + to_billboard * direction.y;
         let z = position.z + to_billboard * direction.z;
@@ -103,7 +103,7 @@ fn unhidden(position: vec3<f32>, point: ProxyPoint) -> bool {
     let slope = way.y / way.x;
     let margin = POST_RADIUS_M * (min(sqrt(1.0 + slope * slope), MOST_OBLIQUE) - SHARP_EDGE);
     for (var number = 0u; number < BILLBOARDS; number++) {
-        let billboard = scene.proxy.billboards[number];
+        let billboard = drawing.proxy.billboards[number];
         let share = (billboard.x - position.x) / way.x;
         let across = position.y + share * way.y;
         let up = position.z + share * way.z;

@@ -13,35 +13,9 @@ use crate::{
     warp::{CpuWarper, Warper},
 };
 
-/// Makes scorers, filters and warpers that run on one device.
+/// Makes scorers, filters and warpers that run on one device. What an implementation leaves out runs on the CPU.
 pub trait Backend: Send + Sync {
     /// Makes an observation model that scores poses. Fails if the device cannot provide it.
-    fn scorer(
-        &self,
-        camera: &Camera,
-        field: &FieldDimensions,
-        config: ObservationConfig,
-    ) -> Result<Box<dyn Scorer>, BackendError>;
-
-    /// Makes a particle filter with its observation model. It has no particles before its first [`Filter::initialize`].
-    /// Fails if the device cannot provide it.
-    fn filter(
-        &self,
-        camera: &Camera,
-        field: &FieldDimensions,
-        observation: ObservationConfig,
-        config: FilterConfig,
-    ) -> Result<Box<dyn Filter>, BackendError>;
-
-    /// Returns a warper, which threads may share. Fails if the device cannot provide it.
-    fn warper(&self) -> Result<Arc<dyn Warper>, BackendError>;
-}
-
-/// Backend on the CPU. It never fails.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct CpuBackend;
-
-impl Backend for CpuBackend {
     fn scorer(
         &self,
         camera: &Camera,
@@ -51,6 +25,8 @@ impl Backend for CpuBackend {
         Ok(Box::new(CpuScorer::new(camera, field, config)))
     }
 
+    /// Makes a particle filter with its observation model. It has no particles before its first [`Filter::initialize`].
+    /// Fails if the device cannot provide it.
     fn filter(
         &self,
         camera: &Camera,
@@ -58,11 +34,17 @@ impl Backend for CpuBackend {
         observation: ObservationConfig,
         config: FilterConfig,
     ) -> Result<Box<dyn Filter>, BackendError> {
-        let scorer = Box::new(CpuScorer::new(camera, field, observation));
-        Ok(Box::new(ScoredFilter::new(scorer, config)))
+        Ok(Box::new(ScoredFilter::new(self.scorer(camera, field, observation)?, config)))
     }
 
+    /// Returns a warper, which threads may share. Fails if the device cannot provide it.
     fn warper(&self) -> Result<Arc<dyn Warper>, BackendError> {
         Ok(Arc::new(CpuWarper))
     }
 }
+
+/// Backend on the CPU. It never fails.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct CpuBackend;
+
+impl Backend for CpuBackend {}

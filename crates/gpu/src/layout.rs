@@ -157,10 +157,10 @@ pub(crate) struct ProxyGeometryLayout {
     billboards: [BillboardLayout; 4],
 }
 
-/// `Scene` in `shaders/blend.wgsl`.
+/// `Drawing` in `shaders/blend.wgsl`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct SceneLayout {
+pub(crate) struct DrawingLayout {
     eye: PlacementLayout,
     proxy: ProxyGeometryLayout,
     width: u32,
@@ -305,7 +305,7 @@ impl From<&ProxyGeometry> for ProxyGeometryLayout {
     }
 }
 
-impl SceneLayout {
+impl DrawingLayout {
     pub fn new(target: &Target, sources: usize, weights: &BlendWeights) -> Self {
         Self {
             eye: PlacementLayout::from(&target.placement),
@@ -390,7 +390,7 @@ mod tests {
         assert_same_layout!(BillboardLayout in "blend.wgsl" as "Billboard":
             x half_width top opening_half_width opening_top padding_0 padding_1 padding_2);
         assert_same_layout!(ProxyGeometryLayout in "blend.wgsl" as "ProxyGeometry": low high billboards);
-        assert_same_layout!(SceneLayout in "blend.wgsl" as "Scene":
+        assert_same_layout!(DrawingLayout in "blend.wgsl" as "Drawing":
             eye proxy width height sources angle_on_ground angle_above resolution border_px softness disagreement
             padding_0 padding_1 padding_2);
         assert_same_layout!(SourceLayout in "blend.wgsl" as "Source":

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use reality_sim_core::{
     backend::BackendError,
     camera::{Lanes, Lens},
-    warp::{BlendWeights, MAX_SOURCES, Origin, Source, Target, Warped, Warper},
+    warp::{BlendWeights, MAX_SOURCES, Origin, Source, Target, Warper, complete},
 };
 
 use crate::{
@@ -13,7 +13,7 @@ use crate::{
     buffers::{readback, storage, storage_of, uniform, write},
     kernel::{Kernel, groups, run_steps},
     layers::Layers,
-    layout::{SceneLayout, SourceLayout, SourcesLayout},
+    layout::{DrawingLayout, SourceLayout, SourcesLayout},
     recent::Recent,
 };
 
@@ -35,7 +35,7 @@ pub struct GpuWarper {
     context: Arc<GpuContext>,
     /// One kernel for each value of [`Lenses`].
     kernels: [Kernel; 3],
-    scene: wgpu::Buffer,
+    drawing: wgpu::Buffer,
     sources: wgpu::Buffer,
     kept: Mutex<Kept>,
 }
@@ -69,7 +69,7 @@ impl GpuWarper {
         };
         let warper = Self {
             kernels: [Lenses::Perspective, Lenses::Radial, Lenses::Mixed].map(kernel),
-            scene: uniform::<SceneLayout>(&context, "the picture wanted")?,
+            drawing: uniform::<DrawingLayout>(&context, "the picture wanted")?,
             sources: uniform::<SourcesLayout>(&context, "the sources")?,
             kept: Mutex::new(kept),
             context,
@@ -78,20 +78,22 @@ impl GpuWarper {
         Ok(warper)
     }
 
-    /// Draws a picture, see [`reality_sim_core::warp::blend`].
-    pub fn draw(
+    fn draw(
         &self,
         target: &Target,
         sources: &[Source],
         weights: &BlendWeights,
-    ) -> Result<Warped, GpuError> {
+        colors: &mut [[u8; 3]],
+    ) -> Result<Vec<Origin>, GpuError> {
+        assert_eq!(colors.len(), target.rays.pixels(), "one colour for every pixel");
         let sources = &sources[..sources.len().min(MAX_SOURCES)];
         let words = self.words(target, sources, weights)?;
         let origin = |[word, trust]: &WarpedWords| Origin { source: (word >> 24) as u8, trust: *trust as u8 };
         let color = |[word, _]: &WarpedWords| [*word as u8, (word >> 8) as u8, (word >> 16) as u8];
-        let warped =
-            Warped { colors: words.iter().map(color).collect(), origins: words.iter().map(origin).collect() };
-        Ok(warped.filled(target.rays))
+        colors.iter_mut().zip(&words).for_each(|(drawn, words)| *drawn = color(words));
+        let mut origins: Vec<Origin> = words.iter().map(origin).collect();
+        complete(target.rays, colors, &mut origins);
+        Ok(origins)
     }
 
     fn words(
@@ -102,7 +104,7 @@ impl GpuWarper {
     ) -> Result<Vec<WarpedWords>, GpuError> {
         let context = &*self.context;
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        let pixels = target.rays.width as usize * target.rays.height as usize;
+        let pixels = target.rays.pixels();
         kept.make_room(context, pixels, sources)?;
         let Kept { layers, rays, outputs } = &mut *kept;
         let mut layouts: SourcesLayout = bytemuck::Zeroable::zeroed();
@@ -111,9 +113,9 @@ impl GpuWarper {
         }
         let rays = rays.get_or_make(target.rays.blocks(), |_| ray_buffer(context, target.rays.blocks()))?;
         write(context, &self.sources, &layouts);
-        write(context, &self.scene, &[SceneLayout::new(target, sources.len(), weights)]);
+        write(context, &self.drawing, &[DrawingLayout::new(target, sources.len(), weights)]);
         let bindings = [
-            (&self.scene).into(),
+            (&self.drawing).into(),
             (&self.sources).into(),
             (&*rays).into(),
             layers.view().into(),
@@ -131,13 +133,14 @@ impl GpuWarper {
 }
 
 impl Warper for GpuWarper {
-    fn blend(
+    fn blend_into(
         &self,
         target: &Target,
         sources: &[Source],
         weights: &BlendWeights,
-    ) -> Result<Warped, BackendError> {
-        Ok(self.draw(target, sources, weights)?)
+        colors: &mut [[u8; 3]],
+    ) -> Result<Vec<Origin>, BackendError> {
+        Ok(self.draw(target, sources, weights, colors)?)
     }
 }
 
@@ -198,7 +201,7 @@ mod tests {
         camera::{Camera, Distortion, KernelCamera},
         field::FieldDimensions,
         pose::{CameraPose, Pose2},
-        warp::{Hall, Picture, Placement, ProxyGeometry, RayTable, blend},
+        warp::{Hall, Picture, Placement, ProxyGeometry, RayTable, Warped, blend},
     };
 
     use super::*;

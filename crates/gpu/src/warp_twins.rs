@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use reality_sim_core::{
+    backend::BackendError,
     camera::{Camera, Distortion, ImageCircle, InvalidCamera, KernelCamera, Opencv, OpencvFisheye},
     field::FieldDimensions,
     filter::{Purpose, Stream},
@@ -10,11 +11,11 @@ use reality_sim_core::{
     pose::{CameraPose, Pose2},
     warp::{
         BlendWeights, Hall, MAX_SOURCES, Origin, Picture, Placement, ProxyGeometry, RayTable, Source, Target,
-        blend,
+        Warper, blend,
     },
 };
 
-use crate::{GpuContext, GpuError, GpuWarper};
+use crate::{GpuContext, GpuWarper};
 
 /// Fraction of the pixels that may differ by more than one grey level, come from another source, or differ in trust by
 /// more than two. Rounding decides at the edges of goals, of the proxy geometry and of what a source sees, and between two
@@ -46,7 +47,7 @@ impl WarpComparison {
 }
 
 /// Compares pictures from every number of sources, zero included, on this many scenes.
-pub fn compare_warps(context: &Arc<GpuContext>, scenes: u64) -> Result<WarpComparison, GpuError> {
+pub fn compare_warps(context: &Arc<GpuContext>, scenes: u64) -> Result<WarpComparison, BackendError> {
     let field = FieldDimensions::preset("humanoid-kidsize-2010").expect("a preset of the core");
     let cameras = cameras().expect("lenses that are valid");
     let kernel_cameras: Vec<KernelCamera> = cameras.iter().map(KernelCamera::new).collect();
@@ -59,8 +60,8 @@ pub fn compare_warps(context: &Arc<GpuContext>, scenes: u64) -> Result<WarpCompa
         let target =
             Target { rays: &tables[scene.camera], placement: Placement::new(scene.pose), proxy: &proxy };
         let sources: Vec<Source> =
-            scene.views.iter().map(|view| view.source(&kernel_cameras[view.camera])).collect();
-        let found = warper.draw(&target, &sources, &BlendWeights::default())?;
+            scene.taken.iter().map(|taken| taken.source(&kernel_cameras[taken.camera])).collect();
+        let found = warper.blend(&target, &sources, &BlendWeights::default())?;
         let expected = blend(&target, &sources, &BlendWeights::default());
         comparison.pixels += expected.colors.len();
         comparison.seen += expected.origins.iter().filter(|origin| origin.source != Origin::NOWHERE).count();
@@ -94,10 +95,11 @@ fn cameras() -> Result<Vec<Camera>, InvalidCamera> {
 struct Scene {
     camera: usize,
     pose: CameraPose,
-    views: Vec<View>,
+    taken: Vec<Taken>,
 }
 
-struct View {
+/// Picture taken at a pose.
+struct Taken {
     camera: usize,
     pose: CameraPose,
     picture: Arc<Picture>,
@@ -114,7 +116,7 @@ impl Scene {
         let n = stream.normals(0);
         let mount = MountPose { height_m: 0.5, pitch_rad: 0.3 + 0.1 * n[3], roll_rad: 0.1 * n[4] };
         let planar = Pose2::new(1.5 * n[0], n[1], 2.0 * n[2]);
-        let view = |number: usize| {
+        let taken = |number: usize| {
             let n = stream.normals(number as u32 + 1);
             let planar =
                 Pose2::new(planar.x_m + 0.3 * n[0], planar.y_m + 0.3 * n[1], planar.yaw_rad + 0.3 * n[2]);
@@ -127,14 +129,14 @@ impl Scene {
             let gain =
                 [0, 1, 2].map(|channel| 0.8 + 0.5 * stream.uniform(100 + 3 * number as u32 + channel) as f32);
             let picture = Arc::new(picture(&cameras[camera], &stream, number as u32));
-            View { camera, pose: mount.at(planar), picture, gain }
+            Taken { camera, pose: mount.at(planar), picture, gain }
         };
-        let views = (0..seed as usize % (MAX_SOURCES + 1)).map(view).collect();
-        Self { camera: camera(1), pose: mount.at(planar), views }
+        let taken = (0..seed as usize % (MAX_SOURCES + 1)).map(taken).collect();
+        Self { camera: camera(1), pose: mount.at(planar), taken }
     }
 }
 
-impl View {
+impl Taken {
     fn source<'a>(&'a self, camera: &'a KernelCamera) -> Source<'a> {
         Source { camera, placement: Placement::new(self.pose), picture: &self.picture, gain: self.gain }
     }

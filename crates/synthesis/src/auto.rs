@@ -2,7 +2,7 @@
 
 use reality_sim_core::pose::CameraPose;
 
-use crate::{Blend, Method, Reconstruction, SynthesisError, Synthesizer, nearest::as_recorded};
+use crate::{Blend, Method, Provenance, SynthesisError, Synthesizer, nearest::as_recorded};
 
 /// Distance within which a picture counts as recorded at the requested pose, root mean square pixels.
 const RECORDED_PX: f64 = 0.5;
@@ -17,12 +17,17 @@ impl Method for Auto {
         "auto"
     }
 
-    fn reconstruct(&self, from: &Synthesizer, pose: CameraPose) -> Result<Reconstruction, SynthesisError> {
+    fn draw(
+        &self,
+        from: &Synthesizer,
+        pose: CameraPose,
+        colors: &mut [[u8; 3]],
+    ) -> Result<Provenance, SynthesisError> {
         let near = from.nearest(pose, from.config().candidates)?;
         let mut recorded = near.into_iter().take_while(|neighbour| neighbour.distance_px <= RECORDED_PX);
         match recorded.find(|neighbour| from.archive().camera_of(neighbour.image) == from.camera()) {
-            Some(neighbour) => as_recorded(from, neighbour),
-            None => Blend.reconstruct(from, pose),
+            Some(neighbour) => as_recorded(from, neighbour, colors),
+            None => Blend.draw(from, pose, colors),
         }
     }
 }

@@ -16,7 +16,7 @@ use reality_sim_core::{
 use crate::{Archive, SynthesisError, select::select};
 
 /// Number of pictures used of a recording.
-const VIEWS: usize = 120;
+const PICTURES: usize = 120;
 /// Interval of those that are compared with others.
 const TARGET_STEP: usize = 2;
 /// Number of pictures that each is compared with.
@@ -44,15 +44,15 @@ const MOST_M: f64 = 12.0;
 /// Measures the hall around an archive's field. `None` if the pictures are too few, or all were taken at one place.
 pub fn measure_hall(archive: &Archive) -> Result<Option<Hall>, SynthesisError> {
     let usual = Hall::usual(archive.field());
-    let views = Views::new(archive, &usual)?;
-    if views.difference(&usual).places < LEAST_PLACES {
+    let pairs = PicturePairs::new(archive, &usual)?;
+    if pairs.difference(&usual).places < LEAST_PLACES {
         return Ok(None);
     }
-    let mut best = views.descend(usual);
+    let mut best = pairs.descend(usual);
     for measure in MEASURES {
         let (mut without, mut usual) = (best, usual);
         *measure(&mut without) = *measure(&mut usual);
-        if views.difference(&without).mean < views.difference(&best).mean + EVIDENCE {
+        if pairs.difference(&without).mean < pairs.difference(&best).mean + EVIDENCE {
             best = without;
         }
     }
@@ -70,14 +70,14 @@ const MEASURES: [fn(&mut Hall) -> &mut f64; 6] = [
 ];
 
 /// Small picture with its camera and pose.
-struct View {
+struct SmallPicture {
     camera: KernelCamera,
     rays: RayTable,
     placement: Placement,
     picture: Arc<Picture>,
 }
 
-impl View {
+impl SmallPicture {
     fn source(&self) -> Source<'_> {
         Source { camera: &self.camera, placement: self.placement, picture: &self.picture, gain: [1.0; 3] }
     }
@@ -92,29 +92,30 @@ struct Difference {
 }
 
 /// Pictures spread over a recording, and the pairs that are compared.
-struct Views<'a> {
+struct PicturePairs<'a> {
     archive: &'a Archive,
-    views: Vec<View>,
+    pictures: Vec<SmallPicture>,
     /// Pairs of a picture and one that shows much of the same from elsewhere.
     pairs: Vec<[usize; 2]>,
 }
 
-impl<'a> Views<'a> {
+impl<'a> PicturePairs<'a> {
     fn new(archive: &'a Archive, usual: &Hall) -> Result<Self, SynthesisError> {
-        let (count, wanted) = (archive.images().len(), archive.images().len().min(VIEWS));
-        let chosen = (0..wanted).into_par_iter().with_max_len(1).map(|i| view(archive, i * count / wanted));
-        let views: Vec<View> = chosen.collect::<Result<_, _>>()?;
+        let (count, wanted) = (archive.images().len(), archive.images().len().min(PICTURES));
+        let chosen =
+            (0..wanted).into_par_iter().with_max_len(1).map(|i| small_picture(archive, i * count / wanted));
+        let pictures: Vec<SmallPicture> = chosen.collect::<Result<_, _>>()?;
         let proxy = ProxyGeometry::new(usual, archive.field());
-        let targets = (0..views.len()).step_by(TARGET_STEP);
-        let pairs = targets.flat_map(|target| partners(&views, target, &proxy)).collect();
-        Ok(Self { archive, views, pairs })
+        let targets = (0..pictures.len()).step_by(TARGET_STEP);
+        let pairs = targets.flat_map(|target| partners(&pictures, target, &proxy)).collect();
+        Ok(Self { archive, pictures, pairs })
     }
 
     /// Mean difference between the colours of pictures and of their partners.
     fn difference(&self, hall: &Hall) -> Difference {
         let proxy = ProxyGeometry::new(hall, self.archive.field());
         let sums = self.pairs.par_iter().map(|&[target, partner]| {
-            let [own, other] = [target, partner].map(|index| &self.views[index]);
+            let [own, other] = [target, partner].map(|index| &self.pictures[index]);
             let target = Target { rays: &own.rays, placement: own.placement, proxy: &proxy };
             let colors = glimpses(&target, &own.source()).into_iter().zip(glimpses(&target, &other.source()));
             let differences = colors.filter_map(|(a, b)| Some(color_difference(a?, b?)));
@@ -164,7 +165,7 @@ impl<'a> Views<'a> {
 }
 
 /// Reads an image at small size. It does not stay in the archive's cache.
-fn view(archive: &Archive, image: usize) -> Result<View, SynthesisError> {
+fn small_picture(archive: &Archive, image: usize) -> Result<SmallPicture, SynthesisError> {
     let record = &archive.images()[image];
     let picture = archive.database().picture(record.id)?;
     let camera = archive.camera_of(image as u32);
@@ -173,7 +174,7 @@ fn view(archive: &Archive, image: usize) -> Result<View, SynthesisError> {
         [camera.width, camera.height].map(|size| (f64::from(size) / shrink).round().max(1.0) as u32);
     let small = smaller(camera, [width, height]);
     let picture = if shrink > 1.0 { resize(&picture, width, height, FilterType::Triangle) } else { picture };
-    Ok(View {
+    Ok(SmallPicture {
         camera: KernelCamera::new(&small),
         rays: RayTable::new(&small),
         placement: Placement::new(record.pose),
@@ -199,15 +200,15 @@ fn smaller(camera: &Camera, size: [u32; 2]) -> Camera {
 }
 
 /// Pairs a picture with those that show much of the same from elsewhere.
-fn partners(views: &[View], target: usize, proxy: &ProxyGeometry) -> Vec<[usize; 2]> {
-    let own = &views[target];
-    let distance_m = |other: &View| {
-        let [a, b] = [own, other].map(|view| glam::Vec3::from_array(view.placement.position_in_world));
+fn partners(pictures: &[SmallPicture], target: usize, proxy: &ProxyGeometry) -> Vec<[usize; 2]> {
+    let own = &pictures[target];
+    let distance_m = |other: &SmallPicture| {
+        let [a, b] = [own, other].map(|one| glam::Vec3::from_array(one.placement.position_in_world));
         f64::from(a.distance(b))
     };
     let others: Vec<usize> =
-        (0..views.len()).filter(|&other| distance_m(&views[other]) > BASELINE_M).collect();
-    let sources: Vec<Source> = others.iter().map(|&other| views[other].source()).collect();
+        (0..pictures.len()).filter(|&other| distance_m(&pictures[other]) > BASELINE_M).collect();
+    let sources: Vec<Source> = others.iter().map(|&other| pictures[other].source()).collect();
     let wanted = Target { rays: &own.rays, placement: own.placement, proxy };
     let chosen = select(&wanted, &sources, &BlendWeights::default(), PARTNERS);
     chosen.into_iter().map(|index| [target, others[index]]).collect()

@@ -7,7 +7,7 @@ use reality_sim_core::{
     pose::CameraPose,
 };
 
-use crate::{Auto, Blend, Method, Nearest, Plane, Quadratic, Reconstruction, SynthesisError, Synthesizer};
+use crate::{Auto, Blend, Method, Nearest, Plane, Provenance, Quadratic, SynthesisError, Synthesizer};
 
 /// Method of this package, to choose by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
@@ -64,8 +64,13 @@ impl Method for MethodKind {
         self.method().name()
     }
 
-    fn reconstruct(&self, from: &Synthesizer, pose: CameraPose) -> Result<Reconstruction, SynthesisError> {
-        self.method().reconstruct(from, pose)
+    fn draw(
+        &self,
+        from: &Synthesizer,
+        pose: CameraPose,
+        colors: &mut [[u8; 3]],
+    ) -> Result<Provenance, SynthesisError> {
+        self.method().draw(from, pose, colors)
     }
 }
 

@@ -5,7 +5,7 @@
 //! | [`Archive`] | a database opened for pictures: index by pose, pictures decoded last |
 //! | [`Synthesizer`] | the picture at a pose; threads share one |
 //! | [`SynthesisConfig`] | how many neighbours, their weights, and when a picture is refused |
-//! | [`Reconstruction`] | a picture, the images it was made from, and how far each pixel can be trusted |
+//! | [`Reconstruction`], [`Provenance`] | a picture, the images it was made from, and how far each pixel can be trusted |
 //! | [`SynthesisError`] | why there is no picture |
 //! | [`measure_hall`] | where the walls around the field are |
 //!
@@ -83,7 +83,7 @@ pub use self::{
     nearest::Nearest,
     plane::{Blend, Plane},
     quadratic::Quadratic,
-    reconstruction::{ORIGIN_HUES, Reconstruction, UsedImage},
+    reconstruction::{ORIGIN_HUES, Provenance, Reconstruction, UsedImage},
     synthesizer::{SynthesisConfig, Synthesizer},
 };
 

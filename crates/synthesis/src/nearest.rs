@@ -3,7 +3,7 @@
 use reality_sim_core::{pose::CameraPose, warp::Origin};
 use reality_sim_db::index::Neighbour;
 
-use crate::{Method, Reconstruction, SynthesisError, Synthesizer};
+use crate::{Method, Provenance, SynthesisError, Synthesizer};
 
 /// Distance at which the trust in a picture's pixels is one half, pixels.
 const HALF_TRUST_PX: f64 = 10.0;
@@ -17,20 +17,27 @@ impl Method for Nearest {
         "nearest"
     }
 
-    fn reconstruct(&self, from: &Synthesizer, pose: CameraPose) -> Result<Reconstruction, SynthesisError> {
-        as_recorded(from, from.nearest_of_size(pose)?)
+    fn draw(
+        &self,
+        from: &Synthesizer,
+        pose: CameraPose,
+        colors: &mut [[u8; 3]],
+    ) -> Result<Provenance, SynthesisError> {
+        as_recorded(from, from.nearest_of_size(pose)?, colors)
     }
 }
 
-/// Returns an image as it is.
+/// Draws an image of the wanted size as it is.
 pub(crate) fn as_recorded(
     from: &Synthesizer,
     neighbour: Neighbour,
-) -> Result<Reconstruction, SynthesisError> {
+    colors: &mut [[u8; 3]],
+) -> Result<Provenance, SynthesisError> {
     let Neighbour { image, distance_px, .. } = neighbour;
     let picture = from.archive().picture(image)?;
     let trust = (255.0 / (1.0 + distance_px / HALF_TRUST_PX)).round() as u8;
     let origins = vec![Origin { source: 0, trust }; picture.pixels.len()];
     let used = std::iter::once((image, distance_px));
-    Ok(Reconstruction::new(picture.to_rgb(), Nearest.name(), used, origins, from.rays()))
+    colors.iter_mut().zip(picture.colors()).for_each(|(drawn, color)| *drawn = color);
+    Ok(Provenance::new(Nearest.name(), used, origins, from.rays()))
 }

@@ -2,7 +2,7 @@
 
 use reality_sim_core::pose::CameraPose;
 
-use crate::{Method, Reconstruction, SynthesisError, Synthesizer};
+use crate::{Method, Provenance, SynthesisError, Synthesizer};
 
 /// Method that maps exactly from the neighbour that shows most of the target best.
 #[derive(Debug, Clone, Copy)]
@@ -13,8 +13,13 @@ impl Method for Plane {
         "plane"
     }
 
-    fn reconstruct(&self, from: &Synthesizer, pose: CameraPose) -> Result<Reconstruction, SynthesisError> {
-        from.warped(self.name(), pose, 1)
+    fn draw(
+        &self,
+        from: &Synthesizer,
+        pose: CameraPose,
+        colors: &mut [[u8; 3]],
+    ) -> Result<Provenance, SynthesisError> {
+        from.warped(self.name(), pose, 1, colors)
     }
 }
 
@@ -28,7 +33,12 @@ impl Method for Blend {
         "blend"
     }
 
-    fn reconstruct(&self, from: &Synthesizer, pose: CameraPose) -> Result<Reconstruction, SynthesisError> {
-        from.warped(self.name(), pose, from.config().sources)
+    fn draw(
+        &self,
+        from: &Synthesizer,
+        pose: CameraPose,
+        colors: &mut [[u8; 3]],
+    ) -> Result<Provenance, SynthesisError> {
+        from.warped(self.name(), pose, from.config().sources, colors)
     }
 }

@@ -5,7 +5,6 @@
 //! that stay empty are looked up with the polynomial fitted the other way (reverse model).
 
 use glam::DVec2;
-use image::RgbImage;
 use nalgebra::{DMatrix, Matrix6, SMatrix};
 use reality_sim_core::{
     camera::Camera,
@@ -14,7 +13,7 @@ use reality_sim_core::{
     warp::{Origin, Picture},
 };
 
-use crate::{Method, Reconstruction, SynthesisError, Synthesizer, synthesizer::picture_of};
+use crate::{Method, Provenance, SynthesisError, Synthesizer};
 
 /// Distance between the points of the grid, metres.
 const GRID_M: f64 = 0.25;
@@ -31,7 +30,12 @@ impl Method for Quadratic {
         "quadratic"
     }
 
-    fn reconstruct(&self, from: &Synthesizer, pose: CameraPose) -> Result<Reconstruction, SynthesisError> {
+    fn draw(
+        &self,
+        from: &Synthesizer,
+        pose: CameraPose,
+        colors: &mut [[u8; 3]],
+    ) -> Result<Provenance, SynthesisError> {
         let archive = from.archive();
         let nearest = from.nearest_of_size(pose)?;
         let record = &archive.images()[nearest.image as usize];
@@ -46,10 +50,8 @@ impl Method for Quadratic {
             return Err(SynthesisError::TooFewPoints { pose });
         };
         let cameras = [archive.camera_of(nearest.image), from.camera()];
-        let (colors, origins) = moved(&picture, cameras, &forward, &reverse);
-        let picture: RgbImage = picture_of(from.camera(), colors);
-        Ok(Reconstruction::new(
-            picture,
+        let origins = draw_moved(&picture, cameras, [&forward, &reverse], colors);
+        Ok(Provenance::new(
             self.name(),
             std::iter::once((nearest.image, nearest.distance_px)),
             origins,
@@ -119,18 +121,18 @@ fn terms(at: DVec2) -> [f64; 6] {
     [1.0, at.x, at.y, at.x * at.x, at.x * at.y, at.y * at.y]
 }
 
-/// Moves the picture by the forward model and fills gaps by the reverse one; pixels that neither reaches are black.
-fn moved(
+/// Draws the picture moved by the forward model, with gaps filled by the reverse one; pixels that neither reaches are black.
+/// Returns the origin of each pixel.
+fn draw_moved(
     picture: &Picture,
     [source, camera]: [&Camera; 2],
-    forward: &Polynomial,
-    reverse: &Polynomial,
-) -> (Vec<[u8; 3]>, Vec<Origin>) {
+    [forward, reverse]: [&Polynomial; 2],
+    colors: &mut [[u8; 3]],
+) -> Vec<Origin> {
     const FORWARD: Origin = Origin { source: 0, trust: 128 };
     const REVERSE: Origin = Origin { source: 0, trust: 64 };
-    let (width, height) = (camera.width, camera.height);
-    let count = width as usize * height as usize;
-    let mut colors = vec![[0; 3]; count];
+    let (width, count) = (camera.width, colors.len());
+    colors.fill([0; 3]);
     let mut origins = vec![Origin { source: Origin::NOWHERE, trust: 0 }; count];
     let color = |u: u32, v: u32| {
         let [red, green, blue, _] = picture.pixels[(v * picture.width + u) as usize].to_le_bytes();
@@ -156,7 +158,7 @@ fn moved(
             (colors[index], origins[index]) = (color(column, row), REVERSE);
         }
     }
-    (colors, origins)
+    origins
 }
 
 /// Returns the pixel nearest to a place, if the camera sees something there.

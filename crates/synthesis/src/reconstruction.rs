@@ -28,6 +28,17 @@ pub struct UsedImage {
     pub share: f64,
 }
 
+/// Images that a picture was made from, and the origin of its pixels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Provenance {
+    /// Name of the method.
+    pub method: &'static str,
+    /// Images that the picture was made from.
+    pub used: Vec<UsedImage>,
+    /// Source in `used` and trust of every pixel, row by row.
+    pub origins: Vec<Origin>,
+}
+
 /// Reconstructed picture at a requested pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reconstruction {
@@ -41,9 +52,9 @@ pub struct Reconstruction {
     pub origins: Vec<Origin>,
 }
 
-impl Reconstruction {
+impl Provenance {
+    /// Counts the pixels that came from each image, and marks those that the camera cannot see.
     pub(crate) fn new(
-        picture: RgbImage,
         method: &'static str,
         images: impl Iterator<Item = (ImageIndex, f64)>,
         mut origins: Vec<Origin>,
@@ -59,15 +70,30 @@ impl Reconstruction {
             distance_px,
             share: share(source),
         });
-        Self { picture, method, used: used.collect(), origins }
+        Self { method, used: used.collect(), origins }
+    }
+
+    /// Share of the pixels that some recorded image shows, see [`Reconstruction::covered`].
+    pub fn covered(&self) -> f64 {
+        covered(&self.origins)
+    }
+}
+
+fn covered(origins: &[Origin]) -> f64 {
+    let count = |of: fn(&Origin) -> bool| origins.iter().filter(|&origin| of(origin)).count() as f64;
+    let outside = count(|origin| origin.source == Origin::OUTSIDE);
+    count(|origin| origin.is_recorded()) / (origins.len() as f64 - outside).max(1.0)
+}
+
+impl Reconstruction {
+    pub(crate) fn new(picture: RgbImage, Provenance { method, used, origins }: Provenance) -> Self {
+        Self { picture, method, used, origins }
     }
 
     /// Share of the pixels that some recorded image shows; the others are filled smoothly or black. Pixels where the
     /// camera sees nothing do not count.
     pub fn covered(&self) -> f64 {
-        let count = |of: fn(&Origin) -> bool| self.origins.iter().filter(|&origin| of(origin)).count() as f64;
-        let outside = count(|origin| origin.source == Origin::OUTSIDE);
-        count(|origin| origin.is_recorded()) / (self.origins.len() as f64 - outside).max(1.0)
+        covered(&self.origins)
     }
 
     /// Draws how far each pixel can be trusted: white means fully, black not at all.

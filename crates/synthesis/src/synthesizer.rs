@@ -2,7 +2,6 @@
 
 use std::{fmt, sync::Arc};
 
-use image::RgbImage;
 use reality_sim_core::{
     camera::Camera,
     pose::CameraPose,
@@ -12,7 +11,7 @@ use reality_sim_core::{
 };
 use reality_sim_db::index::{ImageIndex, Neighbour};
 
-use crate::{Archive, Reconstruction, SynthesisError, gain::gains, select::select};
+use crate::{Archive, Provenance, SynthesisError, gain::gains, select::select};
 
 /// Settings of the synthesis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -158,7 +157,8 @@ impl Synthesizer {
         method: &'static str,
         pose: CameraPose,
         count: usize,
-    ) -> Result<Reconstruction, SynthesisError> {
+        colors: &mut [[u8; 3]],
+    ) -> Result<Provenance, SynthesisError> {
         let proxy = self.archive.proxy_geometry().holding(pose);
         let target = self.target(pose, &proxy);
         let chosen = self.chosen(&target, pose, count)?;
@@ -173,15 +173,14 @@ impl Synthesizer {
             let gains = gains(&target, &sources);
             sources.iter_mut().zip(gains).for_each(|(source, gain)| source.gain = gain);
         }
-        let warped = self.warper.blend(&target, &sources, &self.config.weights)?;
-        let picture = picture_of(&self.camera, warped.colors);
+        let origins = self.warper.blend_into(&target, &sources, &self.config.weights, colors)?;
         let images = chosen.iter().map(|neighbour| (neighbour.image, neighbour.distance_px));
-        let reconstruction = Reconstruction::new(picture, method, images, warped.origins, &self.rays);
-        let (covered, needed) = (reconstruction.covered(), self.config.least_covered);
+        let provenance = Provenance::new(method, images, origins, &self.rays);
+        let (covered, needed) = (provenance.covered(), self.config.least_covered);
         if covered < needed {
             return Err(SynthesisError::TooLittleSeen { pose, covered, needed });
         }
-        Ok(reconstruction)
+        Ok(provenance)
     }
 
     fn target<'a>(&'a self, pose: CameraPose, proxy: &'a ProxyGeometry) -> Target<'a> {
@@ -209,10 +208,4 @@ impl Synthesizer {
         let chosen = select(target, &sources, &self.config.weights, count.clamp(1, MAX_SOURCES));
         Ok(chosen.into_iter().map(|index| candidates[index]).collect())
     }
-}
-
-/// Makes a picture of a camera from its colours.
-pub(crate) fn picture_of(camera: &Camera, colors: Vec<[u8; 3]>) -> RgbImage {
-    // There is one colour for every pixel of the camera.
-    RgbImage::from_raw(camera.width, camera.height, colors.into_flattened()).unwrap_or_default()
 }

@@ -10,7 +10,7 @@ use crate::{camera::Camera, pose::CameraPose};
 const SPACING_PX: f64 = 6.0;
 /// Maximum distance between neighbouring points on the ground, metres.
 const MAX_SPACING_M: f64 = 0.02;
-/// Maximum distance in the picture at which points are joined, pixels: beyond it the curve leaves the view in between.
+/// Maximum distance in the picture at which points are joined, pixels: beyond it the curve is out of view in between.
 const MAX_STEP_PX: f64 = 20.0;
 
 /// Returns the field's lines seen from a pose as polylines, pixels. `sideways_m` is 0 for the lines' centres, and plus
@@ -21,10 +21,10 @@ pub fn project_lines(
     pose: CameraPose,
     sideways_m: f64,
 ) -> Vec<Vec<DVec2>> {
-    let view = View { camera, pose };
+    let placed = PlacedCamera { camera, pose };
     let curve_seen = |curve: super::Curve| {
-        let count = view.steps(curve.length_m());
-        view.polylines((0..=count).map(move |step| {
+        let count = placed.steps(curve.length_m());
+        placed.polylines((0..=count).map(move |step| {
             let (point, tangent) = curve.at(step as f64 / count as f64);
             point + sideways_m * tangent.perp()
         }))
@@ -35,20 +35,21 @@ pub fn project_lines(
 /// Returns a closed polygon on the ground seen from a pose as polylines, pixels. Corners are in the same axes as the
 /// pose, metres.
 pub fn project_polygon(camera: &Camera, corners: &[DVec2], pose: CameraPose) -> Vec<Vec<DVec2>> {
-    let view = View { camera, pose };
+    let placed = PlacedCamera { camera, pose };
     let side = |(from, to): (&DVec2, &DVec2)| {
-        let (from, to, count) = (*from, *to, view.steps(from.distance(*to)));
-        view.polylines((0..=count).map(move |step| from.lerp(to, step as f64 / count as f64)))
+        let (from, to, count) = (*from, *to, placed.steps(from.distance(*to)));
+        placed.polylines((0..=count).map(move |step| from.lerp(to, step as f64 / count as f64)))
     };
     corners.iter().zip(corners.iter().cycle().skip(1)).flat_map(side).collect()
 }
 
-struct View<'a> {
+/// Camera at its pose.
+struct PlacedCamera<'a> {
     camera: &'a Camera,
     pose: CameraPose,
 }
 
-impl View<'_> {
+impl PlacedCamera<'_> {
     /// Returns the number of steps in which a length on the ground is drawn.
     fn steps(&self, length_m: f64) -> usize {
         let spacing_m = SPACING_PX * self.pose.height_m / self.camera.fx.max(self.camera.fy);

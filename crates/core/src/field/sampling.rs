@@ -79,11 +79,12 @@ pub fn visible_samples(
     pose: CameraPose,
     spacing_px: f64,
 ) -> Vec<VisibleSample> {
-    let view = View { camera, pose, camera_from_world: pose.rotation_world_from_camera().transpose() };
+    let camera_from_world = pose.rotation_world_from_camera().transpose();
+    let placed = PlacedCamera { camera, pose, camera_from_world };
     let posts: Vec<GoalPost> = field.goals().iter().flat_map(|goal| goal.posts).collect();
     let mut kept: Vec<VisibleSample> = Vec::new();
     for &sample in samples {
-        let Some(visible) = view.see(sample, field.line_width_m) else { continue };
+        let Some(visible) = placed.see(sample, field.line_width_m) else { continue };
         let too_dense = kept.last().is_some_and(|last| {
             last.sample.curve == sample.curve && last.pixel.distance(visible.pixel) < spacing_px
         });
@@ -95,13 +96,13 @@ pub fn visible_samples(
 }
 
 /// Camera at its pose.
-struct View<'a> {
+struct PlacedCamera<'a> {
     camera: &'a Camera,
     pose: CameraPose,
     camera_from_world: DMat3,
 }
 
-impl View<'_> {
+impl PlacedCamera<'_> {
     /// Projects a sample of a line of this width; `None` if it is out of view.
     fn see(&self, sample: LineSample, line_width_m: f64) -> Option<VisibleSample> {
         let in_camera =

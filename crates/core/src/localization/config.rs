@@ -1,4 +1,5 @@
-//! Tunable parameters of the localizer, each with its default and the reason for it.
+//! Tunable parameters of the localizer, each with its default and the reason for it. A reason that names neither a source
+//! nor a measurement is an argument: how results change with that value has not been measured.
 
 use crate::{
     filter::{FilterConfig, PlanarSigma},

@@ -17,11 +17,10 @@ use crate::{
     field::FieldDimensions,
     filter::{Filter, FilterConfig, FilterEstimate, PlanarSigma},
     mount::MountPose,
-    observation::{ObservationConfig, Scorer},
+    observation::ObservationConfig,
     pose::{CameraPose, Motion2, Pose2},
     preprocess::{Prepared, luma},
     test_scene,
-    warp::{CpuWarper, Warper},
 };
 
 fn observation(picture: impl Into<Picture>) -> Observation {
@@ -103,15 +102,6 @@ impl Failing {
 struct Gone(#[source] io::Error);
 
 impl Backend for Failing {
-    fn scorer(
-        &self,
-        camera: &Camera,
-        field: &FieldDimensions,
-        config: ObservationConfig,
-    ) -> Result<Box<dyn Scorer>, BackendError> {
-        CpuBackend.scorer(camera, field, config)
-    }
-
     fn filter(
         &self,
         camera: &Camera,
@@ -121,10 +111,6 @@ impl Backend for Failing {
     ) -> Result<Box<dyn Filter>, BackendError> {
         let filter = CpuBackend.filter(camera, field, observation, config)?;
         Ok(Box::new(FailingFilter { filter, left: self.left.clone() }))
-    }
-
-    fn warper(&self) -> Result<Arc<dyn Warper>, BackendError> {
-        Ok(Arc::new(CpuWarper))
     }
 }
 

@@ -119,32 +119,44 @@ pub struct Warped {
     pub origins: Vec<Origin>,
 }
 
-impl Warped {
-    /// Returns the same picture, black where the camera sees nothing. Pixels that no source saw are filled in from
-    /// their surroundings. This is the last step of [`blend`], on all devices.
-    pub fn filled(mut self, rays: &RayTable) -> Self {
-        rays.mark_outside(&mut self.origins);
-        for (color, _) in
-            self.colors.iter_mut().zip(&self.origins).filter(|(_, o)| o.source == Origin::OUTSIDE)
-        {
-            *color = [0; 3];
-        }
-        fill(&mut self.colors, rays.width as usize, |index| self.origins[index].source);
-        self
+/// Blackens the pixels at which the camera sees nothing, and fills in those that no source saw from the pixels around them.
+/// This is the last step of [`blend`], on all devices.
+pub fn complete(rays: &RayTable, colors: &mut [[u8; 3]], origins: &mut [Origin]) {
+    rays.mark_outside(origins);
+    for (color, _) in colors.iter_mut().zip(&*origins).filter(|(_, o)| o.source == Origin::OUTSIDE) {
+        *color = [0; 3];
     }
+    fill(colors, rays.width as usize, |index| origins[index].source);
 }
 
 /// Draws the picture at the target from the sources; uses at most [`MAX_SOURCES`] of them.
 pub fn blend(target: &Target, sources: &[Source], weights: &BlendWeights) -> Warped {
-    let (width, height) = (target.rays.width as usize, target.rays.height as usize);
+    let mut colors = vec![[0; 3]; target.rays.pixels()];
+    let origins = blend_into(target, sources, weights, &mut colors);
+    Warped { colors, origins }
+}
+
+/// Works like [`blend`], but draws into `colors`, row by row from the top, and returns the origin of each pixel.
+///
+/// # Panics
+///
+/// If there is not one colour for every pixel of the target.
+pub fn blend_into(
+    target: &Target,
+    sources: &[Source],
+    weights: &BlendWeights,
+    colors: &mut [[u8; 3]],
+) -> Vec<Origin> {
+    assert_eq!(colors.len(), target.rays.pixels(), "one colour for every pixel");
+    let width = target.rays.width as usize;
     let sources = &sources[..sources.len().min(MAX_SOURCES)];
-    let mut colors = vec![[0; 3]; width * height];
-    let mut origins = vec![Origin { source: Origin::NOWHERE, trust: 0 }; width * height];
+    let mut origins = vec![Origin { source: Origin::NOWHERE, trust: 0 }; colors.len()];
     let rows = colors.par_chunks_mut(width).zip(origins.par_chunks_mut(width)).enumerate();
     rows.with_min_len(8).for_each(|(row, (colors, origins))| {
         blend_row(target, sources, weights, target.rays.row(row), colors, origins);
     });
-    Warped { colors, origins }.filled(target.rays)
+    complete(target.rays, colors, &mut origins);
+    origins
 }
 
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]

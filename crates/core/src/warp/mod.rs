@@ -12,7 +12,9 @@ mod proxy_geometry;
 mod rays;
 
 pub use self::{
-    blend::{BlendWeights, MAX_SOURCES, Source, Target, Warped, blend, costs, glimpses},
+    blend::{
+        BlendWeights, MAX_SOURCES, Source, Target, Warped, blend, blend_into, complete, costs, glimpses,
+    },
     kernel::Placement,
     origin::Origin,
     picture::Picture,
@@ -23,13 +25,26 @@ use crate::backend_error::BackendError;
 
 /// Draws pictures from others on some device.
 pub trait Warper: Send + Sync {
+    /// Blends pictures into a buffer, see [`blend_into`]. Fails if the device does; the buffer may then hold anything.
+    fn blend_into(
+        &self,
+        target: &Target,
+        sources: &[Source],
+        weights: &BlendWeights,
+        colors: &mut [[u8; 3]],
+    ) -> Result<Vec<Origin>, BackendError>;
+
     /// Blends pictures, see [`blend`]. Fails if the device does.
     fn blend(
         &self,
         target: &Target,
         sources: &[Source],
         weights: &BlendWeights,
-    ) -> Result<Warped, BackendError>;
+    ) -> Result<Warped, BackendError> {
+        let mut colors = vec![[0; 3]; target.rays.pixels()];
+        let origins = self.blend_into(target, sources, weights, &mut colors)?;
+        Ok(Warped { colors, origins })
+    }
 }
 
 /// Warper on the CPU.
@@ -37,13 +52,14 @@ pub trait Warper: Send + Sync {
 pub struct CpuWarper;
 
 impl Warper for CpuWarper {
-    fn blend(
+    fn blend_into(
         &self,
         target: &Target,
         sources: &[Source],
         weights: &BlendWeights,
-    ) -> Result<Warped, BackendError> {
-        Ok(blend(target, sources, weights))
+        colors: &mut [[u8; 3]],
+    ) -> Result<Vec<Origin>, BackendError> {
+        Ok(blend_into(target, sources, weights, colors))
     }
 }
 

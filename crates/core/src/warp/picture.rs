@@ -19,11 +19,11 @@ impl Picture {
         self.pixels.len() * size_of::<u32>()
     }
 
-    /// Converts the picture to three bytes per pixel.
-    pub fn to_rgb(&self) -> RgbImage {
-        RgbImage::from_fn(self.width, self.height, |u, v| {
-            let [red, green, blue, _] = self.pixels[(v * self.width + u) as usize].to_le_bytes();
-            image::Rgb([red, green, blue])
+    /// Returns red, green and blue of the pixels, row by row from the top.
+    pub fn colors(&self) -> impl Iterator<Item = [u8; 3]> {
+        self.pixels.iter().map(|word| {
+            let [red, green, blue, _] = word.to_le_bytes();
+            [red, green, blue]
         })
     }
 }

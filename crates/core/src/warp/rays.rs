@@ -33,6 +33,11 @@ impl RayTable {
         Self { width: camera.width, height: camera.height, blocks_in_row, blocks }
     }
 
+    /// Returns the number of pixels.
+    pub fn pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
     /// Returns unit directions in the camera's axes, row by row from the top. A block holds the right, down and forward
     /// components of sixteen neighbouring pixels of a row; NaN where a pixel sees nothing and beyond the row's end.
     /// Clones of a table share them.

@@ -6,7 +6,6 @@ use reality_sim_core::{pose::Motion2, sequence::SequenceError};
 use reality_sim_sensor::{Chain, Changes, Model, ModelError};
 
 use crate::{
-    frame_index::PerFrame,
     linear_model::{
         column::ColumnIndex,
         linearized_frame::LinearizedFrame,
@@ -56,7 +55,7 @@ pub(crate) fn check(recording: &Recording<'_>, model: &Model) -> Result<(), Meas
     for frame in &recording.frames {
         let height_m = chain.pose(&recording.trajectory, frame.time_s, 0.5).height_m;
         if height_m <= 0.0 {
-            return Err(MeasureError::NotAboveGround { index: frame.index_in_sequence, height_m });
+            return Err(MeasureError::NotAboveGround { index: frame.index, height_m });
         }
     }
     Ok(())
@@ -68,15 +67,14 @@ pub(crate) fn measure_frames(
     recording: &Recording<'_>,
     model: &Model,
     search_px: f64,
-) -> Result<PerFrame<FrameMeasurements>, MeasureError> {
+) -> Result<Vec<FrameMeasurements>, MeasureError> {
     let chain = Chain::new(&recording.sequence.setup, &recording.sequence.field, model)?;
     let config = MeasurementConfig { search_px, gamma: recording.gamma() };
     let of_frame = |frame: &Frame| -> Result<FrameMeasurements, MeasureError> {
         let (picture, bytes) = recording.picture(frame)?;
         Ok(measure_frame(&frame_camera(&chain, recording, frame), &picture, &bytes, config))
     };
-    let frames: Result<Vec<_>, _> = recording.frames.as_slice().par_iter().map(of_frame).collect();
-    Ok(PerFrame::from(frames?))
+    recording.frames.par_iter().map(of_frame).collect()
 }
 
 fn frame_camera<'a>(chain: &'a Chain, recording: &'a Recording<'_>, frame: &Frame) -> FrameCamera<'a> {
@@ -87,11 +85,11 @@ fn frame_camera<'a>(chain: &'a Chain, recording: &'a Recording<'_>, frame: &Fram
 /// differences, followed by those of the nuisance parameters.
 pub(crate) fn linearise(
     recording: &Recording<'_>,
-    measurements: &PerFrame<FrameMeasurements>,
+    measurements: &[FrameMeasurements],
     model: &Model,
     parameters: &[FittedParameter],
     nuisances: &[Nuisance],
-) -> Result<PerFrame<LinearizedFrame>, MeasureError> {
+) -> Result<Vec<LinearizedFrame>, MeasureError> {
     let setup = &recording.sequence.setup;
     let photometry = setup.photometry;
     let perturbed = parameters.iter().map(|parameter| PerturbedModel::new(recording, model, parameter));
@@ -109,10 +107,8 @@ pub(crate) fn linearise(
         },
     };
     let motions = instrumental_motions(recording, &recording.frames.iter().collect::<Vec<_>>());
-    let frames = recording.frames.as_slice().par_iter().zip(measurements.as_slice()).zip(&motions);
-    let linearized: Vec<LinearizedFrame> =
-        frames.map(|((frame, measured), motion)| linearization.frame(frame, measured, *motion)).collect();
-    Ok(PerFrame::from(linearized))
+    let frames = recording.frames.par_iter().zip(measurements).zip(&motions);
+    Ok(frames.map(|((frame, measured), motion)| linearization.frame(frame, measured, *motion)).collect())
 }
 
 /// Model with its perturbations, at which frames are linearised.

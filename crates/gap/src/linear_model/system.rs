@@ -10,7 +10,6 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 use crate::{
-    frame_index::ViewIndex,
     linear_model::{
         assembly::{by_cell, by_frame, by_view},
         fitted_residuals::FittedResiduals,
@@ -53,7 +52,7 @@ impl LinearSystem {
         frames: &[&LinearizedFrame],
         size: usize,
         reference: ReferenceKind,
-        views: &[ViewIndex],
+        views: &[usize],
     ) -> Self {
         let mut estimate = Weighting::new(frames, &first_residuals(frames), pose_sigmas(None, reference));
         for _ in 0..ITERATIONS {
@@ -142,7 +141,7 @@ mod tests {
     }
 
     fn system(frames: &[LinearizedFrame]) -> LinearSystem {
-        let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
+        let views: Vec<usize> = (0..frames.len()).collect();
         LinearSystem::new(&frames.iter().collect::<Vec<_>>(), 2, ReferenceKind::Whole, &views)
     }
 
@@ -196,7 +195,7 @@ mod tests {
                 }
             })
             .collect();
-        let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
+        let views: Vec<usize> = (0..frames.len()).collect();
         let system = LinearSystem::new(&frames.iter().collect::<Vec<_>>(), 1, ReferenceKind::Whole, &views);
         let delta = solve(&system.frames, 1);
         assert!((delta[0] - truth).abs() < 0.1, "{delta}");

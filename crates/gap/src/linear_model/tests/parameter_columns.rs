@@ -8,7 +8,6 @@ use reality_sim_sensor::{Changes, Growth, Model, Role, Stage, Trajectory};
 
 use super::{recording, sequence};
 use crate::{
-    frame_index::PerFrame,
     linear_model::{
         initial_values::starting_values,
         linearization::{linearise, measure_frames},
@@ -63,7 +62,7 @@ fn values_at(recording: &Recording<'_>, column: &FittedParameter, part: f64) -> 
 /// Recording linearised in one column at some values of its effect, with the central differences there.
 struct Compared {
     column: FittedParameter,
-    frames: PerFrame<LinearizedFrame>,
+    frames: Vec<LinearizedFrame>,
     /// Central differences by frame and measurement.
     differences: Vec<Vec<f64>>,
 }
@@ -71,7 +70,7 @@ struct Compared {
 impl Compared {
     fn new(
         recording: &Recording<'_>,
-        measurements: &PerFrame<FrameMeasurements>,
+        measurements: &[FrameMeasurements],
         column: FittedParameter,
         values: &[f64],
     ) -> Self {
@@ -176,7 +175,7 @@ fn during_a_steady_walk_the_columns_of_the_odometry_are_the_derivatives_of_its_o
         CameraPose::new(place, 0.5, 0.4, 0.0)
     };
     let times_s: Vec<f64> = recording.frames.iter().map(|frame| frame.time_s).collect();
-    let until_s = recording.frames.as_slice().last().unwrap().step.unwrap().until_s;
+    let until_s = recording.frames.last().unwrap().step.unwrap().until_s;
     let poses: Vec<(f64, CameraPose)> =
         times_s.into_iter().chain([until_s]).map(|time_s| (time_s, pose(time_s))).collect();
     recording.trajectory = Trajectory::new(&poses).unwrap();
@@ -187,7 +186,7 @@ fn during_a_steady_walk_the_columns_of_the_odometry_are_the_derivatives_of_its_o
         blocks: Vec::new(),
         noise_steps: Vec::new(),
     };
-    let measurements = PerFrame::from(vec![nothing; recording.frames.len()]);
+    let measurements = vec![nothing; recording.frames.len()];
     for column in fitted_parameters(&[]).into_iter().filter(is_of_odometry) {
         for part in [0.0, 0.1] {
             let values = values_at(&recording, &column, part);
