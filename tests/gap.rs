@@ -64,7 +64,7 @@ fn assert_size(report: &Report, id: &str, parameter: &str, truth: f64) {
 }
 
 #[test]
-fn where_nothing_is_missing_no_name_is_given_and_every_effect_has_a_limit() {
+fn without_a_hidden_effect_nothing_is_named_and_every_effect_has_a_detection_limit_or_a_cause() {
     for seed in [1, 2, 3] {
         let (_folder, sequence) = record(seed, &[]);
         let report = reported(&sequence);
@@ -110,7 +110,7 @@ fn a_hidden_effect_is_named_with_its_size_and_most_of_the_gap_above_the_noise_cl
 }
 
 #[test]
-fn in_a_recording_of_yet_another_renderer_the_one_effect_is_named_and_nothing_is_left() {
+fn the_hidden_effect_of_a_recording_by_another_renderer_is_named_and_nothing_is_unexplained() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/pitch");
     let report = reported(&Sequence::open(&folder).unwrap());
     assert_eq!(named(&report), ["mount_pitch"], "{}", summary(&report));
@@ -144,7 +144,7 @@ fn two_large_effects_that_hide_each_other_are_both_named() {
 }
 
 #[test]
-fn a_lens_far_out_of_focus_is_found_by_lines_that_are_spread_over_many_pixels() {
+fn strong_defocus_is_named_although_lines_are_spread_over_many_pixels() {
     let truth = 2.7;
     let (_folder, sequence) = record(22, &[Hidden::Defocus { sigma_px: truth }]);
     let report = reported(&sequence);
@@ -153,7 +153,7 @@ fn a_lens_far_out_of_focus_is_found_by_lines_that_are_spread_over_many_pixels() 
 }
 
 #[test]
-fn exposure_that_goes_up_and_down_is_named_whichever_frames_are_kept_for_judging() {
+fn oscillating_exposure_is_named_whichever_frames_are_held_out() {
     let course = Course::Sine { period_s: 5.0, phase_rad: 0.4 };
     let (_folder, sequence) = record(23, &[Hidden::ExposureDrift { amplitude_ev: 0.4, course }]);
     for seed in [0, 1, 2] {
@@ -163,7 +163,7 @@ fn exposure_that_goes_up_and_down_is_named_whichever_frames_are_kept_for_judging
 }
 
 #[test]
-fn of_two_effects_that_explain_nearly_the_same_the_one_at_work_is_named() {
+fn of_two_effects_that_explain_nearly_the_same_the_hidden_one_is_named() {
     let (_folder, sequence) = record(24, &[Hidden::BlackLevel { offset: 0.06 }]);
     let report = reported(&sequence);
     assert_eq!(named(&report), ["black_level"], "{}", summary(&report));
@@ -179,7 +179,7 @@ fn of_two_effects_that_explain_nearly_the_same_the_one_at_work_is_named() {
 }
 
 #[test]
-fn lines_far_from_where_the_model_has_them_are_found_and_the_effect_named() {
+fn an_effect_is_named_although_lines_are_far_from_where_the_model_predicts_them() {
     // The shift is 22 pixels in a picture 320 pixels wide: beyond the search range for lines.
     let (dx_px, dy_px) = (-15.0, 16.0);
     let (_folder, sequence) = record(23, &[Hidden::PrincipalPoint { dx_px, dy_px }]);
@@ -191,7 +191,7 @@ fn lines_far_from_where_the_model_has_them_are_found_and_the_effect_named() {
 }
 
 #[test]
-fn people_who_walk_are_no_effect_of_the_camera() {
+fn people_who_walk_are_reported_as_moving_objects_and_not_as_an_effect() {
     let (_folder, sequence) = record(47, &[Hidden::MovingPeople { count: 6 }]);
     let report = reported(&sequence);
     assert_eq!(report.verdict, Verdict::Unknown, "{}", summary(&report));
@@ -217,7 +217,7 @@ fn an_extended_model_given_again_has_nothing_further_to_find() {
 }
 
 #[test]
-fn what_no_effect_explains_is_called_unknown_and_located() {
+fn missing_lines_are_called_unknown_and_located() {
     let (_folder, sequence) =
         record(45, &[Hidden::MissingLine { positive_x: true }, Hidden::MissingLine { positive_x: false }]);
     let report = reported(&sequence);
@@ -366,7 +366,7 @@ fn the_program_writes_a_report_a_page_pictures_and_a_model_that_it_takes_again()
 }
 
 #[test]
-fn poses_of_the_filter_will_do_and_what_they_absorb_is_said() {
+fn poses_of_the_particle_filter_suffice_and_the_report_states_what_they_absorb() {
     let (folder, _sequence) = record(91, &[Hidden::MountPitch { angle_rad: 0.03 }]);
     let out = folder.path().join("report");
     let output =
@@ -393,7 +393,7 @@ fn broken_pictures_are_left_out_and_named() {
 }
 
 #[test]
-fn what_the_camera_file_does_not_tell_is_not_judged() {
+fn effects_that_need_an_input_missing_from_the_camera_file_are_unobservable() {
     let (folder, _sequence) = record(111, &[]);
     let camera = folder.path().join("camera.toml");
     let without: String = fs::read_to_string(&camera)

@@ -49,7 +49,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_count_with_weights_that_fall_to_zero_behind_the_lag() {
+    fn products_of_neighbours_count_with_weights_that_fall_to_zero_beyond_the_lag() {
         let pair = |distance: usize| {
             let mut values = vec![0.0; 8];
             (values[0], values[distance]) = (1.0, 1.0);

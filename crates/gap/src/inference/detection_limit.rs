@@ -206,14 +206,14 @@ mod tests {
     }
 
     #[test]
-    fn more_information_lowers_the_limit_to_what_matters_and_no_farther() {
+    fn more_information_lowers_the_limit_down_to_the_material_size() {
         let limit = |information: f64| limit_and_p(3, information, 0.0).0.unwrap();
         assert!((limit(2.0) / limit(8.0) - 2.0).abs() < 0.2, "{} {}", limit(2.0), limit(8.0));
         assert_eq!(limit(1e7), pitch().parameter().material);
     }
 
     #[test]
-    fn what_the_pictures_hardly_tell_of_has_no_limit() {
+    fn an_effect_with_hardly_any_information_has_no_limit() {
         assert_eq!(limit_and_p(3, 1e-3, 0.0).0, None);
     }
 }

@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_known_of_more_numbers_than_clusters_can_tell() {
+    fn too_few_clusters_for_the_numbers_give_a_p_value_of_one() {
         let covariance = DMatrix::identity(3, 3);
         assert_eq!(hotelling_p_value(&covariance, &DVector::from_element(3, 9.0), 4), 1.0);
         assert!(hotelling_p_value(&covariance, &DVector::from_element(3, 9.0), 9) < 0.01);

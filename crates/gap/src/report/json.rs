@@ -448,7 +448,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_words_are_is_nothing_to_a_reader() {
+    fn a_reader_ignores_the_words() {
         let report = full();
         let mut written = serde_json::to_value(&report).unwrap();
         written["summary"] = "Something else.".into();

@@ -48,25 +48,25 @@ mod tests {
     }
 
     #[test]
-    fn what_is_unexplained_makes_it_unknown_whatever_was_named() {
+    fn an_unexplained_finding_makes_the_verdict_unknown_whatever_was_named() {
         for effects in [vec![], vec![sure()], vec![confusable()]] {
             assert_eq!(verdict(&effects, &[HIDDEN], &[]), Verdict::Unknown);
         }
     }
 
     #[test]
-    fn one_name_that_might_be_another_makes_all_confusable() {
+    fn one_confusable_effect_makes_the_verdict_confusable() {
         assert_eq!(verdict(&[sure(), confusable()], &[], &[]), Verdict::Confusable);
     }
 
     #[test]
-    fn names_that_are_sure_are_named_although_other_effects_cannot_be_seen() {
+    fn effects_are_named_although_others_cannot_be_seen() {
         let unseen = unseen(UnobservableCause::CameraAtRest);
         assert_eq!(verdict(&[sure()], &[], &[unseen]), Verdict::Named);
     }
 
     #[test]
-    fn where_nothing_is_named_every_cause_but_a_missing_input_makes_it_inconclusive() {
+    fn without_effects_every_cause_but_a_missing_input_makes_the_verdict_inconclusive() {
         let causes = [
             UnobservableCause::CameraAtRest,
             UnobservableCause::RobotAtRest,
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_is_found_and_all_can_be_seen_nothing_is_missing() {
+    fn without_effects_findings_and_causes_nothing_is_missing() {
         assert_eq!(verdict(&[], &[], &[]), Verdict::None);
     }
 }

@@ -155,7 +155,7 @@ fn every_effect_is_on_the_page() {
 }
 
 #[test]
-fn what_is_text_stays_text() {
+fn text_is_escaped() {
     let page = page(&report(), &pictures());
     assert!(!page.contains("<script"));
     assert!(page.contains("&lt;script&gt;alert(&quot;walk&quot;)&lt;/script&gt; &amp; &#39;more&#39;"));
@@ -169,7 +169,7 @@ fn every_tag_is_closed() {
 }
 
 #[test]
-fn the_page_needs_nothing_else() {
+fn the_page_loads_nothing() {
     let page = without_pictures(&page(&report(), &pictures()));
     for outside in ["http", "//", "@import", "url("] {
         assert!(!page.contains(outside), "{outside}");
@@ -178,7 +178,7 @@ fn the_page_needs_nothing_else() {
 }
 
 #[test]
-fn what_was_not_measured_is_a_dash() {
+fn values_that_were_not_measured_are_dashes() {
     for report in [report(), hollow()] {
         let page = without_pictures(&page(&report, &pictures()));
         assert!(!page.contains("NaN") && !page.contains(">inf") && !page.contains("-0.0"), "{page}");

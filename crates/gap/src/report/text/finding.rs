@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pattern_is_said_with_its_place_and_size() {
+    fn a_pattern_is_described_by_its_place_and_size() {
         let picture = PatternCell::Picture { column: 2, row: 4, grid: [8, 6] };
         assert_said(&[
             (
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn every_other_finding_is_said_with_its_place_and_size() {
+    fn every_other_finding_is_described_by_its_place_and_size() {
         let line = FieldLine::Segment { from_m: [-4.5, 3.0], to_m: [4.5, 3.0] };
         let nominal = |value, off_by| Finding::NominalValue { value, off_by, p_value: 1e-3 };
         let odometry = |component| Finding::Odometry { component, follows: Movement::Turn, size: 0.0123 };

@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_number_is_a_dash() {
+    fn a_value_that_is_not_finite_is_a_dash() {
         for value in [f64::NAN, f64::INFINITY] {
             assert_eq!(probability(value), "–");
         }
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_that_was_none_cannot_be_closed() {
+    fn without_a_gap_no_part_of_it_is_closed() {
         assert_eq!(closed(1.0, 1.0, 1.0), None);
         assert_eq!(closed(f64::NAN, 1.0, 1.0), None);
         assert_eq!(closed(3.0, 1.5, 1.0), Some(0.75));

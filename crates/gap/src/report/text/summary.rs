@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_unexplained_comes_first() {
+    fn unexplained_findings_come_first() {
         let strongest = PatternCell::Picture { column: 2, row: 4, grid: [8, 6] };
         let pattern = Finding::Pattern { channel: Channel::Sharpness, strongest, size: 0.131, p_value: 1e-6 };
         let sentence = "Something is at work that no effect of the library explains. Sharpness: in the picture, strongest \
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_size_that_the_place_has_is_said_once_and_further_findings_are_counted() {
+    fn a_size_in_the_words_for_the_place_is_not_repeated_and_further_findings_are_counted() {
         let hidden = Finding::Occluders { share: 0.124 };
         let text = summary(&of(Verdict::Unknown, &[], &[hidden; 4]));
         assert!(text.contains("by things that the model does not have. "), "{text}");
@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_missing_says_what_would_have_been_found() {
+    fn a_summary_without_effects_states_what_would_have_been_found() {
         let limit = |id: &str, value, unit: &str| NotFoundReport {
             id: id.to_owned(),
             parameter: effect(id).unwrap().parameters()[0].name.to_owned(),
@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn effects_of_the_model_that_do_not_show_or_come_out_otherwise_are_told() {
+    fn effects_of_the_model_that_do_not_show_or_have_another_size_are_mentioned() {
         let told = |strength: f64, p_value: f64| {
             let given = [("strength".to_owned(), 0.42)].into();
             let effect = estimated("vignetting", "strength", strength, 0.01);
@@ -364,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_told_comes_with_a_remedy() {
+    fn effects_that_cannot_be_seen_are_stated_with_a_remedy() {
         let shutter =
             Unobservable { id: "rolling_shutter".to_owned(), cause: UnobservableCause::CameraAtRest };
         let inconclusive = of(Verdict::Inconclusive, &[], &[]);
