@@ -242,6 +242,54 @@ proptest! {
     }
 }
 
+/// Parts into which a range is cut in the search for a jump, again and again.
+const PARTS: usize = 16;
+
+/// Returns the change of a function over the shortest part of 0 to 1 to which the search for its steepest part leads: about 0
+/// where it is continuous.
+fn jump(function: impl Fn(f64) -> f64) -> f64 {
+    let (mut start, mut length, mut change) = (0.0, 1.0, 0.0);
+    for _ in 0..7 {
+        length /= PARTS as f64;
+        let at = |part: usize| function(start + part as f64 * length);
+        let steps = (0..PARTS).map(|part| (part, (at(part + 1) - at(part)).abs()));
+        let (part, largest) = steps.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+        (start, change) = (start + part as f64 * length, largest);
+    }
+    change
+}
+
+#[test]
+fn a_jump_is_found() {
+    let with_jump = |x: f64| x.powi(2) + if x > 0.3217 { 0.2 } else { 0.0 };
+    assert!((jump(with_jump) - 0.2).abs() < 1e-6);
+    assert!(jump(|x| x.powi(2)) < 1e-6);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(8))]
+    #[test]
+    fn no_effect_jumps_anywhere_in_its_range(probe in any_probe(), fractions in any_fractions()) {
+        for effect in library() {
+            let p = values(*effect, |index| fractions[index]);
+            for index in fitted(*effect) {
+                let [low, high] = effect.parameters()[index].range;
+                let along = |fraction: f64| {
+                    let mut moved = p.clone();
+                    moved[index] = low + fraction * (high - low);
+                    outputs(*effect, &moved, &probe)
+                };
+                let ends = [along(0.0), along(0.5), along(1.0)];
+                let changed = (0..ends[0].len()).filter(|output| ends.iter().any(|end| end[*output] != ends[0][*output]));
+                for output in changed {
+                    let jump = jump(|fraction| along(fraction)[output]);
+                    prop_assert!(jump < 1e-4, "{} {p:?} {index}: {jump}", effect.id());
+                }
+            }
+        }
+    }
+}
+
 /// Returns the pixels of the picture around its principal point, as far as a third of the way to a corner: every plausible
 /// lens sees something there.
 fn central_pixels(camera: &Camera) -> impl Iterator<Item = DVec2> {
