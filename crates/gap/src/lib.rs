@@ -42,6 +42,7 @@
 //! `docs/gap.md` describes the method, its sources and how it was tested.
 
 mod diagnostics;
+mod frame_index;
 mod inference;
 mod linear_model;
 mod measurement;

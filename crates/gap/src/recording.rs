@@ -10,7 +10,10 @@ use reality_sim_core::{
 };
 use reality_sim_sensor::{Trajectory, TrajectoryError};
 
-use crate::thresholds::{RecordingThresholds, Thresholds};
+use crate::{
+    frame_index::{PerFrame, ViewIndex},
+    thresholds::{RecordingThresholds, Thresholds},
+};
 
 const THRESHOLDS: RecordingThresholds = Thresholds::DEFAULT.recording;
 
@@ -95,8 +98,9 @@ pub(crate) struct OdometryStep {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Frame {
     /// Index in the sequence.
-    pub(crate) index: usize,
+    pub(crate) index_in_sequence: usize,
     pub(crate) time_s: f64,
+    /// Odometry step to the next frame. None for the last frame, without odometry, or if the next frame comes too late.
     pub(crate) step: Option<OdometryStep>,
 }
 
@@ -105,7 +109,7 @@ pub(crate) struct Frame {
 pub struct Recording<'a> {
     pub(crate) sequence: &'a Sequence,
     pub(crate) trajectory: Trajectory,
-    pub(crate) frames: Vec<Frame>,
+    pub(crate) frames: PerFrame<Frame>,
     pub(crate) source: ReferenceSource,
     /// Reflectance of lines and carpet, if the camera's file gives it.
     pub(crate) reflectance: Option<NominalReflectance>,
@@ -130,11 +134,11 @@ impl<'a> Recording<'a> {
             return Err(RecordingError::NoSuchFrames { name: name(), last: count - 1, from, to });
         }
         let frames = range.len();
-        let posed: Vec<(usize, f64, CameraPose)> = range
-            .filter_map(|index| {
-                Some((index, sequence.frames[index].timestamp_s, poses.get(index).copied()??))
-            })
-            .collect();
+        let posed = |index: usize| {
+            let (time_s, pose) = (sequence.frames[index].timestamp_s, poses.get(index).copied()??);
+            Some(PosedFrame { index_in_sequence: index, time_s, pose })
+        };
+        let posed: Vec<PosedFrame> = range.filter_map(posed).collect();
         if posed.len() < LEAST_FRAMES {
             return Err(RecordingError::TooFewFrames { name: name(), found: posed.len(), frames });
         }
@@ -142,35 +146,44 @@ impl<'a> Recording<'a> {
         if posed.len() < LEAST_FRAMES {
             return Err(RecordingError::TooFewFrames { name: name(), found: posed.len(), frames });
         }
-        let stamped: Vec<(f64, CameraPose)> = posed.iter().map(|&(_, time_s, pose)| (time_s, pose)).collect();
+        let stamped: Vec<(f64, CameraPose)> = posed.iter().map(|frame| (frame.time_s, frame.pose)).collect();
         let trajectory = Trajectory::new(&stamped)
             .map_err(|source| RecordingError::Trajectory { name: name(), source })?;
         let every = posed.len().div_ceil(THRESHOLDS.most_frames);
-        let frame = |&(index, time_s, _): &(usize, f64, CameraPose)| Frame {
-            index,
+        let frame = |&PosedFrame { index_in_sequence, time_s, .. }: &PosedFrame| Frame {
+            index_in_sequence,
             time_s,
-            step: step(sequence, index),
+            step: step(sequence, index_in_sequence),
         };
         let frames = posed.iter().step_by(every).map(frame).collect();
         Ok(Self { sequence, trajectory, frames, source, reflectance: reflectance(sequence), left_out })
     }
 
-    /// Returns each frame's view number. Successive frames belong to one view while their poses differ so little that they
-    /// may share one pose error.
-    pub(crate) fn views(&self) -> Vec<usize> {
+    /// Returns the view of each frame. Successive frames belong to one view while their poses differ so little that they may
+    /// share one pose error.
+    pub(crate) fn views(&self) -> PerFrame<ViewIndex> {
         let mut first: Option<CameraPose> = None;
-        let mut number = 0;
-        let mut views = Vec::with_capacity(self.frames.len());
-        for frame in &self.frames {
+        let mut view = ViewIndex(0);
+        let of_frame = |frame: &Frame| {
             let pose = self.trajectory.at(frame.time_s);
             if let Some(first) = first.as_mut().filter(|first| !is_same_view(first, pose)) {
                 *first = pose;
-                number += 1;
+                view = ViewIndex(view.0 + 1);
             }
             first.get_or_insert(pose);
-            views.push(number);
-        }
-        views
+            view
+        };
+        self.frames.iter().map(of_frame).collect()
+    }
+
+    /// Returns the number of views.
+    pub(crate) fn view_count(&self) -> usize {
+        self.views().iter().max().map_or(0, |last| last.0 + 1)
+    }
+
+    /// Returns the time of the first frame, seconds.
+    pub(crate) fn start_s(&self) -> f64 {
+        self.frames.as_slice().first().map_or(0.0, |frame| frame.time_s)
     }
 
     /// Whether the camera moves by more than the errors of its poses, on average from the first frame.
@@ -201,24 +214,28 @@ impl<'a> Recording<'a> {
 
     /// Reads a frame's picture; returns it with the bytes of its file.
     pub(crate) fn picture(&self, frame: &Frame) -> Result<(RgbImage, Vec<u8>), SequenceError> {
-        let bytes = self.sequence.image_bytes(frame.index)?;
+        let bytes = self.sequence.image_bytes(frame.index_in_sequence)?;
         let camera = &self.sequence.setup.camera;
-        let path = self.sequence.image_path(frame.index)?;
+        let path = self.sequence.image_path(frame.index_in_sequence)?;
         Ok((decode_image(&path, &bytes, [camera.width, camera.height])?, bytes))
     }
 }
 
+/// Frame of a sequence that has a reference pose.
+struct PosedFrame {
+    index_in_sequence: usize,
+    time_s: f64,
+    pose: CameraPose,
+}
+
 /// Splits frames into those whose pictures can be read and the picture files of the others.
-fn readable(
-    sequence: &Sequence,
-    posed: Vec<(usize, f64, CameraPose)>,
-) -> (Vec<(usize, f64, CameraPose)>, Vec<PathBuf>) {
+fn readable(sequence: &Sequence, posed: Vec<PosedFrame>) -> (Vec<PosedFrame>, Vec<PathBuf>) {
     let is_readable: Vec<bool> =
-        posed.par_iter().map(|(index, ..)| sequence.load_image(*index).is_ok()).collect();
+        posed.par_iter().map(|frame| sequence.load_image(frame.index_in_sequence).is_ok()).collect();
     let mut left_out = Vec::new();
     let kept = posed.into_iter().zip(is_readable).filter_map(|(frame, is_readable)| {
         if !is_readable {
-            left_out.push(sequence.frames[frame.0].image.clone());
+            left_out.push(sequence.frames[frame.index_in_sequence].image.clone());
         }
         is_readable.then_some(frame)
     });

@@ -7,7 +7,7 @@ use reality_sim_core::field::{Curve, FieldDimensions};
 use crate::{
     diagnostics::detector::{Detector, FitResiduals},
     diagnostics::finding::{FieldLine, Finding},
-    measurement::{frame::FrameMeasurements, lines::Line},
+    measurement::{curve_index::CurveIndex, frame::FrameMeasurements, lines::Line},
     thresholds::{MissingLineThresholds, Thresholds},
 };
 
@@ -43,7 +43,7 @@ fn missing_lines(frames: &[&FrameMeasurements], field: &FieldDimensions) -> Vec<
         .filter_map(|curve| Some((curve, counts.shares(curve)?)))
         .filter(|(_, [found, usual])| *found < THRESHOLDS.most_found * usual)
         .map(|(curve, [found_share, usual_share])| Finding::MissingLine {
-            line: field_line(&curves[curve]),
+            line: field_line(&curves[curve.0]),
             found_share,
             usual_share,
         })
@@ -54,9 +54,9 @@ fn missing_lines(frames: &[&FrameMeasurements], field: &FieldDimensions) -> Vec<
 #[derive(Default)]
 struct Counts {
     /// Pieces by curve and by their width in the picture.
-    pieces: BTreeMap<(usize, usize), Count>,
+    pieces: BTreeMap<(CurveIndex, usize), Count>,
     /// Frames in which a curve is in sight.
-    frames: BTreeMap<usize, usize>,
+    frames: BTreeMap<CurveIndex, usize>,
 }
 
 impl Counts {
@@ -77,13 +77,13 @@ impl Counts {
         for line in frame.lines.iter().filter(is_at_its_place) {
             self.pieces.entry((line.curve, width(line.half_width_px))).or_default().found += 1.0;
         }
-        let seen: BTreeSet<usize> = in_sight().map(|piece| piece.curve).collect();
+        let seen: BTreeSet<CurveIndex> = in_sight().map(|piece| piece.curve).collect();
         seen.into_iter().for_each(|curve| *self.frames.entry(curve).or_default() += 1);
     }
 
     /// Returns the share of a curve's pieces that is found, and the share that is usual for pieces of their widths. None if
     /// there are too few pieces.
-    fn shares(&self, curve: usize) -> Option<[f64; 2]> {
+    fn shares(&self, curve: CurveIndex) -> Option<[f64; 2]> {
         let (mut own, mut usual) = (Count::default(), 0.0);
         for (&(_, width), count) in self.pieces.iter().filter(|((of, _), _)| *of == curve) {
             let others = self.pieces.iter().filter(|((of, wide), _)| *of != curve && *wide == width);
@@ -129,7 +129,7 @@ mod tests {
         preset_names().find_map(FieldDimensions::preset).unwrap()
     }
 
-    fn found(curve: usize) -> Line {
+    fn found(curve: CurveIndex) -> Line {
         Line {
             curve,
             fraction: 0.5,
@@ -155,13 +155,13 @@ mod tests {
     /// the first line are hidden, or show carpet.
     fn frame(pieces: [usize; 3], is_hidden: bool) -> FrameMeasurements {
         let expected = |curve: usize, piece: usize| ExpectedLine {
-            curve,
+            curve: CurveIndex(curve),
             half_width_px: HALF_WIDTH_PX,
             is_hidden: is_hidden && curve == 0 && piece >= pieces[0],
         };
         FrameMeasurements {
             camera_in_world: DVec3::Z,
-            lines: (0..3).flat_map(|curve| vec![found(curve); pieces[curve]]).collect(),
+            lines: (0..3).flat_map(|curve| vec![found(CurveIndex(curve)); pieces[curve]]).collect(),
             expected_lines: (0..24).map(|index| expected(index / 8, index % 8)).collect(),
             blocks: Vec::new(),
             noise_steps: Vec::new(),

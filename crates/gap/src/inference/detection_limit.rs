@@ -145,7 +145,7 @@ fn provides(recording: &Recording<'_>, need: Need) -> bool {
 /// Returns why a recording that has all inputs cannot show an effect.
 fn unobservable_cause(recording: &Recording<'_>, effect: &dyn Effect) -> UnobservableCause {
     let moves = recording.moves();
-    let views = recording.views().last().map_or(0, |last| last + 1);
+    let views = recording.view_count();
     match effect.stage() {
         Stage::Motion if !moves => UnobservableCause::CameraAtRest,
         Stage::Odometry if !moves => UnobservableCause::RobotAtRest,

@@ -6,6 +6,7 @@ use nalgebra::{DVector, Vector6};
 use reality_sim_sensor::Model;
 
 use crate::{
+    frame_index::{FrameIndex, PerFrame},
     inference::selected_model::SelectedModel,
     linear_model::linearization::{MeasureError, linearise},
     linear_model::{
@@ -20,9 +21,9 @@ use crate::{
 pub(crate) struct HeldOutResiduals {
     /// Residuals at the reference poses and nominal values, by frame and measurement: the errors of a simulator that is
     /// given these poses.
-    pub(crate) residuals: Vec<Vec<f64>>,
+    pub(crate) residuals: PerFrame<Vec<f64>>,
     /// Residuals after the poses were refitted within their errors.
-    refitted: Vec<Vec<f64>>,
+    refitted: PerFrame<Vec<f64>>,
 }
 
 /// Root mean squares of one channel's residuals, in the channel's unit.
@@ -78,12 +79,12 @@ pub(crate) fn gaps(
 ) -> BTreeMap<Channel, ChannelGap> {
     let mut sums: BTreeMap<Channel, Squares> = BTreeMap::new();
     let mut last: BTreeMap<Quantity, f64> = BTreeMap::new();
-    let mut next = 0;
+    let mut next: Option<FrameIndex> = None;
     for frame in found.split.held_out() {
         let linearized = &found.linearized.frames[frame];
         // Neighbours are measurements in one picture; for the odometry they are successive steps.
-        last.retain(|quantity, _| quantity.is_odometry() && frame == next);
-        next = frame + 1;
+        last.retain(|quantity, _| quantity.is_odometry() && Some(frame) == next);
+        next = Some(frame.next());
         for (index, measurement) in linearized.measurements.iter().enumerate() {
             let (b, a) = (before.residuals[frame][index], after.residuals[frame][index]);
             let refitted = after.refitted[frame][index];

@@ -3,6 +3,7 @@
 use reality_sim_sensor::{Effect, Model};
 
 use crate::{
+    frame_index::{PerFrame, ViewIndex},
     inference::effect_fit::{EffectFits, base},
     inference::effect_test::EffectTests,
     inference::evidence::Evidence,
@@ -23,11 +24,11 @@ use crate::{
 pub(crate) struct LinearizedRecording {
     pub(crate) model: Model,
     /// What was measured in each picture.
-    pub(crate) measurements: Vec<FrameMeasurements>,
+    pub(crate) measurements: PerFrame<FrameMeasurements>,
     /// Nuisance parameters, in the order of their columns.
     pub(crate) nuisances: Vec<Nuisance>,
     /// Residuals of each frame with their derivatives.
-    pub(crate) frames: Vec<LinearizedFrame>,
+    pub(crate) frames: PerFrame<LinearizedFrame>,
     /// Normal equations of the training frames.
     pub(crate) system: LinearSystem,
 }
@@ -44,15 +45,15 @@ impl LinearizedRecording {
     ) -> Result<Self, MeasureError> {
         let search_px = search * f64::from(recording.sequence.setup.camera.width);
         let measurements = measure_frames(recording, &model, search_px)?;
-        let nuisances = nuisances(&measurements);
+        let nuisances = nuisances(measurements.as_slice());
         let mut frames = linearise(recording, &measurements, &model, columns, &nuisances)?;
         // An odometry step that ends at a held-out frame is not fitted.
-        for frame in split.training().filter(|frame| split.is_held_out(frame + 1)) {
+        for frame in split.training().filter(|frame| split.is_held_out(frame.next())) {
             frames[frame].leave_out(Channel::Motion);
         }
         let training: Vec<&LinearizedFrame> = split.training().map(|frame| &frames[frame]).collect();
         let views = recording.views();
-        let views: Vec<usize> = split.training().map(|frame| views[frame]).collect();
+        let views: Vec<ViewIndex> = split.training().map(|frame| views[frame]).collect();
         let size = columns.len() + nuisances.len();
         let system = LinearSystem::new(&training, size, recording.reference(), &views);
         Ok(Self { model, measurements, nuisances, frames, system })

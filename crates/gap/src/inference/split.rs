@@ -1,21 +1,24 @@
 //! Split into training frames and held-out frames.
 
-use crate::thresholds::Thresholds;
+use crate::{
+    frame_index::{FrameIndex, PerFrame},
+    thresholds::Thresholds,
+};
 
 const RUN: usize = Thresholds::DEFAULT.inference.held_out_run_frames;
 const EVERY: usize = Thresholds::DEFAULT.inference.held_out_every;
 
-/// Returns the stretch that a frame is in, if `count` frames are divided into `stretches` successive stretches of equal
+/// Returns the stretch that the frame at a position is in, if `count` frames are divided into `stretches` successive stretches of equal
 /// length.
-pub(crate) fn stretch(frame: usize, count: usize, stretches: usize) -> usize {
-    frame * stretches / count
+pub(crate) fn stretch(position: usize, count: usize, stretches: usize) -> usize {
+    position * stretches / count
 }
 
 /// Split into training frames and held-out frames, which no fit sees.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct HeldOutSplit {
     /// Whether each frame is held out.
-    is_held_out: Vec<bool>,
+    is_held_out: PerFrame<bool>,
 }
 
 impl HeldOutSplit {
@@ -29,22 +32,22 @@ impl HeldOutSplit {
     }
 
     /// Returns the indices of the training frames, in order.
-    pub(crate) fn training(&self) -> impl Iterator<Item = usize> {
+    pub(crate) fn training(&self) -> impl Iterator<Item = FrameIndex> {
         self.frames(false)
     }
 
     /// Returns the indices of the held-out frames, in order.
-    pub(crate) fn held_out(&self) -> impl Iterator<Item = usize> {
+    pub(crate) fn held_out(&self) -> impl Iterator<Item = FrameIndex> {
         self.frames(true)
     }
 
     /// Whether a frame is held out; false for a frame that does not exist.
-    pub(crate) fn is_held_out(&self, frame: usize) -> bool {
+    pub(crate) fn is_held_out(&self, frame: FrameIndex) -> bool {
         self.is_held_out.get(frame).copied().unwrap_or(false)
     }
 
-    fn frames(&self, held_out: bool) -> impl Iterator<Item = usize> {
-        let frames = self.is_held_out.iter().enumerate();
+    fn frames(&self, held_out: bool) -> impl Iterator<Item = FrameIndex> {
+        let frames = self.is_held_out.indexed();
         frames.filter(move |(_, is_held_out)| **is_held_out == held_out).map(|(frame, _)| frame)
     }
 }
@@ -62,7 +65,7 @@ mod tests {
                     (split.training().collect(), split.held_out().collect());
                 let mut all: Vec<_> = training.iter().chain(&held_out).copied().collect();
                 all.sort_unstable();
-                assert_eq!(all, (0..frames).collect::<Vec<_>>());
+                assert_eq!(all, FrameIndex::first(frames).collect::<Vec<_>>());
                 let share = held_out.len() as f64 / frames as f64;
                 assert!((0.12..0.4).contains(&share), "{frames} {seed}: {share}");
             }

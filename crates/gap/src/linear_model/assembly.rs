@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use crate::{
+    frame_index::ViewIndex,
     linear_model::{
         column::ColumnIndex, linearized_frame::LinearizedFrame, normal_equations::NormalEquations,
         pose_projection::PoseProjection,
@@ -31,13 +32,13 @@ pub(super) fn by_frame(
 }
 
 /// Returns the normal equations of each view that has any. `views` gives each frame's view.
-pub(super) fn by_view(frames: &[NormalEquations], views: &[usize]) -> Vec<NormalEquations> {
-    let count = views.iter().max().map_or(0, |last| last + 1);
-    let of_view = |view: usize| {
-        let frames = frames.iter().zip(views).filter(move |(_, of)| **of == view);
-        NormalEquations::sum(frames.map(|(frame, _)| frame))
-    };
-    (0..count).map(of_view).filter(|equations| !equations.is_empty()).collect()
+pub(super) fn by_view(frames: &[NormalEquations], views: &[ViewIndex]) -> Vec<NormalEquations> {
+    let mut members: BTreeMap<ViewIndex, Vec<&NormalEquations>> = BTreeMap::new();
+    for (frame, view) in frames.iter().zip(views) {
+        members.entry(*view).or_default().push(frame);
+    }
+    let sums = members.into_values().map(|frames| NormalEquations::sum(frames.into_iter()));
+    sums.filter(|equations| !equations.is_empty()).collect()
 }
 
 /// Returns the normal equations of each cell of the field, without the odometry.

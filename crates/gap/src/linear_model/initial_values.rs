@@ -2,12 +2,13 @@
 
 use reality_sim_sensor::{Effect, Model, Role};
 
-use crate::recording::Recording;
+use crate::{linear_model::parameters::FittedParameter, recording::Recording};
 
 /// Returns the neutral values of an effect's parameters. Fixed parameters, which no fit changes, take the times of the
 /// recording's first and last frame.
 pub(crate) fn starting_values(effect: &'static dyn Effect, recording: &Recording<'_>) -> Vec<f64> {
-    let (first, last) = (recording.frames.first(), recording.frames.last());
+    let frames = recording.frames.as_slice();
+    let (first, last) = (frames.first(), frames.last());
     let given = |name: &str| match name {
         "from_s" => first.map_or(0.0, |frame| frame.time_s),
         "to_s" => last.map_or(1.0, |frame| frame.time_s),
@@ -20,15 +21,9 @@ pub(crate) fn starting_values(effect: &'static dyn Effect, recording: &Recording
     effect.parameters().iter().map(value).collect()
 }
 
-/// Returns the model with these values of an effect, one of which is replaced.
-pub(crate) fn with_value(
-    model: &Model,
-    effect: &'static dyn Effect,
-    values: &[f64],
-    parameter: usize,
-    value: f64,
-) -> Model {
+/// Returns the model with these values of a parameter's effect, in which that of the parameter is replaced.
+pub(crate) fn with_value(model: &Model, parameter: &FittedParameter, values: &[f64], value: f64) -> Model {
     let mut values = values.to_vec();
-    values[parameter] = value;
-    model.with(effect, values)
+    values[parameter.parameter] = value;
+    model.with(parameter.effect(), values)
 }

@@ -6,6 +6,7 @@ use reality_sim_core::{pose::Motion2, sequence::SequenceError};
 use reality_sim_sensor::{Chain, Changes, Model, ModelError};
 
 use crate::{
+    frame_index::PerFrame,
     linear_model::{
         column::ColumnIndex,
         linearized_frame::LinearizedFrame,
@@ -55,7 +56,7 @@ pub(crate) fn check(recording: &Recording<'_>, model: &Model) -> Result<(), Meas
     for frame in &recording.frames {
         let height_m = chain.pose(&recording.trajectory, frame.time_s, 0.5).height_m;
         if height_m <= 0.0 {
-            return Err(MeasureError::NotAboveGround { index: frame.index, height_m });
+            return Err(MeasureError::NotAboveGround { index: frame.index_in_sequence, height_m });
         }
     }
     Ok(())
@@ -67,14 +68,15 @@ pub(crate) fn measure_frames(
     recording: &Recording<'_>,
     model: &Model,
     search_px: f64,
-) -> Result<Vec<FrameMeasurements>, MeasureError> {
+) -> Result<PerFrame<FrameMeasurements>, MeasureError> {
     let chain = Chain::new(&recording.sequence.setup, &recording.sequence.field, model)?;
     let config = MeasurementConfig { search_px, gamma: recording.gamma() };
     let of_frame = |frame: &Frame| -> Result<FrameMeasurements, MeasureError> {
         let (picture, bytes) = recording.picture(frame)?;
         Ok(measure_frame(&frame_camera(&chain, recording, frame), &picture, &bytes, config))
     };
-    recording.frames.par_iter().map(of_frame).collect()
+    let frames: Result<Vec<_>, _> = recording.frames.as_slice().par_iter().map(of_frame).collect();
+    Ok(PerFrame::from(frames?))
 }
 
 fn frame_camera<'a>(chain: &'a Chain, recording: &'a Recording<'_>, frame: &Frame) -> FrameCamera<'a> {
@@ -85,11 +87,11 @@ fn frame_camera<'a>(chain: &'a Chain, recording: &'a Recording<'_>, frame: &Fram
 /// differences, followed by those of the nuisance parameters.
 pub(crate) fn linearise(
     recording: &Recording<'_>,
-    measurements: &[FrameMeasurements],
+    measurements: &PerFrame<FrameMeasurements>,
     model: &Model,
     parameters: &[FittedParameter],
     nuisances: &[Nuisance],
-) -> Result<Vec<LinearizedFrame>, MeasureError> {
+) -> Result<PerFrame<LinearizedFrame>, MeasureError> {
     let setup = &recording.sequence.setup;
     let photometry = setup.photometry;
     let perturbed = parameters.iter().map(|parameter| PerturbedModel::new(recording, model, parameter));
@@ -107,8 +109,10 @@ pub(crate) fn linearise(
         },
     };
     let motions = instrumental_motions(recording, &recording.frames.iter().collect::<Vec<_>>());
-    let frames = recording.frames.par_iter().zip(measurements).zip(&motions);
-    Ok(frames.map(|((frame, measured), motion)| linearization.frame(frame, measured, *motion)).collect())
+    let frames = recording.frames.as_slice().par_iter().zip(measurements.as_slice()).zip(&motions);
+    let linearized: Vec<LinearizedFrame> =
+        frames.map(|((frame, measured), motion)| linearization.frame(frame, measured, *motion)).collect();
+    Ok(PerFrame::from(linearized))
 }
 
 /// Model with its perturbations, at which frames are linearised.

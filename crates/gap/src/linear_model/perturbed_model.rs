@@ -30,7 +30,7 @@ impl PerturbedModel {
         let value = values[fitted.parameter];
         // At the upper end of the range the step goes inwards.
         let step = if value + parameter.step > parameter.range[1] { -parameter.step } else { parameter.step };
-        let perturbed = with_value(model, fitted.effect(), &values, fitted.parameter, value + step);
+        let perturbed = with_value(model, fitted, &values, value + step);
         let chain = Chain::new(&recording.sequence.setup, &recording.sequence.field, &perturbed)?;
         Ok(Self { chain, step: fitted.coordinate(value + step) - fitted.coordinate(value) })
     }

@@ -14,7 +14,7 @@ use crate::{
         frame::{FrameMeasurements, log_linear},
         lines::{APERTURE_PX2, Line},
         luma::LUMA,
-        quantity::Quantity,
+        quantity::{ColorChannel, Quantity},
         scalar::{Measurement, Subject, component},
     },
     recording::NominalReflectance,
@@ -86,12 +86,16 @@ impl Predictor<'_> {
     /// Predicts a piece of line. None if the model does not show it in the picture.
     fn line(&self, line: &Line) -> Option<LinePrediction> {
         let chain = self.camera.chain;
-        let ground = self.camera.curves.get(line.curve)?.at(line.fraction).0;
-        let offset = |channel: usize| {
+        let ground = self.camera.curve(line.curve)?.at(line.fraction).0;
+        let offset = |channel: ColorChannel| {
             self.camera.project(ground, channel).map(|pixel| line.normal.dot(pixel - line.pixel))
         };
-        let green = offset(1)?;
-        let (red, blue) = if chain.splits_colors() { (offset(0)?, offset(2)?) } else { (green, green) };
+        let green = offset(ColorChannel::Green)?;
+        let (red, blue) = if chain.splits_colors() {
+            (offset(ColorChannel::Red)?, offset(ColorChannel::Blue)?)
+        } else {
+            (green, green)
+        };
         let share = line.profile.contrast_share;
         let luma = share[0] * red + share[1] * green + share[2] * blue;
         let smear_px = chain.exposure_s() * line.speed_px_s;

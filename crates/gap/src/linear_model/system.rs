@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 use crate::{
+    frame_index::ViewIndex,
     linear_model::{
         assembly::{by_cell, by_frame, by_view},
         fitted_residuals::FittedResiduals,
@@ -52,7 +53,7 @@ impl LinearSystem {
         frames: &[&LinearizedFrame],
         size: usize,
         reference: ReferenceKind,
-        views: &[usize],
+        views: &[ViewIndex],
     ) -> Self {
         let mut estimate = Weighting::new(frames, &first_residuals(frames), pose_sigmas(None, reference));
         for _ in 0..ITERATIONS {
@@ -141,7 +142,7 @@ mod tests {
     }
 
     fn system(frames: &[LinearizedFrame]) -> LinearSystem {
-        let views: Vec<usize> = (0..frames.len()).collect();
+        let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
         LinearSystem::new(&frames.iter().collect::<Vec<_>>(), 2, ReferenceKind::Whole, &views)
     }
 
@@ -195,7 +196,7 @@ mod tests {
                 }
             })
             .collect();
-        let views: Vec<usize> = (0..frames.len()).collect();
+        let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
         let system = LinearSystem::new(&frames.iter().collect::<Vec<_>>(), 1, ReferenceKind::Whole, &views);
         let delta = solve(&system.frames, 1);
         assert!((delta[0] - truth).abs() < 0.1, "{delta}");

@@ -4,6 +4,8 @@ use glam::DVec2;
 use reality_sim_core::{field::Curve, pose::CameraPose};
 use reality_sim_sensor::{Chain, Frame, Trajectory};
 
+use crate::measurement::{curve_index::CurveIndex, quantity::ColorChannel};
+
 /// Half the interval of the central difference that gives a pixel's velocity, seconds.
 const VELOCITY_STEP_S: f64 = 2e-3;
 
@@ -32,9 +34,14 @@ impl<'a> FrameCamera<'a> {
         }
     }
 
-    /// Returns the pixel at which a colour channel (0 red, 1 green, 2 blue) shows a point on the ground. None outside the picture.
-    pub(crate) fn project(&self, ground: DVec2, channel: usize) -> Option<DVec2> {
-        self.frame.project(ground.extend(0.0), channel)
+    /// Returns the pixel at which a colour channel shows a point on the ground. None outside the picture.
+    pub(crate) fn project(&self, ground: DVec2, channel: ColorChannel) -> Option<DVec2> {
+        self.frame.project(ground.extend(0.0), channel as usize)
+    }
+
+    /// Returns a curve of the model's field, in the world. None if the field has fewer curves.
+    pub(crate) fn curve(&self, curve: CurveIndex) -> Option<&Curve> {
+        self.curves.get(curve.0)
     }
 }
 
@@ -55,7 +62,7 @@ impl<'a> PixelVelocity<'a> {
     /// Returns the component of a point's velocity along a direction in the picture, pixels per second.
     pub(crate) fn along_px_s(&self, ground: DVec2, direction: DVec2) -> f64 {
         let Some([before, after]) = &self.around else { return 0.0 };
-        match (before.project(ground, 1), after.project(ground, 1)) {
+        match (before.project(ground, ColorChannel::Green), after.project(ground, ColorChannel::Green)) {
             (Some(before), Some(after)) => direction.dot(after - before) / (2.0 * VELOCITY_STEP_S),
             _ => 0.0,
         }

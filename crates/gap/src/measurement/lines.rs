@@ -11,8 +11,10 @@ use crate::{
     measurement::{
         camera::{FrameCamera, PixelVelocity},
         carpet::{self, CarpetBlock},
+        curve_index::CurveIndex,
         line_profile::{self, LinePiece, Profile},
         line_search::{CoarseMatch, search},
+        quantity::ColorChannel,
         visibility::Visibility,
     },
     thresholds::{LineThresholds, Thresholds},
@@ -26,7 +28,7 @@ pub(crate) const APERTURE_PX2: f64 = 1.0 / 12.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ExpectedLine {
     /// Curve of the field that it is a piece of.
-    pub(crate) curve: usize,
+    pub(crate) curve: CurveIndex,
     /// Half the width in the picture, pixels.
     pub(crate) half_width_px: f64,
     /// Whether it is occluded: its pixels show neither a line nor carpet.
@@ -37,7 +39,7 @@ pub(crate) struct ExpectedLine {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Line {
     /// Curve of the field that it is a piece of.
-    pub(crate) curve: usize,
+    pub(crate) curve: CurveIndex,
     /// Position on the curve as a fraction of its length.
     pub(crate) fraction: f64,
     /// Point on the ground, world axes, metres.
@@ -55,6 +57,11 @@ pub(crate) struct Line {
     pub(crate) is_expected: bool,
 }
 
+/// Returns the curve of the field that a sample is a piece of.
+pub(crate) fn curve_of(visible: &VisibleSample) -> CurveIndex {
+    CurveIndex(visible.sample.curve)
+}
+
 /// Returns the pieces of line that the model predicts in the picture with nothing else in their profiles.
 pub(crate) fn expected_lines(camera: &FrameCamera<'_>) -> Vec<VisibleSample> {
     let field = camera.chain.field();
@@ -66,7 +73,10 @@ pub(crate) fn expected_lines(camera: &FrameCamera<'_>) -> Vec<VisibleSample> {
         (thinnest..=widest).contains(&visible.half_width_px) && visibility.stands_alone(visible)
     });
     let projected = alone.filter_map(|visible| {
-        Some(VisibleSample { pixel: camera.project(visible.sample.point_in_world, 1)?, ..visible })
+        Some(VisibleSample {
+            pixel: camera.project(visible.sample.point_in_world, ColorChannel::Green)?,
+            ..visible
+        })
     });
     projected.collect()
 }
@@ -87,7 +97,7 @@ pub(crate) fn measure_lines(
     let is_carpet = |pixel: DVec2| carpet_level.is_some_and(|level| carpet::is_carpet(picture, pixel, level));
     let is_found = |visible: &VisibleSample| lines.iter().any(|line| line.pixel == visible.pixel);
     let piece = |visible: &VisibleSample| ExpectedLine {
-        curve: visible.sample.curve,
+        curve: curve_of(visible),
         half_width_px: visible.half_width_px,
         is_hidden: !is_found(visible) && !is_carpet(visible.pixel),
     };
@@ -126,10 +136,10 @@ impl LineFinder<'_> {
         (half_width_px > THRESHOLDS.least_half_width_sigmas * variance_px2.sqrt()).then_some(())?;
         let piece = LinePiece { pixel, normal, half_width_px, variance_px2 };
         let profile = line_profile::fit(self.picture, self.gamma, &piece, found.offset_px)?;
-        let curve = visible.sample.curve;
+        let curve = curve_of(visible);
         Some(Line {
             curve,
-            fraction: fraction(&self.camera.curves[curve], ground),
+            fraction: fraction(self.camera.curve(curve)?, ground),
             ground,
             pixel,
             normal,

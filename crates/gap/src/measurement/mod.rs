@@ -2,6 +2,7 @@
 
 pub(crate) mod camera;
 pub(crate) mod carpet;
+pub(crate) mod curve_index;
 pub(crate) mod frame;
 pub(crate) mod line_profile;
 pub(crate) mod line_search;

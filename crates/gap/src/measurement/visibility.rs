@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use reality_sim_core::field::{GoalPost, LineSample, VisibleSample};
 
 use crate::{
-    measurement::camera::FrameCamera,
+    measurement::{camera::FrameCamera, quantity::ColorChannel},
     thresholds::{Thresholds, VisibilityThresholds},
 };
 
@@ -54,7 +54,9 @@ impl<'a> Visibility<'a> {
         // A metre has fewer pixels on the far side of a line than on its near side.
         let is_free = |offset_m: f64| {
             let end = point_in_world + offset_m * visible.sample.normal_in_world();
-            self.camera.project(end, 1).is_none_or(|pixel| pixel.distance(visible.pixel) > needed_px)
+            self.camera
+                .project(end, ColorChannel::Green)
+                .is_none_or(|pixel| pixel.distance(visible.pixel) > needed_px)
         };
         let needed_m = needed_px * 0.5 * self.line_width_m / visible.half_width_px;
         free_m > 0.0 && is_free(-free_m) && is_free(free_m) && self.off_posts(point_in_world, 0.0, needed_m)

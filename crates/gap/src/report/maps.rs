@@ -7,6 +7,7 @@ use glam::DVec2;
 use reality_sim_core::statistics::median;
 
 use crate::{
+    frame_index::{FrameIndex, PerFrame},
     inference::held_out::HeldOutResiduals,
     inference::selected_model::SelectedModel,
     measurement::quantity::Channel,
@@ -32,8 +33,9 @@ pub(crate) fn maps(
     let field_rows = [cells.x as usize, cells.y as usize];
     let mut maps = BTreeMap::new();
     for channel in Channel::ALL {
-        let of =
-            |all: &HeldOutResiduals| -> Vec<(usize, Measurement, f64)> { residuals(found, all, channel) };
+        let of = |all: &HeldOutResiduals| -> Vec<(FrameIndex, Measurement, f64)> {
+            residuals(found, all, channel)
+        };
         let (before, after) = (of(before), of(after));
         if after.is_empty() {
             continue;
@@ -70,10 +72,10 @@ fn residuals(
     found: &SelectedModel,
     all: &HeldOutResiduals,
     channel: Channel,
-) -> Vec<(usize, Measurement, f64)> {
-    let frames = found.linearized.frames.iter().zip(&all.residuals).enumerate();
+) -> Vec<(FrameIndex, Measurement, f64)> {
+    let frames = found.linearized.frames.indexed().zip(&all.residuals);
     frames
-        .flat_map(|(frame, (linearized, residuals))| {
+        .flat_map(|((frame, linearized), residuals)| {
             let residuals = linearized.measurements.iter().zip(residuals);
             residuals.map(move |(measurement, residual)| (frame, *measurement, *residual))
         })
@@ -86,7 +88,7 @@ fn residuals(
 /// Returns the median of each cell's residuals, row by row. `place` maps the grid to 0 to 1 along both axes. None for a cell
 /// with too few measurements.
 fn medians(
-    residuals: &[(usize, Measurement, f64)],
+    residuals: &[(FrameIndex, Measurement, f64)],
     grid: [usize; 2],
     place: &dyn Fn(&Measurement) -> DVec2,
 ) -> Vec<Option<f64>> {
@@ -108,22 +110,20 @@ fn medians(
 fn course(
     recording: &Recording<'_>,
     found: &SelectedModel,
-    before: &[(usize, Measurement, f64)],
-    after: &[(usize, Measurement, f64)],
+    before: &[(FrameIndex, Measurement, f64)],
+    after: &[(FrameIndex, Measurement, f64)],
 ) -> Course {
     let count = recording.frames.len();
-    let mut held_out = vec![false; count];
-    found.split.held_out().for_each(|frame| held_out[frame] = true);
-    let sizes = |residuals: &[(usize, Measurement, f64)]| -> Vec<Option<f64>> {
-        let mut values: Vec<Vec<f64>> = vec![Vec::new(); count];
+    let sizes = |residuals: &[(FrameIndex, Measurement, f64)]| -> Vec<Option<f64>> {
+        let mut values: PerFrame<Vec<f64>> = PerFrame::from(vec![Vec::new(); count]);
         residuals.iter().for_each(|(frame, _, residual)| values[*frame].push(residual.abs()));
         let robust =
-            |values: &mut Vec<f64>| (!values.is_empty()).then(|| 1.4826 * median(values.iter().copied()));
-        values.iter_mut().map(robust).collect()
+            |values: &Vec<f64>| (!values.is_empty()).then(|| 1.4826 * median(values.iter().copied()));
+        values.iter().map(robust).collect()
     };
     Course {
         time_s: recording.frames.iter().map(|frame| frame.time_s).collect(),
-        held_out,
+        held_out: FrameIndex::first(count).map(|frame| found.split.is_held_out(frame)).collect(),
         before: sizes(before),
         after: sizes(after),
     }

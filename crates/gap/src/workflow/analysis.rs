@@ -9,6 +9,7 @@ use crate::{
     diagnostics::DETECTORS,
     diagnostics::detector::{FitResiduals, FrameResiduals},
     diagnostics::finding::Finding,
+    frame_index::FrameIndex,
     inference::detection_limit::{NotFound, limit},
     inference::effect_fit::EffectFits,
     inference::effect_test::{EffectTest, EffectTests},
@@ -243,7 +244,7 @@ fn findings(
     let linearized = &found.linearized;
     let fit = FitResiduals {
         recording,
-        start_s: recording.frames[0].time_s,
+        start_s: recording.start_s(),
         frames: frame_residuals(recording, found, &delta),
         steps: found.split.training().map(|frame| &recording.frames[frame]).collect(),
         measurements: found.split.training().map(|frame| &linearized.measurements[frame]).collect(),
@@ -294,7 +295,7 @@ fn frame_residuals<'a>(
 /// Returns the held-out frame with the largest gap before the selection.
 fn shown_frame(recording: &Recording<'_>, found: &SelectedModel, before: &HeldOutResiduals) -> usize {
     let most = THRESHOLDS.most_shown_sigmas * THRESHOLDS.most_shown_sigmas;
-    let size = |frame: usize| -> f64 {
+    let size = |frame: FrameIndex| -> f64 {
         let measurements = found.linearized.frames[frame].measurements.iter();
         let squares = measurements.zip(&before.residuals[frame]).filter_map(|(measurement, residual)| {
             let sigma = found.linearized.system.sigmas.get(&measurement.quantity)?;
@@ -303,5 +304,5 @@ fn shown_frame(recording: &Recording<'_>, found: &SelectedModel, before: &HeldOu
         squares.sum()
     };
     let frame = found.split.held_out().max_by(|&a, &b| size(a).total_cmp(&size(b)));
-    frame.map_or(0, |frame| recording.frames[frame].index)
+    frame.map_or(0, |frame| recording.frames[frame].index_in_sequence)
 }

@@ -8,13 +8,16 @@ use reality_sim_core::preprocess::{Texture, luma};
 use reality_sim_sensor::{Chain, EffectIndex, Model};
 
 use crate::{
+    frame_index::FrameIndex,
     inference::split::HeldOutSplit,
     linear_model::initial_values::{starting_values, with_value},
     linear_model::linearization::MeasureError,
     linear_model::parameters::FittedParameter,
     measurement::camera::FrameCamera,
+    measurement::curve_index::CurveIndex,
     measurement::line_search::search,
-    measurement::lines::expected_lines,
+    measurement::lines::{curve_of, expected_lines},
+    measurement::quantity::ColorChannel,
     recording::Recording,
     thresholds::{Thresholds, WorkflowThresholds},
 };
@@ -51,7 +54,7 @@ pub(crate) fn coarsely_aligned(
 
 /// Numbers of line pieces found and expected, for each curve of the field.
 #[derive(Debug, Clone, Default)]
-struct LineCounts(BTreeMap<usize, [f64; 2]>);
+struct LineCounts(BTreeMap<CurveIndex, [f64; 2]>);
 
 impl LineCounts {
     /// Returns the numbers of pieces found and expected of all curves.
@@ -90,8 +93,8 @@ impl<'a> PictureSample<'a> {
     /// Samples the training frames; held-out frames are not used before the end.
     fn new(recording: &'a Recording<'a>, split: &HeldOutSplit) -> Result<Self, MeasureError> {
         let every = split.training().count().div_ceil(THRESHOLDS.alignment_pictures).max(1);
-        let picture = |index: usize| {
-            let frame = &recording.frames[index];
+        let picture = |frame: FrameIndex| {
+            let frame = &recording.frames[frame];
             Ok((frame.time_s, Texture::pack(&luma(&recording.picture(frame)?.0))))
         };
         let pictures = split.training().step_by(every).map(picture).collect::<Result<_, MeasureError>>()?;
@@ -136,7 +139,7 @@ impl<'a> PictureSample<'a> {
         let values = model
             .values(effect.id())
             .map_or_else(|| starting_values(effect, self.recording), <[f64]>::to_vec);
-        with_value(model, effect, &values, column.parameter, value)
+        with_value(model, column, &values, value)
     }
 
     /// Returns the camera chain of a model. None if the lens or the field is impossible: the limit of one parameter's range
@@ -153,9 +156,9 @@ impl<'a> PictureSample<'a> {
         let mut counts = LineCounts::default();
         for (time_s, texture) in &self.pictures {
             let expected = expected_lines(&FrameCamera::new(&chain, trajectory, *time_s));
-            let found = search(texture, &expected, near_px, |found| Some(found.visible.sample.curve));
-            let expected = expected.iter().map(|visible| visible.sample.curve);
-            let mut count = |curve: usize, kind: usize| counts.0.entry(curve).or_default()[kind] += 1.0;
+            let found = search(texture, &expected, near_px, |found| Some(curve_of(&found.visible)));
+            let expected = expected.iter().map(curve_of);
+            let mut count = |curve: CurveIndex, kind: usize| counts.0.entry(curve).or_default()[kind] += 1.0;
             found.into_iter().for_each(|curve| count(curve, 0));
             expected.for_each(|curve| count(curve, 1));
         }
@@ -173,8 +176,8 @@ impl<'a> PictureSample<'a> {
             // are enough: over a curve, displacements by one parameter change smoothly.
             for (curve, same) in one.curves.iter().zip(&other.curves) {
                 for fraction in [0.0, 0.25, 0.5, 0.75, 1.0] {
-                    let pixels =
-                        [one.project(curve.at(fraction).0, 1), other.project(same.at(fraction).0, 1)];
+                    let pixels = [(&one, curve), (&other, same)]
+                        .map(|(camera, curve)| camera.project(curve.at(fraction).0, ColorChannel::Green));
                     if let [Some(one), Some(other)] = pixels {
                         farthest_px = farthest_px.max(one.distance(other));
                     }
@@ -197,7 +200,7 @@ mod tests {
     use super::*;
 
     fn counts(curves: &[[f64; 2]]) -> LineCounts {
-        LineCounts((0..).zip(curves.iter().copied()).collect())
+        LineCounts((0..).map(CurveIndex).zip(curves.iter().copied()).collect())
     }
 
     #[test]

@@ -8,6 +8,7 @@ use nalgebra::{DVector, Vector6};
 use reality_sim_sensor::{EffectIndex, Model};
 
 use crate::{
+    frame_index::{PerFrame, ViewIndex},
     linear_model::{
         column::ColumnIndex, linearized_frame::LinearizedFrame, parameters::FittedParameter,
         system::LinearSystem,
@@ -68,7 +69,7 @@ impl World {
 
     /// Returns the residuals of a model with its linearisation. A change of a column by its material size changes the
     /// measurements by its signature.
-    fn frames(&self, model: &Model) -> Vec<LinearizedFrame> {
+    fn frames(&self, model: &Model) -> PerFrame<LinearizedFrame> {
         let mut noise = Noise(self.seed);
         let units: Vec<f64> = (0..self.columns.len()).map(|column| self.coordinate(column, 1.0)).collect();
         let left: Vec<f64> = (0..self.columns.len())
@@ -111,7 +112,7 @@ impl World {
     }
 
     fn system(&self, frames: &[&LinearizedFrame]) -> LinearSystem {
-        let views: Vec<usize> = (0..frames.len()).collect();
+        let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
         LinearSystem::new(frames, self.columns.len(), ReferenceKind::Whole, &views)
     }
 

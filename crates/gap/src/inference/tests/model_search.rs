@@ -4,6 +4,7 @@ use reality_sim_sensor::{Effect, EffectIndex, Model};
 
 use super::{FRAMES, Signature, World, effect};
 use crate::{
+    frame_index::PerFrame,
     inference::{
         linearized_recording::{Linearize, LinearizedRecording},
         model_search::ModelSearch,
@@ -17,7 +18,13 @@ impl Linearize for World {
         let frames = self.frames(&model);
         let training: Vec<&LinearizedFrame> = split().training().map(|frame| &frames[frame]).collect();
         let system = self.system(&training);
-        Ok(LinearizedRecording { model, measurements: Vec::new(), nuisances: Vec::new(), frames, system })
+        Ok(LinearizedRecording {
+            model,
+            measurements: PerFrame::from(Vec::new()),
+            nuisances: Vec::new(),
+            frames,
+            system,
+        })
     }
 
     fn starting_values(&self, effect: &'static dyn Effect) -> Vec<f64> {

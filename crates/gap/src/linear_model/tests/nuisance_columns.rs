@@ -48,7 +48,7 @@ fn every_nuisance_column_is_the_derivative_of_the_prediction() {
     let recording = recording(&sequence);
     let model = Model::default();
     let measurements = measure_frames(&recording, &model, 20.0).unwrap();
-    let nuisances = nuisances(&measurements);
+    let nuisances = nuisances(measurements.as_slice());
     let frames = linearise(&recording, &measurements, &model, &[], &nuisances).unwrap();
     let mut seen = vec![false; nuisances.len()];
     for frame in &frames {

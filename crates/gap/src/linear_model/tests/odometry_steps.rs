@@ -36,7 +36,7 @@ fn walk<'a>(sequence: &'a Sequence, steps_m: &[f64], gaps: &[usize]) -> Recordin
             // The odometry itself must not matter.
             let odometry = Motion2 { forward_m: 99.0, left_m: 99.0, turn_rad: 1.0 };
             Frame {
-                index,
+                index_in_sequence: index,
                 time_s: poses[index].0,
                 step: has_step.then_some(OdometryStep { until_s, odometry }),
             }

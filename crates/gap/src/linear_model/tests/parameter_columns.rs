@@ -8,6 +8,7 @@ use reality_sim_sensor::{Changes, Growth, Model, Role, Stage, Trajectory};
 
 use super::{recording, sequence};
 use crate::{
+    frame_index::PerFrame,
     linear_model::{
         initial_values::starting_values,
         linearization::{linearise, measure_frames},
@@ -62,7 +63,7 @@ fn values_at(recording: &Recording<'_>, column: &FittedParameter, part: f64) -> 
 /// Recording linearised in one column at some values of its effect, with the central differences there.
 struct Compared {
     column: FittedParameter,
-    frames: Vec<LinearizedFrame>,
+    frames: PerFrame<LinearizedFrame>,
     /// Central differences by frame and measurement.
     differences: Vec<Vec<f64>>,
 }
@@ -70,7 +71,7 @@ struct Compared {
 impl Compared {
     fn new(
         recording: &Recording<'_>,
-        measurements: &[FrameMeasurements],
+        measurements: &PerFrame<FrameMeasurements>,
         column: FittedParameter,
         values: &[f64],
     ) -> Self {
@@ -175,7 +176,7 @@ fn during_a_steady_walk_the_columns_of_the_odometry_are_the_derivatives_of_its_o
         CameraPose::new(place, 0.5, 0.4, 0.0)
     };
     let times_s: Vec<f64> = recording.frames.iter().map(|frame| frame.time_s).collect();
-    let until_s = recording.frames.last().unwrap().step.unwrap().until_s;
+    let until_s = recording.frames.as_slice().last().unwrap().step.unwrap().until_s;
     let poses: Vec<(f64, CameraPose)> =
         times_s.into_iter().chain([until_s]).map(|time_s| (time_s, pose(time_s))).collect();
     recording.trajectory = Trajectory::new(&poses).unwrap();
@@ -186,7 +187,7 @@ fn during_a_steady_walk_the_columns_of_the_odometry_are_the_derivatives_of_its_o
         blocks: Vec::new(),
         noise_steps: Vec::new(),
     };
-    let measurements = vec![nothing; recording.frames.len()];
+    let measurements = PerFrame::from(vec![nothing; recording.frames.len()]);
     for column in fitted_parameters(&[]).into_iter().filter(is_of_odometry) {
         for part in [0.0, 0.1] {
             let values = values_at(&recording, &column, part);
