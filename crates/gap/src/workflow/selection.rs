@@ -42,17 +42,8 @@ pub(crate) fn find(
     let given = effects_of(model);
     let source = FittedRecording { recording, columns: &columns, split: &split };
     let search = ModelSearch { source: &source, columns: &columns, split: &split, given: &given, progress };
-    progress(Progress::Measuring);
-    let mut linearized = LinearizedRecording::new(recording, model.clone(), &columns, &split, SEARCH_FIRST)?;
+    let (as_given, mut linearized) = start(recording, model, &search)?;
     let mut named: Vec<EffectIndex> = Vec::new();
-    if !given.is_empty() {
-        linearized = search.converge(linearized, &given)?;
-    }
-    // If lines are far from where the model predicts them, the search starts at a coarsely aligned model.
-    let as_given = linearized.model.clone();
-    if let Some(aligned) = coarsely_aligned(recording, &as_given, &columns, &split)? {
-        linearized = LinearizedRecording::new(recording, aligned, &columns, &split, SEARCH_FIRST)?;
-    }
     // Sets that were tried, so that replacements do not go round in circles.
     let mut tried: Vec<Vec<EffectIndex>> = vec![Vec::new()];
     let mut ties = Vec::new();
@@ -90,6 +81,27 @@ pub(crate) fn find(
     }
     let confusable = search.confusable(&linearized, &named, &ties)?;
     Ok(SelectedModel { columns, split, linearized, given, named, p_values, confusable })
+}
+
+/// Returns the model with its given effects fitted, and the recording linearised where the search for further effects starts:
+/// at that model or, if lines are far from where it predicts them, at a coarsely aligned one.
+fn start(
+    recording: &Recording<'_>,
+    model: &Model,
+    search: &ModelSearch<'_>,
+) -> Result<(Model, LinearizedRecording), MeasureError> {
+    (search.progress)(Progress::Measuring);
+    let linearize =
+        |model: Model| LinearizedRecording::new(recording, model, search.columns, search.split, SEARCH_FIRST);
+    let mut linearized = linearize(model.clone())?;
+    if !search.given.is_empty() {
+        linearized = search.converge(linearized, search.given)?;
+    }
+    let as_given = linearized.model.clone();
+    if let Some(aligned) = coarsely_aligned(recording, &as_given, search.columns, search.split)? {
+        linearized = linearize(aligned)?;
+    }
+    Ok((as_given, linearized))
 }
 
 /// Returns the effects of a model that are in the library.

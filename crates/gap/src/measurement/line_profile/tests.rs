@@ -14,13 +14,16 @@ const GAMMA: f64 = 2.2;
 fn bar(angle_rad: f64, offset_px: f64, half_width_px: f64, sigma_px: f64, shifts_px: [f64; 3]) -> RgbImage {
     let normal = DVec2::from_angle(angle_rad);
     let covered = |across: f64| {
-        // Gaussian at 41 equal steps within ± 4 standard deviations.
+        // Gaussian in 41 equal cells within ± 4 standard deviations. A cell counts by the part of it that the bar covers: by
+        // its middle alone, the sides of a bar along a row or column of pixels would be off by up to half a cell.
+        let cell_px = 0.2 * sigma_px;
         let (mut sum, mut total) = (0.0, 0.0);
         for step in -20..=20 {
             let z = f64::from(step) * 0.2;
             let weight = (-0.5 * z * z).exp();
+            let inside_px = half_width_px - (across + z * sigma_px).abs();
             total += weight;
-            sum += if (across + z * sigma_px).abs() < half_width_px { weight } else { 0.0 };
+            sum += weight * (inside_px / cell_px + 0.5).clamp(0.0, 1.0);
         }
         sum / total
     };

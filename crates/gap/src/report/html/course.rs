@@ -59,8 +59,8 @@ pub(super) fn drawing(course: &Course, channel: Channel, floor: Option<f64>) -> 
         axes(&scale),
         floor.map_or_else(String::new, |floor| level(&scale, floor)),
         // The dashed curve is on top, so that both are visible where they coincide.
-        curve(&after, &scale, ["after", "judged"]),
-        curve(&before, &scale, ["before", "judged-before"]),
+        curve(&after, &scale, ["after", "held-out"]),
+        curve(&before, &scale, ["before", "held-out-before"]),
         KEY,
         caption(channel, unit),
     )
@@ -69,8 +69,8 @@ pub(super) fn drawing(course: &Course, channel: Channel, floor: Option<f64>) -> 
 const KEY: &str = "<path class=\"before\" d=\"M60 193H85\"/><text x=\"90\" y=\"197\">before</text>\
                    <path class=\"after\" d=\"M150 193H175\"/><text x=\"180\" y=\"197\">after</text>\
                    <path class=\"floor\" d=\"M230 193H255\"/><text x=\"260\" y=\"197\">noise floor</text>\
-                   <circle class=\"judged\" cx=\"345\" cy=\"193\" r=\"2.5\"/>\
-                   <text x=\"353\" y=\"197\">frame kept for judging</text>";
+                   <circle class=\"held-out\" cx=\"345\" cy=\"193\" r=\"2.5\"/>\
+                   <text x=\"353\" y=\"197\">held-out frame</text>";
 
 /// Returns what the curves show, with the unit.
 fn caption(channel: Channel, unit: &str) -> String {
@@ -174,7 +174,7 @@ mod tests {
         let svg = drawing(&course, Channel::Geometry, None);
         let path = svg.split("class=\"before\" d=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap();
         assert_eq!(path.matches('M').count(), 2);
-        assert_eq!(svg.matches("judged-before").count(), 2);
+        assert_eq!(svg.matches("held-out-before").count(), 2);
     }
 
     #[test]

@@ -42,7 +42,7 @@ pub fn page(report: &Report, pictures: &Pictures) -> String {
 fn verdict(report: &Report) -> String {
     format!(
         "<h1>Simulation against recording: {}</h1>\n<p class=\"verdict\">{}</p>\n<p class=\"quiet\"><span \
-         class=\"word\">{}</span> {} frames, {} of them kept for judging</p>\n",
+         class=\"word\">{}</span> {} frames, {} of them held out</p>\n",
         escape(&report.recording),
         // A no-break space keeps a percent sign from starting a line.
         escape(&summary(report)).replace(" %", "&#160;%"),

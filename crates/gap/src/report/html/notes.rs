@@ -15,7 +15,7 @@ standard deviation. Below 0, what some frames suggest fails on others.</li>\
 its size is sure to be one that matters.</li>\
 <li><b>Would have been found from</b>: the size at which an effect that is there is found in nine recordings of ten like \
 this one.</li>\
-<li><b>Gap</b>: measured minus simulated, on frames kept for judging, which no fit has seen. The noise floor is what \
+<li><b>Gap</b>: measured minus simulated, on held-out frames, which no fit has seen. The noise floor is what \
 neighbouring measurements in one picture scatter by, with what errors of the reference poses make; where less is left, it is \
 what is left. That of the odometry is what neighbouring steps scatter by; metres and radians are taken together.</li>\
 <li>Photometry and noise are in percent: 100 times a difference of natural logarithms.</li></ul>\n";
@@ -23,7 +23,7 @@ what is left. That of the odometry is what neighbouring steps scatter by; metres
 pub(super) fn section(report: &Report) -> String {
     let rows = [
         ("Frames compared", report.frames.to_string()),
-        ("Frames kept for judging", format!("{}, chosen with seed {}", report.held_out_frames, report.seed)),
+        ("Frames held out", format!("{}, chosen with seed {}", report.held_out_frames, report.seed)),
         ("Frames left out", left_out(&report.left_out)),
         ("Reference poses", reference_source(report.poses.source).to_owned()),
         (
