@@ -47,7 +47,8 @@ impl Scene {
     }
 
     /// Returns this many pictures around the middle one, which is left out, with their poses.
-    pub fn views(&self, count: usize) -> impl Iterator<Item = (CameraPose, &RgbImage)> {
+    #[cfg(feature = "gpu")]
+    pub fn neighbours(&self, count: usize) -> impl Iterator<Item = (CameraPose, &RgbImage)> {
         let first = MIDDLE - count / 2;
         let frames = (first..).filter(|&frame| frame != MIDDLE).take(count);
         frames.map(|frame| (self.true_pose(frame), &*self.pictures[frame]))

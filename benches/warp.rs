@@ -26,7 +26,7 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene, backends: &[(&str, &dyn B
     let target = Target { rays: &rays, placement: Placement::new(pose), proxy: &proxy };
     for (name, count) in METHODS {
         let views: Vec<(CameraPose, Arc<Picture>)> =
-            scene.views(count).map(|(pose, picture)| (pose, Arc::new(Picture::from(picture)))).collect();
+            scene.neighbours(count).map(|(pose, picture)| (pose, Arc::new(Picture::from(picture)))).collect();
         let source = |(pose, picture)| Source {
             camera: &camera,
             placement: Placement::new(pose),
