@@ -2,6 +2,7 @@
 
 use std::{fmt, io, path::Path, path::PathBuf};
 
+use super::{format_error::FormatError, printable::Printable};
 use crate::{camera::InvalidCamera, field::InvalidField};
 
 /// Maximum length of an excerpt of a file in a message, characters.
@@ -64,11 +65,8 @@ pub enum Fault {
     #[error("is not UTF-8 text: save the file as UTF-8")]
     NotUtf8,
     /// The file is not TOML, or a value has the wrong type.
-    #[error("{message}: correct the line")]
-    Toml {
-        /// Message of the parser.
-        message: String,
-    },
+    #[error("{0}: correct the line")]
+    Toml(#[source] FormatError),
     /// A required key is missing.
     #[error("the key `{key}` is missing: add it")]
     MissingKey {
@@ -116,11 +114,8 @@ pub enum Fault {
         name: String,
     },
     /// The table cannot be split into columns.
-    #[error("{message}: correct the line")]
-    Csv {
-        /// Message of the parser.
-        message: String,
-    },
+    #[error("{0}: correct the line")]
+    Csv(#[source] FormatError),
     /// A required column is missing.
     #[error("the column `{column}` is missing: add it to the header and to every line")]
     MissingColumn {
@@ -204,11 +199,8 @@ pub enum Fault {
     #[error("the picture is cut off before its end: copy or record it again")]
     ImageTruncated,
     /// The picture is damaged.
-    #[error("the picture cannot be decoded ({message}): copy or record it again")]
-    ImageDamaged {
-        /// Message of the decoder.
-        message: String,
-    },
+    #[error("the picture cannot be decoded ({0}): copy or record it again")]
+    ImageDamaged(#[source] FormatError),
     /// The picture does not have the camera's size.
     #[error(
         "the picture has {found_width} x {found_height} pixels and the camera {width} x {height}: correct camera.toml, or use the camera's own pictures"
@@ -242,36 +234,6 @@ pub(super) fn excerpt(text: &str) -> String {
     match text.char_indices().nth(EXCERPT_LENGTH) {
         Some((end, _)) => format!("{:?}…", &text[..end]),
         None => format!("{text:?}"),
-    }
-}
-
-/// Puts a message on one line: replaces line breaks and other control characters by spaces, and joins runs of spaces.
-pub fn one_line(message: impl fmt::Display) -> String {
-    let message = message.to_string();
-    let printable: String =
-        message.chars().map(|letter| if is_unprintable(letter) { ' ' } else { letter }).collect();
-    printable.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-/// Returns whether a character is a control character, or one of two that some programs take for the end of a line.
-fn is_unprintable(letter: char) -> bool {
-    letter.is_control() || matches!(letter, '\u{2028}' | '\u{2029}')
-}
-
-/// Path for a message, printed without line breaks.
-#[derive(Debug)]
-pub struct Printable<'a>(pub &'a Path);
-
-impl fmt::Display for Printable<'_> {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let text = self.0.to_string_lossy();
-        text.chars().try_for_each(|letter| {
-            if is_unprintable(letter) {
-                write!(formatter, "{}", letter.escape_default())
-            } else {
-                write!(formatter, "{letter}")
-            }
-        })
     }
 }
 

@@ -8,7 +8,8 @@ use std::{
 use csv::{ReaderBuilder, StringRecord, Trim};
 
 use super::{
-    error::{Fault, SequenceError, excerpt, one_line},
+    error::{Fault, SequenceError, excerpt},
+    format_error::FormatError,
     sequence_file::is_inside_folder,
     text::line_of_offset,
 };
@@ -44,7 +45,7 @@ pub(super) fn parse_frames(path: &Path, text: &str) -> Result<Vec<FrameRecord>, 
         let offset = reader.position().byte();
         let fail = |fault| SequenceError::at(path, record_line(text, offset), fault);
         let more =
-            reader.read_record(&mut record).map_err(|error| fail(Fault::Csv { message: one_line(error) }))?;
+            reader.read_record(&mut record).map_err(|error| fail(Fault::Csv(FormatError::new(error))))?;
         if !more {
             break;
         }

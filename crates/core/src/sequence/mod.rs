@@ -7,9 +7,11 @@ mod atomic;
 mod camera_file;
 mod error;
 mod field_file;
+mod format_error;
 mod frames;
 mod groundtruth;
 mod picture;
+mod printable;
 mod sequence_file;
 mod text;
 mod toml_text;
@@ -26,11 +28,13 @@ use image::RgbImage;
 pub use self::{
     atomic::write_atomically,
     camera_file::{CameraSetup, Photometry, read_camera},
-    error::{Fault, Printable, SequenceError, one_line},
+    error::{Fault, SequenceError},
     field_file::read_field,
+    format_error::FormatError,
     frames::FrameRecord,
     groundtruth::match_poses,
     picture::{check_image, decode_image, save_image},
+    printable::{Printable, one_line},
     tum::{StampedPose, read_tum, write_tum},
 };
 use self::{

@@ -9,7 +9,8 @@ use image::{
 
 use super::{
     atomic::write_atomically,
-    error::{Fault, SequenceError, one_line},
+    error::{Fault, SequenceError},
+    format_error::FormatError,
     text::read_bytes,
 };
 
@@ -56,7 +57,7 @@ pub fn save_image(path: &Path, picture: &RgbImage) -> Result<(), SequenceError> 
         ),
         _ => return Err(fail(Fault::ImageFormat)),
     };
-    written.map_err(|error| fail(Fault::ImageDamaged { message: one_line(error) }))?;
+    written.map_err(|error| fail(Fault::ImageDamaged(FormatError::new(error))))?;
     create_parent(path)?;
     write_atomically(path, &bytes)
 }
@@ -83,7 +84,7 @@ pub fn decode_image(origin: &Path, bytes: &[u8], size: [u32; 2]) -> Result<RgbIm
 
 pub(super) fn decode_picture(bytes: &[u8], size: [u32; 2]) -> Result<RgbImage, Fault> {
     let decoder = checked_decoder(bytes, size)?;
-    DynamicImage::from_decoder(decoder).map(DynamicImage::into_rgb8).map_err(|error| decode_fault(&error))
+    DynamicImage::from_decoder(decoder).map(DynamicImage::into_rgb8).map_err(decode_fault)
 }
 
 /// Checks that the bytes are a whole picture of this size, without decoding its pixels.
@@ -106,7 +107,7 @@ fn checked_decoder(bytes: &[u8], [width, height]: [u32; 2]) -> Result<impl Image
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_PICTURE_BYTES);
     reader.limits(limits);
-    let decoder = reader.into_decoder().map_err(|error| decode_fault(&error))?;
+    let decoder = reader.into_decoder().map_err(decode_fault)?;
     let (found_width, found_height) = decoder.dimensions();
     if [found_width, found_height] != [width, height] {
         return Err(Fault::ImageSize { found_width, found_height, width, height });
@@ -117,16 +118,16 @@ fn checked_decoder(bytes: &[u8], [width, height]: [u32; 2]) -> Result<impl Image
     Ok(decoder)
 }
 
-fn decode_fault(error: &ImageError) -> Fault {
+fn decode_fault(error: ImageError) -> Fault {
     match error {
         ImageError::Limits(_) => Fault::ImageTooLarge { limit_bytes: MAX_PICTURE_BYTES },
-        ImageError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
+        ImageError::IoError(ref error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
             Fault::ImageTruncated
         }
-        ImageError::Unsupported(error) if matches!(error.kind(), UnsupportedErrorKind::Format(_)) => {
+        ImageError::Unsupported(ref error) if matches!(error.kind(), UnsupportedErrorKind::Format(_)) => {
             Fault::ImageFormat
         }
-        error => Fault::ImageDamaged { message: one_line(error) },
+        error => Fault::ImageDamaged(FormatError::new(error)),
     }
 }
 

@@ -6,7 +6,9 @@ use serde::{Serialize, de::DeserializeOwned};
 use toml::de::{DeTable, DeValue};
 
 use super::{
-    error::{Fault, SequenceError, one_line},
+    error::{Fault, SequenceError},
+    format_error::FormatError,
+    printable::one_line,
     text::line_of_offset,
 };
 
@@ -21,7 +23,7 @@ pub(super) fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, S
                 let line = line.filter(|_| error.span().is_some_and(|span| span.start > 0));
                 SequenceError::at(path, line, Fault::MissingKey { key: key.to_owned() })
             }
-            None => SequenceError::at(path, line, Fault::Toml { message }),
+            None => SequenceError::at(path, line, Fault::Toml(FormatError::with_message(message, error))),
         }
     })
 }
@@ -29,7 +31,7 @@ pub(super) fn parse<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, S
 /// Prints values as TOML text.
 pub(super) fn print<T: Serialize>(path: &Path, values: &T) -> Result<String, SequenceError> {
     toml::to_string(values)
-        .map_err(|error| SequenceError::of_file(path, Fault::Toml { message: one_line(error) }))
+        .map_err(|error| SequenceError::of_file(path, Fault::Toml(FormatError::new(error))))
 }
 
 /// Returns the line, from 1, of a value given by its keys: `["mount", "height_m"]`.

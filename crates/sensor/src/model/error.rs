@@ -5,7 +5,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use reality_sim_core::{camera::InvalidCamera, field::InvalidField, sequence::Printable};
+use reality_sim_core::{
+    camera::InvalidCamera,
+    field::InvalidField,
+    sequence::{FormatError, Printable},
+};
 
 use crate::{effects::library, tone::InvalidTone};
 
@@ -18,6 +22,7 @@ pub struct ModelError {
     /// Line in the file, from 1, if the fault belongs to one.
     pub line: Option<usize>,
     /// The fault.
+    #[source]
     pub fault: ModelFault,
 }
 
@@ -39,16 +44,13 @@ pub enum ModelFault {
     },
     /// The operating system cannot read the file.
     #[error("cannot be read ({0}): check the permissions and the disk")]
-    Unreadable(io::Error),
+    Unreadable(#[source] io::Error),
     /// The file is not text.
     #[error("is not UTF-8 text: save the file as UTF-8")]
     NotUtf8,
     /// The text is not TOML.
-    #[error("{message}: correct the line")]
-    Toml {
-        /// Message of the parser.
-        message: String,
-    },
+    #[error("{0}: correct the line")]
+    Toml(#[source] FormatError),
     /// The text has a table other than the effects.
     #[error("the key `{key}` is not known: a model holds tables [[effect]] only")]
     UnknownTable {

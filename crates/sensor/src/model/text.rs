@@ -8,6 +8,7 @@ use std::{
     path::Path,
 };
 
+use reality_sim_core::sequence::FormatError;
 use toml::{
     Spanned,
     de::{DeTable, DeValue},
@@ -73,8 +74,8 @@ fn read_fault(error: io::Error) -> ModelFault {
 fn parse(text: &str) -> Result<Model, ModelError> {
     let at = |span: Range<usize>, fault| ModelError::at(line_of_offset(text.as_bytes(), span.start), fault);
     let document = DeTable::parse(text).map_err(|error| {
-        let message = error.message().split_whitespace().collect::<Vec<_>>().join(" ");
-        at(error.span().unwrap_or_default(), ModelFault::Toml { message })
+        let message = error.message().to_owned();
+        at(error.span().unwrap_or_default(), ModelFault::Toml(FormatError::with_message(message, error)))
     })?;
     let mut model = Model::default();
     for (key, value) in document.get_ref() {
