@@ -56,8 +56,8 @@ fn coverage(walk: &Sequence, synthesizer: &Synthesizer) -> anyhow::Result<()> {
 fn table(results: &[ProbeResult], mut lines: BTreeMap<&str, Lines>, text: &mut String) -> anyhow::Result<()> {
     text.push_str(
         "\nMeans over all probes; lines: median of how far a line lies from where the true pose puts it, and the 95th \
-         percentile, of lines found within 8 px, and the share found; time: median of one picture with decoded neighbours, on a \
-         machine that other work shared: only ratios mean anything.\n\n\
+         percentile, of lines found within 8 px, and the share found; time: median of one picture with decoded neighbours, on \
+         two cores.\n\n\
          | method | PSNR of the field | PSNR | SSIM | lines | lines found | answered | time |\n|---|---|---|---|---|---|---|---|\n",
     );
     lines.values_mut().for_each(|lines| lines.displacements_px.sort_by(f64::total_cmp));
