@@ -1,9 +1,9 @@
 //! Standard deviations of the errors of the reference poses.
 
-use reality_sim_core::statistics::median;
+use reality_sim_core::statistics::{median, robust_sigma};
 
 use crate::{
-    linear_model::{fitted_residuals::FittedResiduals, robust_weights::SIGMA_BY_MAD},
+    linear_model::fitted_residuals::FittedResiduals,
     recording::ReferenceKind,
     thresholds::{PoseErrorThresholds, Thresholds},
 };
@@ -27,7 +27,7 @@ pub(super) fn pose_sigmas(fits: Option<&[FittedResiduals]>, reference: Reference
                 .map(|pair| (pair[1].pose_error[axis] - pair[0].pose_error[axis]).abs())
                 .collect();
             let posterior: Vec<f64> = fits.iter().map(|fit| fit.pose_variance[axis]).collect();
-            let scatter = SIGMA_BY_MAD * median(steps) / std::f64::consts::SQRT_2;
+            let scatter = robust_sigma(steps) / std::f64::consts::SQRT_2;
             let estimated = scatter * scatter + median(posterior);
             let usual = THRESHOLDS.usual[axis / 3].powi(2);
             let variance = (estimated + weight * usual) / (1.0 + weight);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use reality_sim_core::statistics::median;
+use reality_sim_core::statistics::{median, robust_sigma};
 
 use crate::{
     linear_model::linearized_frame::LinearizedFrame,
@@ -14,8 +14,6 @@ use crate::{
 const CUTOFF: f64 = Thresholds::DEFAULT.linear_model.tukey_sigmas;
 /// Information of a picture's measurements as a fraction of that of as many independent ones.
 pub(crate) const INDEPENDENT: f64 = Thresholds::DEFAULT.linear_model.independent_share;
-/// Ratio of the standard deviation of a normal distribution to its median absolute deviation.
-pub(super) const SIGMA_BY_MAD: f64 = 1.4826;
 
 /// Returns the weights of a frame's measurements: Tukey's biweight of their residuals (Huber and Ronchetti 2009,
 /// section 4.8), divided by the residual's variance. The weight is 0 for outliers and missing residuals.
@@ -74,8 +72,5 @@ pub(super) fn sigmas_by_quantity<'a>(
     for (measurement, residual) in residuals.filter(|(_, residual)| residual.is_finite()) {
         by_quantity.entry(measurement.quantity).or_default().push(residual.abs());
     }
-    by_quantity
-        .into_iter()
-        .map(|(quantity, values)| (quantity, (SIGMA_BY_MAD * median(values)).max(1e-6)))
-        .collect()
+    by_quantity.into_iter().map(|(quantity, values)| (quantity, robust_sigma(values).max(1e-6))).collect()
 }

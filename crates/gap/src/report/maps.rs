@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use reality_sim_core::statistics::median;
+use reality_sim_core::statistics::{median, robust_sigma};
 
 use crate::{
     frame_index::{FrameIndex, PerFrame},
@@ -117,8 +117,7 @@ fn course(
     let sizes = |residuals: &[(FrameIndex, Measurement, f64)]| -> Vec<Option<f64>> {
         let mut values: PerFrame<Vec<f64>> = PerFrame::from(vec![Vec::new(); count]);
         residuals.iter().for_each(|(frame, _, residual)| values[*frame].push(residual.abs()));
-        let robust =
-            |values: &Vec<f64>| (!values.is_empty()).then(|| 1.4826 * median(values.iter().copied()));
+        let robust = |values: &Vec<f64>| (!values.is_empty()).then(|| robust_sigma(values.iter().copied()));
         values.iter().map(robust).collect()
     };
     Course {
