@@ -5,14 +5,121 @@ use crate::rays::{Frame, PER_PIXEL};
 /// Radius at which the Gaussian is cut, standard deviations.
 const CUT: f64 = 4.0;
 
+/// Point spread of a lens in focus, without the pixel's own aperture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointSpread {
+    /// Standard deviation per axis, of the core where there is a tail, pixels.
+    pub sigma_px: f64,
+    /// Shape.
+    pub shape: Shape,
+}
+
+/// Shape of a point spread.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shape {
+    /// Gaussian.
+    Gaussian,
+    /// Evenly lit disc.
+    Disc,
+    /// Gaussian with a share of the light in a wider one.
+    Tail {
+        /// Share as a fraction.
+        share: f64,
+        /// Standard deviation of the tail, pixels.
+        sigma_px: f64,
+    },
+}
+
+impl PointSpread {
+    /// Makes a Gaussian.
+    pub fn gaussian(sigma_px: f64) -> Self {
+        Self { sigma_px, shape: Shape::Gaussian }
+    }
+
+    /// Reduces light of one colour from a value per ray to a value per pixel.
+    pub fn reduce(&self, light: &[f32], frame: Frame) -> Vec<f32> {
+        match self.shape {
+            Shape::Gaussian => reduce(light, frame, self.sigma_px),
+            Shape::Disc => reduce_disc(light, frame, self.sigma_px),
+            Shape::Tail { share, sigma_px } => {
+                let mut sharp = reduce(light, frame, self.sigma_px);
+                let veil = smoothed(&sharp, frame.size, sigma_px);
+                sharp.iter_mut().zip(veil).for_each(|(sharp, veil)| *sharp += share as f32 * (veil - *sharp));
+                sharp
+            }
+        }
+    }
+}
+
+/// Returns a picture of one colour blurred by a Gaussian; beyond its rim there is no light, and none gets lost there.
+pub fn smoothed(plane: &[f32], [columns, rows]: [usize; 2], sigma_px: f64) -> Vec<f32> {
+    let reach = (CUT * sigma_px) as usize + 1;
+    let kernel: Vec<f32> =
+        (0..=reach).map(|place| (-0.5 * (place as f64 / sigma_px).powi(2)).exp() as f32).collect();
+    let along = |length: usize, at: &dyn Fn(usize) -> f32, place: usize| {
+        let range = place.saturating_sub(reach)..(place + reach + 1).min(length);
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for other in range {
+            let weight = kernel[other.abs_diff(place)];
+            sum += weight * at(other);
+            weights += weight;
+        }
+        sum / weights
+    };
+    let narrow: Vec<f32> = plane
+        .chunks(columns)
+        .flat_map(|row| (0..columns).map(move |column| along(columns, &|other| row[other], column)))
+        .collect();
+    let mut wide = vec![0.0; plane.len()];
+    for (row, target) in wide.chunks_mut(columns).enumerate() {
+        let range = row.saturating_sub(reach)..(row + reach + 1).min(rows);
+        let weights: f32 = range.clone().map(|other| kernel[other.abs_diff(row)]).sum();
+        for other in range {
+            let weight = kernel[other.abs_diff(row)] / weights;
+            let source = &narrow[other * columns..(other + 1) * columns];
+            target.iter_mut().zip(source).for_each(|(target, value)| *target += weight * value);
+        }
+    }
+    wide
+}
+
+/// Reduces light of one colour, a value per ray, to a value per pixel, spread over a disc of this standard deviation.
+fn reduce_disc(light: &[f32], frame: Frame, sigma_px: f64) -> Vec<f32> {
+    // The rays of a pixel are added up as points, and each stands for a cell.
+    let cell = 1.0 / (12.0 * (PER_PIXEL * PER_PIXEL) as f64);
+    let disc = disc_weights((sigma_px * sigma_px + cell).sqrt() * PER_PIXEL as f64);
+    let side = disc.len() + PER_PIXEL - 1;
+    let mut kernel = vec![vec![0.0_f32; side]; side];
+    for (y, x) in (0..PER_PIXEL).flat_map(|y| (0..PER_PIXEL).map(move |x| (y, x))) {
+        for (row, weights) in disc.iter().enumerate() {
+            for (column, weight) in weights.iter().enumerate() {
+                kernel[row + y][column + x] += weight / (PER_PIXEL * PER_PIXEL) as f32;
+            }
+        }
+    }
+    let first = frame.margin * PER_PIXEL + PER_PIXEL / 2 - side / 2;
+    let width = frame.rays_per_row();
+    let [columns, rows] = frame.size;
+    let mut pixels = vec![0.0; columns * rows];
+    for (row, pixels) in pixels.chunks_mut(columns).enumerate() {
+        for (offset, weights) in kernel.iter().enumerate() {
+            let source = &light[(first + row * PER_PIXEL + offset) * width + first..];
+            for (pixel, source) in pixels.iter_mut().zip(source.windows(side).step_by(PER_PIXEL)) {
+                *pixel += source.iter().zip(weights).map(|(value, weight)| value * weight).sum::<f32>();
+            }
+        }
+    }
+    pixels
+}
+
 /// Returns the width of the margin around the picture from which light reaches it, pixels.
 pub fn margin_px(psf_sigma_px: f64, defocus_px: f64) -> usize {
     // The 1 covers half a pixel and a ray.
     (1.0 + CUT * psf_sigma_px + 2.0 * defocus_px).ceil() as usize
 }
 
-/// Reduces light of one colour from a value per ray to a value per pixel.
-pub fn reduce(light: &[f32], frame: Frame, psf_sigma_px: f64) -> Vec<f32> {
+/// Reduces light of one colour, a value per ray, to a value per pixel, spread by a Gaussian.
+fn reduce(light: &[f32], frame: Frame, psf_sigma_px: f64) -> Vec<f32> {
     let kernel = pixel_kernel(psf_sigma_px);
     let width = frame.rays_per_row();
     let [columns, rows] = frame.size;
@@ -118,8 +225,8 @@ mod tests {
     use super::*;
 
     /// Returns the sum, and the variances along x and y in square pixels, of the image of one lit pixel in the middle.
-    fn moments(psf_sigma_px: f64, defocus_px: f64) -> [f64; 3] {
-        let frame = Frame { size: [21, 21], margin: margin_px(psf_sigma_px, defocus_px) };
+    fn moments(psf: PointSpread, defocus_px: f64) -> [f64; 3] {
+        let frame = Frame { size: [21, 21], margin: margin_px(psf.sigma_px, defocus_px) };
         let mut light = vec![0.0; frame.rays_per_row() * frame.rows() * PER_PIXEL];
         let middle = (frame.margin + 10) * PER_PIXEL;
         for (row, column) in (0..PER_PIXEL).flat_map(|row| (0..PER_PIXEL).map(move |column| (row, column))) {
@@ -129,7 +236,7 @@ mod tests {
             light = defocus(&light, frame, defocus_px);
         }
         let mut moments = [0.0; 3];
-        for (index, value) in reduce(&light, frame, psf_sigma_px).iter().enumerate() {
+        for (index, value) in psf.reduce(&light, frame).iter().enumerate() {
             let (x, y) = ((index % 21) as f64 - 10.0, (index / 21) as f64 - 10.0);
             for (moment, weight) in moments.iter_mut().zip([1.0, x * x, y * y]) {
                 *moment += f64::from(*value) * weight;
@@ -140,7 +247,7 @@ mod tests {
 
     #[test]
     fn a_point_becomes_the_gaussian_and_the_aperture() {
-        let [sum, x, y] = moments(0.5, 0.0);
+        let [sum, x, y] = moments(PointSpread::gaussian(0.5), 0.0);
         // The variances of the Gaussian, the aperture, and the lit pixel, whose rays stand for cells.
         let expected = 0.25 + 1.0 / 12.0 + 1.0 / 12.0 - 2.0 / 108.0;
         assert!((sum - 1.0).abs() < 0.01, "{sum}");
@@ -148,10 +255,22 @@ mod tests {
     }
 
     #[test]
+    fn a_disc_and_a_gaussian_with_a_tail_have_their_variances() {
+        let lit = 1.0 / 12.0 - 2.0 / 108.0 + 1.0 / 12.0;
+        let disc = moments(PointSpread { sigma_px: 0.7, shape: Shape::Disc }, 0.0);
+        let tail = Shape::Tail { share: 0.1, sigma_px: 1.5 };
+        let tail = moments(PointSpread { sigma_px: 0.5, shape: tail }, 0.0);
+        for ([sum, x, y], expected) in [(disc, 0.49 + lit), (tail, 0.25 + 0.1 * 2.25 + lit)] {
+            assert!((sum - 1.0).abs() < 0.01, "{sum}");
+            assert!((x - expected).abs() < 0.02 && (y - expected).abs() < 0.02, "{x} {y} {expected}");
+        }
+    }
+
+    #[test]
     fn defocus_adds_its_variance_on_both_axes() {
-        let [_, plain, _] = moments(0.5, 0.0);
+        let [_, plain, _] = moments(PointSpread::gaussian(0.5), 0.0);
         for sigma_px in [0.3, 0.6, 1.3] {
-            let [sum, x, y] = moments(0.5, sigma_px);
+            let [sum, x, y] = moments(PointSpread::gaussian(0.5), sigma_px);
             let added = [x - plain, y - plain].map(|added| added.sqrt() / sigma_px);
             assert!((sum - 1.0).abs() < 0.01, "{sum}");
             assert!(added.iter().all(|ratio| (ratio - 1.0).abs() < 0.03), "{sigma_px}: {added:?}");

@@ -1,13 +1,9 @@
 //! Effects that can be hidden in a recording, by physical size.
 
-use std::f64::consts::TAU;
-
 use glam::DVec2;
 
-use crate::{error::Error, random::Random};
-
 /// Ids of the effects that a library of effects should contain.
-pub const LIBRARY: [&str; 22] = [
+pub const LIBRARY: [&str; 33] = [
     "radial_distortion",
     "principal_point",
     "focal_length",
@@ -30,10 +26,21 @@ pub const LIBRARY: [&str; 22] = [
     "odometry_scale",
     "odometry_yaw_drift",
     "odometry_lateral_slip",
+    "camera_yaw",
+    "camera_offset",
+    "tangential_distortion",
+    "odometry_delay",
+    "imu_delay",
+    "sharpening",
+    "veiling_glare",
+    "carpet_reflectance",
+    "line_reflectance",
+    "gait_sway",
+    "clock_jump",
 ];
 
 /// Ids of the effects that no library contains: they must be noticed and not be given another effect's name.
-pub const FOREIGN: [&str; 8] = [
+pub const FOREIGN: [&str; 11] = [
     "lens_dirt",
     "flicker_bands",
     "missing_line",
@@ -42,7 +49,40 @@ pub const FOREIGN: [&str; 8] = [
     "fog",
     "wavy_ground",
     "lens_dent",
+    "wide_line",
+    "lost_frames",
+    "doubled_frames",
 ];
+
+/// Ids of the mistakes that people make in the files beside the pictures.
+pub const MISTAKES: [&str; 7] = [
+    "degrees_for_radians",
+    "swapped_axes",
+    "negated_axis",
+    "millimetres_for_metres",
+    "mirrored_pictures",
+    "inverted_poses",
+    "another_leagues_field",
+];
+
+/// Mistake in the files beside the pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mistake {
+    /// Pitch and roll in `frames.csv` are in degrees.
+    DegreesForRadians,
+    /// x and y of the reference poses are swapped.
+    SwappedAxes,
+    /// y of the reference poses has the other sign.
+    NegatedAxis,
+    /// Positions of the reference poses are in millimetres.
+    MillimetresForMetres,
+    /// The pictures are mirrored, left for right.
+    MirroredPictures,
+    /// The reference poses are camera-from-world.
+    InvertedPoses,
+    /// `field.toml` is that of another league.
+    AnotherLeaguesField,
+}
 
 /// Falloff of the light towards the corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -211,6 +251,72 @@ pub enum Hidden {
         /// Slip, metres per metre.
         slip_m_per_m: f64,
     },
+    /// The true camera is turned about the vertical, counter-clockwise, against the frame of the reference poses and of the
+    /// body.
+    CameraYaw {
+        /// Angle, radians.
+        angle_rad: f64,
+    },
+    /// The true camera is beside the place that the reference poses give, in the body's frame.
+    CameraOffset {
+        /// Offset ahead, metres.
+        forward_m: f64,
+        /// Offset to the left, metres.
+        left_m: f64,
+        /// Offset upwards, metres.
+        up_m: f64,
+    },
+    /// The true lens is decentred by these coefficients more than the nominal one.
+    TangentialDistortion {
+        /// Change of p₁.
+        p1: f64,
+        /// Change of p₂.
+        p2: f64,
+    },
+    /// The odometry that is logged with a picture is older than the picture.
+    OdometryDelay {
+        /// Delay, seconds.
+        delay_s: f64,
+    },
+    /// Pitch and roll that are logged with a picture are older than the picture.
+    ImuDelay {
+        /// Delay, seconds.
+        delay_s: f64,
+    },
+    /// The camera sharpens its pictures by an unsharp mask on encoded values.
+    Sharpening {
+        /// Factor on the difference from the blurred picture.
+        amount: f64,
+        /// Standard deviation of the blur, pixels.
+        radius_px: f64,
+    },
+    /// Light scattered in the lens: a share of the picture's mean light is added everywhere.
+    VeilingGlare {
+        /// Share as a fraction.
+        share: f64,
+    },
+    /// The carpet reflects 1 + change times what the files say.
+    CarpetReflectance {
+        /// Change as a fraction.
+        change: f64,
+    },
+    /// The lines reflect 1 + change times what the files say.
+    LineReflectance {
+        /// Change as a fraction.
+        change: f64,
+    },
+    /// The true camera pitches and bobs twice in each period of the gait, which the reference poses lack.
+    GaitSway {
+        /// Amplitude of the pitch, radians.
+        pitch_rad: f64,
+        /// Amplitude of the height, metres.
+        height_m: f64,
+    },
+    /// Timestamps of the pictures jump in the middle of the recording; all else is joined by timestamp.
+    ClockJump {
+        /// Jump, seconds.
+        jump_s: f64,
+    },
     /// Dirt on the lens: a blurred dark patch at a fixed place in the picture, transmitting 1 − opacity at its centre.
     LensDirt {
         /// Opacity as a fraction.
@@ -267,10 +373,27 @@ pub enum Hidden {
         /// Standard deviation, as a fraction of the picture's width.
         sigma: f64,
     },
+    /// The halfway line is wider.
+    WideLine {
+        /// Additional width, metres.
+        width_m: f64,
+    },
+    /// Pictures are lost in the middle of the recording: those after it stand at the lines of earlier ones.
+    LostFrames {
+        /// Number of pictures.
+        count: u32,
+    },
+    /// Pictures are stored twice, in place of the next: every fifth, until there are enough.
+    DoubledFrames {
+        /// Number of pictures.
+        count: u32,
+    },
+    /// A mistake in the files.
+    Mistake(Mistake),
 }
 
 impl Hidden {
-    /// Returns the effect's id, one of [`LIBRARY`] or [`FOREIGN`].
+    /// Returns the effect's id, one of [`LIBRARY`], [`FOREIGN`] or [`MISTAKES`].
     pub fn id(&self) -> &'static str {
         match self {
             Self::RadialDistortion { .. } => "radial_distortion",
@@ -295,6 +418,17 @@ impl Hidden {
             Self::OdometryScale { .. } => "odometry_scale",
             Self::OdometryYawDrift { .. } => "odometry_yaw_drift",
             Self::OdometryLateralSlip { .. } => "odometry_lateral_slip",
+            Self::CameraYaw { .. } => "camera_yaw",
+            Self::CameraOffset { .. } => "camera_offset",
+            Self::TangentialDistortion { .. } => "tangential_distortion",
+            Self::OdometryDelay { .. } => "odometry_delay",
+            Self::ImuDelay { .. } => "imu_delay",
+            Self::Sharpening { .. } => "sharpening",
+            Self::VeilingGlare { .. } => "veiling_glare",
+            Self::CarpetReflectance { .. } => "carpet_reflectance",
+            Self::LineReflectance { .. } => "line_reflectance",
+            Self::GaitSway { .. } => "gait_sway",
+            Self::ClockJump { .. } => "clock_jump",
             Self::LensDirt { .. } => "lens_dirt",
             Self::FlickerBands { .. } => "flicker_bands",
             Self::MissingLine { .. } => "missing_line",
@@ -303,150 +437,28 @@ impl Hidden {
             Self::Fog { .. } => "fog",
             Self::WavyGround { .. } => "wavy_ground",
             Self::LensDent { .. } => "lens_dent",
+            Self::WideLine { .. } => "wide_line",
+            Self::LostFrames { .. } => "lost_frames",
+            Self::DoubledFrames { .. } => "doubled_frames",
+            Self::Mistake(mistake) => mistake.id(),
         }
     }
-
-    /// Returns the effect with this id at `multiple` times its unit size, with a random sign where both signs make sense,
-    /// and a random shape where the effect has several. `missing_line` has no size.
-    ///
-    /// The unit sizes are: k₁ 0.002, principal point 0.5 px, focal length 0.15 %, mount 0.1°, height 4 mm, readout 8 ms,
-    /// offset 4 ms, exposure 12 ms, defocus 0.3 px, red and blue ±0.0008, vignetting 0.03, gamma 0.04, black level 0.003,
-    /// white balance 0.02, exposure 0.04 EV, illumination 0.04, noise 0.12, field 2.5 cm long, odometry 3 %, 0.6°/s and 0.04
-    /// m/m; dirt 0.1, flicker 0.02, shifted line 1.5 cm, one person, fog 0.01 per metre, waves 3 mm, dent 0.1 % of the
-    /// width.
-    pub fn of(id: &str, multiple: f64, random: &mut Random) -> Result<Self, Error> {
-        let unknown = || Error::UnknownEffect { id: id.to_owned() };
-        geometric(id, multiple, random)
-            .or_else(|| photometric(id, multiple, random))
-            .or_else(|| odometric(id, multiple, random))
-            .or_else(|| foreign(id, multiple, random))
-            .ok_or_else(unknown)
-    }
 }
 
-/// Draws effects of lens, mount, time and field.
-fn geometric(id: &str, multiple: f64, random: &mut Random) -> Option<Hidden> {
-    let signed = |size: f64, random: &mut Random| random.sign() * size * multiple;
-    Some(match id {
-        "radial_distortion" => Hidden::RadialDistortion { k: [signed(0.002, random), 0.0, 0.0, 0.0] },
-        "principal_point" => {
-            let shift = DVec2::from_angle(random.between(0.0, TAU)) * 0.5 * multiple;
-            Hidden::PrincipalPoint { dx_px: shift.x, dy_px: shift.y }
-        }
-        "focal_length" => Hidden::FocalLength { scale: signed(0.0015, random) },
-        "mount_pitch" => Hidden::MountPitch { angle_rad: signed(0.1, random).to_radians() },
-        "mount_roll" => Hidden::MountRoll { angle_rad: signed(0.1, random).to_radians() },
-        "camera_height" => Hidden::CameraHeight { height_m: signed(0.004, random) },
-        "rolling_shutter" => Hidden::RollingShutter { readout_s: 0.008 * multiple },
-        "time_offset" => Hidden::TimeOffset { offset_s: signed(0.004, random) },
-        "field_dimensions" => {
-            let length_m = signed(0.025, random);
-            Hidden::FieldDimensions { length_m, width_m: length_m * random.between(-0.5, 0.5) }
-        }
-        _ => return None,
-    })
-}
+impl Mistake {
+    /// All mistakes, in the order of [`MISTAKES`].
+    pub const ALL: [Self; 7] = [
+        Self::DegreesForRadians,
+        Self::SwappedAxes,
+        Self::NegatedAxis,
+        Self::MillimetresForMetres,
+        Self::MirroredPictures,
+        Self::InvertedPoses,
+        Self::AnotherLeaguesField,
+    ];
 
-/// Draws effects of light and sensor.
-fn photometric(id: &str, multiple: f64, random: &mut Random) -> Option<Hidden> {
-    let signed = |size: f64, random: &mut Random| random.sign() * size * multiple;
-    Some(match id {
-        "motion_blur" => Hidden::MotionBlur { exposure_s: 0.012 * multiple },
-        "defocus" => Hidden::Defocus { sigma_px: 0.3 * multiple },
-        "chromatic_aberration" => {
-            let red_scale = signed(0.0008, random);
-            Hidden::ChromaticAberration { red_scale, blue_scale: -red_scale * random.between(0.6, 1.2) }
-        }
-        "vignetting" => {
-            let falloff = if random.sign() > 0.0 { Falloff::Quadratic } else { Falloff::Cos4 };
-            Hidden::Vignetting { strength: (0.03 * multiple).min(0.95), falloff }
-        }
-        "tone_curve" => Hidden::ToneCurve { gamma_change: signed(0.04, random) },
-        "black_level" => Hidden::BlackLevel { offset: (0.003 * multiple).min(0.5) },
-        "white_balance" => {
-            Hidden::WhiteBalance { red_gain: signed(0.02, random), blue_gain: signed(0.02, random) }
-        }
-        "exposure_drift" => {
-            Hidden::ExposureDrift { amplitude_ev: signed(0.04, random), course: course(random) }
-        }
-        "uneven_illumination" => {
-            Hidden::UnevenIllumination { strength: (0.04 * multiple).min(0.9), shape: light(random) }
-        }
-        "sensor_noise" => Hidden::SensorNoise { factor: 0.12 * multiple },
-        _ => return None,
-    })
-}
-
-fn course(random: &mut Random) -> Course {
-    if random.sign() > 0.0 {
-        return Course::Linear;
-    }
-    Course::Sine { period_s: random.between(7.0, 9.0), phase_rad: random.between(0.0, TAU) }
-}
-
-fn light(random: &mut Random) -> Light {
-    if random.sign() > 0.0 {
-        return Light::Gradient { direction_rad: random.between(0.0, TAU) };
-    }
-    let center_m = DVec2::new(random.between(-2.2, 2.2), random.between(-1.4, 1.4));
-    Light::Spot { center_m, sigma_m: random.between(1.2, 1.8) }
-}
-
-/// Draws effects of the odometry.
-fn odometric(id: &str, multiple: f64, random: &mut Random) -> Option<Hidden> {
-    let signed = |size: f64, random: &mut Random| random.sign() * size * multiple;
-    Some(match id {
-        "odometry_scale" => Hidden::OdometryScale { scale: signed(0.03, random) },
-        "odometry_yaw_drift" => Hidden::OdometryYawDrift { rate_rad_per_s: signed(0.6, random).to_radians() },
-        "odometry_lateral_slip" => Hidden::OdometryLateralSlip { slip_m_per_m: signed(0.04, random) },
-        _ => return None,
-    })
-}
-
-/// Draws effects that no library contains.
-fn foreign(id: &str, multiple: f64, random: &mut Random) -> Option<Hidden> {
-    // The centre lies in the lower half, where the carpet is visible.
-    let place = |random: &mut Random| DVec2::new(random.between(0.25, 0.75), random.between(0.55, 0.8));
-    Some(match id {
-        "lens_dirt" => Hidden::LensDirt {
-            opacity: (0.1 * multiple).min(0.95),
-            center: place(random),
-            sigma: random.between(0.05, 0.09),
-        },
-        "flicker_bands" => Hidden::FlickerBands {
-            amplitude: (0.02 * multiple).min(0.9),
-            bands: random.between(1.5, 3.5),
-            roll: random.between(0.15, 0.85),
-        },
-        "missing_line" => Hidden::MissingLine { positive_x: random.sign() > 0.0 },
-        "shifted_line" => Hidden::ShiftedLine { shift_m: random.sign() * 0.015 * multiple },
-        "moving_people" => Hidden::MovingPeople { count: multiple.round().clamp(1.0, 8.0) as u32 },
-        "fog" => Hidden::Fog { extinction_per_m: 0.01 * multiple },
-        "wavy_ground" => Hidden::WavyGround {
-            amplitude_m: 0.003 * multiple,
-            wavelength_m: random.between(1.5, 3.0),
-            angles_rad: [random.between(0.0, TAU), random.between(0.0, TAU)],
-        },
-        "lens_dent" => Hidden::LensDent {
-            shift: DVec2::from_angle(random.between(0.0, TAU)) * 0.001 * multiple,
-            center: place(random),
-            sigma: random.between(0.06, 0.11),
-        },
-        _ => return None,
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_id_makes_an_effect_of_that_id() {
-        let mut random = Random::new(1);
-        for id in LIBRARY.iter().chain(&FOREIGN) {
-            assert_eq!(Hidden::of(id, 1.0, &mut random).unwrap().id(), *id);
-        }
-        let error = Hidden::of("gravity", 1.0, &mut random).unwrap_err();
-        assert!(error.to_string().contains("gravity"));
+    /// Returns the mistake's id.
+    pub fn id(self) -> &'static str {
+        MISTAKES[self as usize]
     }
 }

@@ -1,25 +1,54 @@
-//! Pictures as cameras store them: JPEG with chroma subsampling.
+//! Pictures as cameras store them: JPEG, mostly with chroma subsampling, or PNG.
 //!
 //! The encoder keeps the full chroma (4:4:4). The loss in cameras (4:2:0) is applied before: colour differences are averaged
 //! over two by two pixels and interpolated again as decoders do, between the nearest four means.
 
-use image::{ExtendedColorType, ImageEncoder, ImageError, RgbImage, codecs::jpeg::JpegEncoder};
+use image::{
+    ExtendedColorType, ImageEncoder, ImageError, RgbImage,
+    codecs::{jpeg::JpegEncoder, png::PngEncoder},
+};
 
-/// JPEG quality, as in the recordings of a robot.
-const QUALITY: u8 = 85;
+/// Format of the pictures' files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Storage {
+    /// JPEG.
+    Jpeg {
+        /// Quality, 1 to 100.
+        quality: u8,
+        /// Whether colour differences are averaged over two by two pixels.
+        halves_color: bool,
+    },
+    /// PNG.
+    Png,
+}
 
-/// Returns the bytes of a picture's file.
-pub fn encode(picture: &RgbImage) -> Result<Vec<u8>, ImageError> {
-    let halved = halve_color(picture);
-    let mut bytes = Vec::new();
-    let (width, height) = halved.dimensions();
-    JpegEncoder::new_with_quality(&mut bytes, QUALITY).write_image(
-        &halved,
-        width,
-        height,
-        ExtendedColorType::Rgb8,
-    )?;
-    Ok(bytes)
+impl Storage {
+    /// JPEG as in the recordings of a robot.
+    pub const STANDARD: Self = Self::Jpeg { quality: 85, halves_color: true };
+
+    /// Returns the ending of the files' names.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Jpeg { .. } => "jpg",
+            Self::Png => "png",
+        }
+    }
+
+    /// Returns the bytes of a picture's file.
+    pub fn encode(self, picture: &RgbImage) -> Result<Vec<u8>, ImageError> {
+        let mut bytes = Vec::new();
+        let (width, height) = picture.dimensions();
+        let color = ExtendedColorType::Rgb8;
+        match self {
+            Self::Jpeg { quality, halves_color } => {
+                let halved = halves_color.then(|| halve_color(picture));
+                let encoder = JpegEncoder::new_with_quality(&mut bytes, quality);
+                encoder.write_image(halved.as_ref().unwrap_or(picture), width, height, color)?;
+            }
+            Self::Png => PngEncoder::new(&mut bytes).write_image(picture, width, height, color)?,
+        }
+        Ok(bytes)
+    }
 }
 
 /// Halves the chroma resolution in each direction, at full resolution of the luma.

@@ -3,8 +3,12 @@
 //!
 //! | type | role |
 //! |---|---|
-//! | [`Recipe`] | a recording from a seed: frames, size, hidden effects, walk |
-//! | [`Hidden`] | an effect with its size; [`LIBRARY`] and [`FOREIGN`] list all ids |
+//! | [`Recipe`] | a recording from a seed: frames, size, hidden effects, walk, world |
+//! | [`World`] | what a seed draws: the standard world, or one in which field, hall, camera and robot are drawn anew |
+//! | [`Given`] | what the files of a drawn world tell of brightness, noise and sharpness |
+//! | [`Takes`] | the pictures of a world as light, for many recordings with other effects |
+//! | [`Facts`] | lens, height, field of a world, for tables |
+//! | [`Hidden`] | an effect with its size; [`LIBRARY`], [`FOREIGN`] and [`MISTAKES`] list all ids |
 //! | [`Walk`] | the robot's motion |
 //! | [`Random`] | random numbers from a seed |
 //! | [`Error`] | error of making a recording |
@@ -28,21 +32,35 @@
 //! ```
 
 mod blur;
+mod carpet;
+mod clock;
+mod draw;
+mod drawn;
 mod effect;
 mod error;
 mod exposure;
+mod facts;
+mod figures;
 mod film;
+mod furniture;
 mod jpeg;
+mod lamps;
 mod lens;
 mod log;
+mod mistakes;
+mod movers;
 mod nominal;
 mod pattern;
 mod random;
 mod rays;
 mod recipe;
+mod rig;
 mod rotation;
 mod scene;
+mod setting;
+mod sights;
 mod solid;
+mod takes;
 mod texture;
 mod trajectory;
 mod truth;
@@ -51,9 +69,12 @@ mod truth;
 mod tests;
 
 pub use self::{
-    effect::{Course, FOREIGN, Falloff, Hidden, LIBRARY, Light},
+    drawn::Given,
+    effect::{Course, FOREIGN, Falloff, Hidden, LIBRARY, Light, MISTAKES, Mistake},
     error::Error,
+    facts::Facts,
     random::Random,
-    recipe::Recipe,
+    recipe::{Recipe, World},
+    takes::Takes,
     trajectory::Walk,
 };

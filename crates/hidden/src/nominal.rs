@@ -1,24 +1,29 @@
-//! Nominal values in the files beside the pictures: lens, mount, colours and field before anything is hidden.
+//! Camera and field: lens, mount, colours and dimensions before anything is hidden.
 
 use glam::DVec2;
 use reality_sim_core::{
-    camera::{Camera, Distortion, OpencvFisheye},
+    camera::{Camera, Distortion, Opencv, OpencvFisheye},
     field::FieldDimensions,
     sequence::{CameraSetup, Photometry},
 };
 
-use crate::{error::Error, lens::Fisheye, random::Random};
+use crate::{
+    effect::Hidden,
+    error::Error,
+    lens::{Bend, Lens},
+    random::Random,
+};
 
 /// Focal length in pixels of a lens like those of humanoid robots, at a width of 640 pixels.
 const FOCAL_PX: f64 = 211.8;
 const WIDTH_PX: f64 = 640.0;
 const K: [f64; 4] = [-0.0663, 0.00994, -0.001_103, 0.000_054_6];
 
-/// Camera and field as they are believed to be.
+/// Camera and field.
 #[derive(Debug, Clone)]
 pub struct Nominal {
     /// The lens.
-    pub lens: Fisheye,
+    pub lens: Lens,
     /// Width and height of the picture, pixels.
     pub size: [u32; 2],
     /// Height of the projection centre above the carpet, metres.
@@ -47,18 +52,19 @@ pub struct Light {
 }
 
 impl Nominal {
-    /// Draws nominal values from the seed around those of one robot.
+    /// Draws the camera from the seed around that of one robot, on a field of 6 × 4 m.
     pub fn new(seed: u64, size: [u32; 2]) -> Self {
         let random = &mut Random::stream(seed, "nominal", 0);
         let [width, height] = size.map(f64::from);
         let scale = width / WIDTH_PX;
         let bend = random.between(0.93, 1.07);
         let center = DVec2::new(width - 1.0, height - 1.0) / 2.0;
-        let lens = Fisheye {
+        let lens = Lens {
             focal_px: rounded(FOCAL_PX * scale * random.between(0.96, 1.04), 1e6),
             center_px: (center + scale * DVec2::new(random.between(-3.0, 3.0), random.between(-3.0, 3.0)))
                 .map(|value| rounded(value, 1e3)),
-            k: K.map(|k| rounded(k * bend, 1e9)),
+            bend: Bend::Fisheye(K.map(|k| rounded(k * bend, 1e9))),
+            p: [0.0; 2],
         };
         let mut near = |value: f64| rounded(value * random.between(0.95, 1.05), 1e4);
         let light = Light {
@@ -73,18 +79,10 @@ impl Nominal {
         Self { lens, size, height_m, light, field: kid_size_field() }
     }
 
-    /// Returns the content of `camera.toml`.
-    pub fn setup(&self) -> Result<CameraSetup, Error> {
-        let Fisheye { focal_px, center_px, k } = self.lens;
-        let intrinsics = [focal_px, focal_px, center_px.x, center_px.y];
-        let lens = Distortion::OpencvFisheye(OpencvFisheye { k });
-        let camera = Camera::new(self.size, intrinsics, lens).map_err(|_| Error::Recipe {
-            name: "size",
-            value: f64::from(self.size[0]),
-            rule: "a number of pixels that a camera can have",
-        })?;
+    /// Returns all that can be said of the conversion of light.
+    pub fn photometry(&self) -> Photometry {
         let light = &self.light;
-        let photometry = Photometry {
+        Photometry {
             gamma: light.gamma,
             line_linear_rgb: Some(light.line_rgb),
             carpet_linear_rgb: Some(light.carpet_rgb),
@@ -92,8 +90,64 @@ impl Nominal {
             noise_shot: Some(light.noise_shot),
             noise_read: Some(light.noise_read),
             psf_sigma_px: Some(light.psf_sigma_px),
+        }
+    }
+
+    /// Returns the content of `camera.toml`.
+    pub fn setup(&self, photometry: Photometry) -> Result<CameraSetup, Error> {
+        let Lens { focal_px, center_px, bend, p: [p1, p2] } = self.lens;
+        let intrinsics = [focal_px, focal_px, center_px.x, center_px.y];
+        let lens = match bend {
+            Bend::Fisheye(k) => Distortion::OpencvFisheye(OpencvFisheye { k }),
+            Bend::Perspective([0.0, 0.0]) if p1 == 0.0 && p2 == 0.0 => Distortion::Pinhole,
+            Bend::Perspective([k1, k2]) => Distortion::Opencv(Opencv { k1, k2, p1, p2, k3: 0.0 }),
         };
+        let camera = Camera::new(self.size, intrinsics, lens).map_err(|_| Error::Recipe {
+            name: "size",
+            value: f64::from(self.size[0]),
+            rule: "a number of pixels that a camera can have",
+        })?;
         Ok(CameraSetup { camera, mount_height_m: self.height_m, photometry: Some(photometry) })
+    }
+
+    /// Returns whether an effect can be hidden by other values in the files beside the same pictures.
+    pub fn can_lack(&self, effect: &Hidden) -> bool {
+        match effect {
+            Hidden::TangentialDistortion { .. } => matches!(self.lens.bend, Bend::Perspective(_)),
+            Hidden::RadialDistortion { .. }
+            | Hidden::PrincipalPoint { .. }
+            | Hidden::FocalLength { .. }
+            | Hidden::MountPitch { .. }
+            | Hidden::MountRoll { .. }
+            | Hidden::CameraHeight { .. }
+            | Hidden::CameraYaw { .. }
+            | Hidden::CameraOffset { .. }
+            | Hidden::GaitSway { .. }
+            | Hidden::TimeOffset { .. }
+            | Hidden::CarpetReflectance { .. }
+            | Hidden::LineReflectance { .. }
+            | Hidden::FieldDimensions { .. } => true,
+            _ => false,
+        }
+    }
+
+    /// Takes an effect out of the values, so that these lack it.
+    pub fn take_out(&mut self, effect: &Hidden) {
+        match *effect {
+            Hidden::RadialDistortion { k } => self.lens.bend.add(k.map(|k| -k)),
+            Hidden::TangentialDistortion { p1, p2 } => {
+                self.lens.p = [self.lens.p[0] - p1, self.lens.p[1] - p2];
+            }
+            Hidden::PrincipalPoint { dx_px, dy_px } => self.lens.center_px -= DVec2::new(dx_px, dy_px),
+            Hidden::FocalLength { scale } => self.lens.focal_px /= 1.0 + scale,
+            Hidden::CameraHeight { height_m } => self.height_m -= height_m,
+            Hidden::CameraOffset { up_m, .. } => self.height_m -= up_m,
+            Hidden::FieldDimensions { length_m, width_m } => {
+                self.field.length_m -= length_m;
+                self.field.width_m -= width_m;
+            }
+            _ => {}
+        }
     }
 }
 

@@ -15,8 +15,12 @@ pub struct Pattern {
     area_half_width: f32,
     mark_distance: f32,
     circle_radius: f32,
+    /// Depth and half width of the penalty areas, if there are any.
+    penalty_area: Option<[f32; 2]>,
     /// Shift of the halfway line towards +x.
     pub halfway_shift_m: f32,
+    /// Additional width of the halfway line.
+    pub halfway_extra_m: f32,
     /// Whether the goal areas at −x and at +x are painted.
     pub goal_areas: [bool; 2],
 }
@@ -32,33 +36,54 @@ impl Pattern {
             area_half_width: field.goal_area_width_m as f32 / 2.0,
             mark_distance: field.penalty_mark_distance_m as f32,
             circle_radius: field.center_circle_diameter_m as f32 / 2.0,
+            penalty_area: field
+                .penalty_area_length_m
+                .zip(field.penalty_area_width_m)
+                .map(|(depth_m, width_m)| [depth_m as f32, width_m as f32 / 2.0]),
             halfway_shift_m: 0.0,
+            halfway_extra_m: 0.0,
             goal_areas: [true; 2],
         }
     }
 
     /// Moves the lines to a field of other dimensions; missing lines stay missing.
     pub fn resize(&mut self, field: &FieldDimensions) {
-        *self =
-            Self { halfway_shift_m: self.halfway_shift_m, goal_areas: self.goal_areas, ..Self::new(field) };
+        *self = Self {
+            halfway_shift_m: self.halfway_shift_m,
+            halfway_extra_m: self.halfway_extra_m,
+            goal_areas: self.goal_areas,
+            ..Self::new(field)
+        };
     }
 
     /// Returns the distance to the nearest white paint, metres; negative inside paint, where its magnitude is at most the
     /// distance to the edge.
     pub fn distance_m(&self, x: f32, y: f32) -> f32 {
+        self.distances_m(x, y).into_iter().fold(f32::INFINITY, f32::min)
+    }
+
+    /// Returns the distances to the parts of the pattern: outline, halfway line, circle, centre mark, penalty marks, goal
+    /// areas, penalty areas.
+    pub fn distances_m(&self, x: f32, y: f32) -> [f32; 7] {
         let (ax, ay) = (x.abs(), y.abs());
-        let border = outline(ax, ay, self.half_length, self.half_width, self.half_line);
-        let halfway = rectangle(x - self.halfway_shift_m, ay, self.half_line, self.half_width);
-        let circle = ((x * x + y * y).sqrt() - self.circle_radius).abs() - self.half_line;
-        let center_mark = rectangle(ax, ay, MARK_M / 2.0, MARK_M / 2.0);
-        let mark = rectangle(ax - self.half_length + self.mark_distance, ay, MARK_M / 2.0, MARK_M / 2.0);
-        let area = if self.goal_areas[usize::from(x > 0.0)] {
-            let from_center = ax - self.half_length + self.area_depth / 2.0;
-            outline(from_center, ay, self.area_depth / 2.0, self.area_half_width, self.half_line)
-        } else {
-            f32::INFINITY
+        let half_halfway = self.half_line + self.halfway_extra_m / 2.0;
+        let from_goal_line = ax - self.half_length;
+        let area = |depth: f32, half_width: f32| {
+            outline(from_goal_line + depth / 2.0, ay, depth / 2.0, half_width, self.half_line)
         };
-        border.min(halfway).min(circle).min(center_mark).min(mark).min(area)
+        [
+            outline(ax, ay, self.half_length, self.half_width, self.half_line),
+            rectangle(x - self.halfway_shift_m, ay, half_halfway, self.half_width),
+            ((x * x + y * y).sqrt() - self.circle_radius).abs() - self.half_line,
+            rectangle(ax, ay, MARK_M / 2.0, MARK_M / 2.0),
+            rectangle(from_goal_line + self.mark_distance, ay, MARK_M / 2.0, MARK_M / 2.0),
+            if self.goal_areas[usize::from(x > 0.0)] {
+                area(self.area_depth, self.area_half_width)
+            } else {
+                f32::INFINITY
+            },
+            self.penalty_area.map_or(f32::INFINITY, |[depth, half_width]| area(depth, half_width)),
+        ]
     }
 }
 

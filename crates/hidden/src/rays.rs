@@ -79,7 +79,7 @@ pub fn cast(truth: &Truth, frame: Frame) -> Vec<Rays> {
 }
 
 fn directions(truth: &Truth, frame: Frame, magnification: f64) -> Vec<Vec3> {
-    let max_angle_rad = truth.lens.max_angle_rad();
+    let largest_radius = truth.lens.largest_radius();
     let width = frame.rays_per_row();
     let mut directions = vec![Vec3::ZERO; width * frame.rows() * PER_PIXEL];
     directions.par_chunks_mut(width).enumerate().for_each(|(row, rays)| {
@@ -89,7 +89,7 @@ fn directions(truth: &Truth, frame: Frame, magnification: f64) -> Vec<Vec3> {
             let undented = pixel + truth.dents.iter().map(|dent| dent.at(pixel)).sum::<DVec2>();
             let center = truth.lens.center_px;
             let place = center + (undented - center) / magnification;
-            *ray = truth.lens.ray(place, max_angle_rad).map_or(Vec3::ZERO, DVec3::as_vec3);
+            *ray = truth.lens.ray(place, largest_radius).map_or(Vec3::ZERO, DVec3::as_vec3);
         }
     });
     directions

@@ -1,39 +1,41 @@
 //! Recipe of a recording: a seed, and the effects hidden in the recording.
 
-use std::{fs, path::Path};
-
-use glam::DVec2;
-use rayon::prelude::*;
-use reality_sim_core::sequence::Sequence;
-
 use crate::{
+    drawn::{self, Given},
     effect::Hidden,
     error::Error,
-    exposure::Exposer,
-    film::Film,
-    jpeg, log,
-    nominal::Nominal,
     random::Random,
-    scene::Scene,
+    setting::Setting,
+    sights,
     trajectory::{Trajectory, Walk},
-    truth::Truth,
 };
 
-/// Distance that the camera keeps inside the lines, metres.
-const INSIDE_M: f64 = 0.5;
 /// Largest number of frames of a recipe.
 const MOST_FRAMES: usize = 100_000;
 /// Largest width and height of a recipe's pictures, pixels.
 const MOST_PIXELS: u32 = 8192;
 /// Largest exposure time, readout time and clock offset, seconds.
 const LONGEST_S: f64 = 0.5;
+/// Number of paths tried for one on which lines are in view.
+const PATHS: u64 = 20;
+
+/// Worlds from which a recording comes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum World {
+    /// A field of 6 × 4 m under even light, a small humanoid with a fisheye, five pictures per second, and nominal values
+    /// that are exact: lens, hall and walk differ a little from seed to seed.
+    #[default]
+    Standard,
+    /// Field, hall, carpet, light, paint, lens, sensor, robot and measured nominal values are all drawn anew.
+    Drawn,
+}
 
 /// Recipe of a recording. Everything not given here is drawn from the seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recipe {
     /// Seed of the hall, the camera, the walk and all noise. The same recipe gives the same bytes.
     pub seed: u64,
-    /// Number of pictures, five per second.
+    /// Number of pictures.
     pub frames: usize,
     /// Width and height of the pictures, pixels.
     pub size: [u32; 2],
@@ -41,71 +43,58 @@ pub struct Recipe {
     pub effects: Vec<Hidden>,
     /// Motion of the robot.
     pub walk: Walk,
+    /// World from which the recording comes.
+    pub world: World,
+    /// What the files of a drawn world tell of brightness, noise and sharpness; none is drawn.
+    pub given: Option<Given>,
+    /// Number of reference poses per second; none is one for each picture.
+    pub reference_rate_hz: Option<f64>,
 }
 
 impl Recipe {
-    /// Makes a recipe for 60 pictures of 640 × 480 pixels on a walk, with nothing hidden.
+    /// Makes a recipe for 60 pictures of 640 × 480 pixels on a walk in a standard world, with nothing hidden.
     pub fn new(seed: u64) -> Self {
-        Self { seed, frames: 60, size: [640, 480], effects: Vec::new(), walk: Walk::Walking }
-    }
-
-    /// Writes a complete sequence folder, creating it if it is missing, and returns its content: `sequence.toml`,
-    /// `camera.toml`, `field.toml`, `frames.csv`, `groundtruth.tum` and the pictures.
-    pub fn record(&self, folder: &Path) -> Result<Sequence, Error> {
-        self.check()?;
-        let nominal = Nominal::new(self.seed, self.size);
-        let truth = Truth::new(&nominal, &self.effects);
-        let trajectory = self.trajectory(&nominal);
-        self.take_pictures(folder, &nominal, &truth, &trajectory)?;
-        let mut frames = log::frames(self.seed, self.frames, self.walk, &trajectory, &truth);
-        for (frame, pose) in frames.iter_mut().zip(log::references(self.seed, self.frames, &trajectory)) {
-            frame.reference_pose = Some(pose);
+        Self {
+            seed,
+            frames: 60,
+            size: [640, 480],
+            effects: Vec::new(),
+            walk: Walk::Walking,
+            world: World::Standard,
+            given: None,
+            reference_rate_hz: None,
         }
-        let sequence = Sequence {
-            folder: folder.to_path_buf(),
-            files: Vec::new(),
-            name: format!("hidden-{}", self.seed),
-            setup: nominal.setup()?,
-            frames,
-            start: Some(log::start(&trajectory)),
-            field: nominal.field,
+    }
+
+    /// Makes the same recipe in a drawn world.
+    pub fn drawn(seed: u64) -> Self {
+        Self { world: World::Drawn, ..Self::new(seed) }
+    }
+
+    pub(crate) fn setting(&self) -> Setting {
+        match self.world {
+            World::Standard => Setting::standard(self.seed, self.size),
+            World::Drawn => drawn::setting(self.seed, self.size, self.given),
+        }
+    }
+
+    /// Draws the path; in drawn worlds one from which lines are seen.
+    pub(crate) fn trajectory(&self, setting: &Setting) -> Trajectory {
+        let path = |number| {
+            let random = &mut Random::stream(self.seed, "trajectory", number);
+            let Setting { gait, reach_m, .. } = *setting;
+            let duration_s = (self.frames + 1) as f64 / setting.rate_hz;
+            Trajectory::new(random, self.walk, gait, duration_s, reach_m, setting.nominal.height_m)
         };
-        sequence.write(folder)?;
-        Ok(Sequence::open(folder)?)
+        let times_s: Vec<f64> = (0..self.frames).map(|frame| (frame + 1) as f64 / setting.rate_hz).collect();
+        let sees_lines = |path: &Trajectory| sights::are_ordinary(&setting.nominal, path, &times_s);
+        if self.world == World::Standard {
+            return path(0);
+        }
+        (0..PATHS).map(path).find(sees_lines).unwrap_or_else(|| path(PATHS))
     }
 
-    pub(crate) fn trajectory(&self, nominal: &Nominal) -> Trajectory {
-        let inside = DVec2::new(nominal.field.length_m, nominal.field.width_m) / 2.0 - INSIDE_M;
-        let duration_s = log::timestamp_s(self.frames);
-        Trajectory::new(self.seed, self.walk, duration_s, inside, nominal.height_m)
-    }
-
-    fn take_pictures(
-        &self,
-        folder: &Path,
-        nominal: &Nominal,
-        truth: &Truth,
-        trajectory: &Trajectory,
-    ) -> Result<(), Error> {
-        let images = folder.join("images");
-        fs::create_dir_all(&images).map_err(|source| Error::Unwritable { path: images.clone(), source })?;
-        let scene = Scene::new(self.seed, nominal, truth, trajectory);
-        let exposer = Exposer::new(truth, self.size, nominal.light.psf_sigma_px);
-        let span_s = [log::timestamp_s(0), log::timestamp_s(self.frames - 1)];
-        let film = Film::new(truth, nominal.light, self.size, span_s);
-        (0..self.frames).into_par_iter().try_for_each(|frame| {
-            let time_s = log::timestamp_s(frame);
-            let planes = exposer.expose(&scene, trajectory, time_s + truth.offset_s);
-            let noise = &mut Random::stream(self.seed, "noise", frame as u64);
-            let picture = film.develop(&planes, frame, time_s, noise);
-            let path = images.join(format!("{frame:06}.jpg"));
-            let bytes =
-                jpeg::encode(&picture).map_err(|source| Error::Unencodable { path: path.clone(), source })?;
-            fs::write(&path, bytes).map_err(|source| Error::Unwritable { path, source })
-        })
-    }
-
-    fn check(&self) -> Result<(), Error> {
+    pub(crate) fn check(&self) -> Result<(), Error> {
         let check = |name, value: f64, holds: bool, rule| {
             if holds { Ok(()) } else { Err(Error::Recipe { name, value, rule }) }
         };
@@ -125,6 +114,15 @@ impl Recipe {
                 }
                 Hidden::TimeOffset { offset_s } => {
                     ("time_offset", offset_s, -LONGEST_S, LONGEST_S, "within 0.5 seconds")
+                }
+                Hidden::OdometryDelay { delay_s } => {
+                    ("odometry_delay", delay_s, -LONGEST_S, LONGEST_S, "within 0.5 seconds")
+                }
+                Hidden::ImuDelay { delay_s } => {
+                    ("imu_delay", delay_s, -LONGEST_S, LONGEST_S, "within 0.5 seconds")
+                }
+                Hidden::ClockJump { jump_s } => {
+                    ("clock_jump", jump_s, -LONGEST_S, LONGEST_S, "within 0.5 seconds")
                 }
                 _ => continue,
             };

@@ -1,14 +1,18 @@
 //! The hall: carpet with paint, floor, walls, posters, goals, a ball, robots, people; and the light along a ray.
 
-use std::f32::consts::{PI, TAU};
-
-use glam::{DVec2, Mat3, Vec2, Vec3};
+use glam::{Mat3, Vec2, Vec3};
 
 use crate::{
-    effect::Light,
+    carpet::{Carpet, Shadow},
+    figures::goal,
+    furniture::{self, Furniture},
+    lamps::Lamp,
+    movers::{Mover, people},
     nominal::Nominal,
+    pattern::Pattern,
     random::Random,
-    solid::{Part, Thing},
+    setting::{HallPlan, Setting},
+    solid::Thing,
     texture::Texture,
     trajectory::Trajectory,
     truth::Truth,
@@ -36,13 +40,37 @@ pub struct Scene {
     floor_rgb: Vec3,
     carpet_half: Vec2,
     room_half: Vec2,
-    blotches: Texture,
+    ceiling_m: f32,
+    turf: Turf,
     wear: Texture,
     grain: Texture,
     posters: Vec<Poster>,
-    things: Vec<Thing>,
-    people: Vec<Person>,
+    furniture: Furniture,
     lamps: Vec<Lamp>,
+}
+
+/// Carpet, and what distinguishes paint from paint.
+enum Turf {
+    /// Blotches on an even carpet.
+    Blotches(Texture),
+    /// Uneven carpet.
+    Laid(Box<Laid>),
+}
+
+struct Laid {
+    carpet: Carpet,
+    /// Factors on the reflectance of the parts of the pattern.
+    paint: [f32; 7],
+    /// Raggedness of the paint's edges, and its size in metres.
+    edges: (Texture, f32),
+}
+
+/// What stands and moves in the hall at a time.
+pub struct Moment {
+    /// Things in front of the backdrop.
+    pub things: Vec<Thing>,
+    /// Shadows of those that move.
+    pub shadows: Vec<Shadow>,
 }
 
 /// Rectangle on a wall.
@@ -52,22 +80,6 @@ struct Poster {
     center: Vec2,
     half: Vec2,
     rgb: [Vec3; 2],
-}
-
-/// Person who crosses the field to and fro.
-struct Person {
-    figure: Thing,
-    from: Vec2,
-    to: Vec2,
-    speed_m_per_s: f32,
-    start_s: f32,
-}
-
-/// Uneven illumination: its strength, and the mean over the field that is subtracted from a spot.
-struct Lamp {
-    strength: f32,
-    shape: Light,
-    mean: f32,
 }
 
 /// Ray in the world, with the data for finding its neighbours.
@@ -92,12 +104,11 @@ enum Backdrop {
 
 impl Scene {
     /// Draws a hall from the seed around the true field, with robots beside the camera's path.
-    pub fn new(seed: u64, nominal: &Nominal, truth: &Truth, trajectory: &Trajectory) -> Self {
+    pub fn new(seed: u64, setting: &Setting, truth: &Truth, trajectory: &Trajectory) -> Self {
+        let nominal = &setting.nominal;
         let random = &mut Random::stream(seed, "hall", 0);
         // A larger field lies on the same carpet in the same hall.
-        let field = &nominal.field;
-        let border = (field.border_strip_m + field.line_width_m / 2.0) as f32;
-        let carpet_half = Vec2::new(field.length_m as f32, field.width_m as f32) / 2.0 + border;
+        let carpet_half = carpet_half(nominal);
         let room_half = carpet_half + AISLE_M;
         let mut grey = |low: f64, high: f64| Vec3::splat(random.between(low, high) as f32);
         let (wall_rgb, floor_rgb) =
@@ -106,42 +117,56 @@ impl Scene {
             .flat_map(|wall| (0..3).map(move |_| wall))
             .map(|wall| Poster::new(random, wall, room_half));
         let posters = posters.collect();
-        let mut things = vec![
-            goal(truth, 1.0, Vec3::new(0.55, 0.42, 0.02)),
-            goal(truth, -1.0, Vec3::new(0.03, 0.09, 0.4)),
-        ];
-        things.extend(standing_things(random, carpet_half, trajectory));
+        let mut furniture = match &setting.hall {
+            None => Furniture::standing(standing(random, truth, carpet_half, trajectory)),
+            Some(plan) => furniture::drawn(random, plan, &truth.field, carpet_half, trajectory),
+        };
+        furniture.movers.extend(people(seed, truth.people, &nominal.field, trajectory));
         let paper = &mut Random::stream(seed, "textures", 0);
+        let blotches = Texture::new(paper, &[(0.16, 0.065), (0.07, 0.045)]);
+        let wear = setting.hall.as_ref().map_or((0.05, 0.03), |plan| plan.wear);
+        let wear = Texture::new(paper, &[wear]);
+        let grain = Texture::new(paper, &[(0.3, 0.5), (0.08, 0.35)]);
+        let shadows = &furniture.shadows;
+        let lamp_rgb = setting.hall.as_ref().map_or(Vec3::ONE, |plan| single(plan.lamp_rgb));
+        let turf = match &setting.hall {
+            None => Turf::Blotches(blotches),
+            Some(plan) => Turf::Laid(Box::new(Laid::new(seed, plan, carpet_half, shadows))),
+        };
+        let lamp = |&(strength, shape)| Lamp::new(strength, shape, nominal);
+        let [carpet, line] = truth.reflectance.map(|factor| factor as f32);
         Self {
-            carpet_rgb: single(nominal.light.carpet_rgb),
-            line_rgb: single(nominal.light.line_rgb),
-            wall_rgb,
-            floor_rgb,
+            carpet_rgb: single(nominal.light.carpet_rgb) * carpet,
+            line_rgb: single(nominal.light.line_rgb) * line,
+            wall_rgb: wall_rgb.map(|rgb| rgb * lamp_rgb),
+            floor_rgb: floor_rgb * lamp_rgb,
             carpet_half,
             room_half,
-            blotches: Texture::new(paper, &[(0.16, 0.065), (0.07, 0.045)]),
-            wear: Texture::new(paper, &[(0.05, 0.03)]),
-            grain: Texture::new(paper, &[(0.3, 0.5), (0.08, 0.35)]),
+            ceiling_m: setting.hall.as_ref().map_or(CEILING_M, |plan| plan.ceiling_m as f32),
+            turf,
+            wear,
+            grain,
             posters,
-            things,
-            people: people(seed, truth.people, trajectory),
-            lamps: truth
-                .lights
-                .iter()
-                .map(|&(strength, shape)| Lamp::new(strength, shape, nominal))
-                .collect(),
+            furniture,
+            lamps: truth.lights.iter().map(lamp).collect(),
             truth: truth.clone(),
         }
     }
 
-    /// Returns everything that can stand in front of the backdrop at a time, seconds.
-    pub fn things(&self, time_s: f64) -> Vec<Thing> {
-        let people = self.people.iter().map(|person| person.at(time_s as f32));
-        self.things.iter().cloned().chain(people).collect()
+    /// Returns what stands in front of the backdrop at a time, seconds.
+    pub fn moment(&self, time_s: f64) -> Moment {
+        let movers: Vec<Thing> =
+            self.furniture.movers.iter().map(|mover: &Mover| mover.at(time_s as f32)).collect();
+        let shadow = |thing: &Thing| Shadow { center: thing.center.truncate(), radius: 0.12 };
+        let casts = matches!(self.turf, Turf::Laid(_));
+        Moment {
+            shadows: movers.iter().filter(|_| casts).map(shadow).collect(),
+            things: self.furniture.things.iter().cloned().chain(movers).collect(),
+        }
     }
 
-    /// Returns the linear light along a ray, with `things` in its way.
-    pub fn light<'a>(&self, ray: &Ray, things: impl Iterator<Item = &'a Thing>) -> Vec3 {
+    /// Returns the linear light along a ray, with `things` in its way and these shadows on the ground.
+    pub fn light<'a>(&self, ray: &Ray, things: impl Iterator<Item = &'a Thing>, shadows: &[Shadow]) -> Vec3 {
         let (mut distance, backdrop) = self.backdrop(ray);
         let mut thing_rgb = None;
         for thing in things {
@@ -151,10 +176,32 @@ impl Scene {
         }
         let place = ray.origin + ray.direction * distance;
         let rgb = thing_rgb.unwrap_or_else(|| match backdrop {
-            Backdrop::Ground => self.ground(ray, place.truncate()),
+            Backdrop::Ground => self.ground(ray, place.truncate(), shadows, None),
             Backdrop::Wall(wall) => self.wall(wall, place),
             Backdrop::Ceiling => CEILING_RGB,
         });
+        self.through_air(rgb, place, distance)
+    }
+
+    /// Returns the light along the ray in the middle of a pixel, if it is that of the whole pixel, since nothing but plain
+    /// carpet is there. `ray` has the steps to the next pixels.
+    pub fn plain_light(&self, ray: &Ray, shadows: &[Shadow]) -> Option<Vec3> {
+        let (distance, Backdrop::Ground) = self.backdrop(ray) else { return None };
+        let place = ray.origin + ray.direction * distance;
+        let [right, down] = ray.steps_in_camera;
+        let stretch = ray.origin.z / (ray.direction.z * ray.direction.z).max(1e-6);
+        let reach_m = stretch * (right.length() + down.length());
+        let ground = place.truncate();
+        let inside = ground.abs().cmplt(self.carpet_half - reach_m).all();
+        let from_paint_m = self.truth.pattern.distance_m(ground.x, ground.y).abs();
+        if !inside || from_paint_m < reach_m + 0.01 {
+            return None;
+        }
+        let painted = f32::from(u8::from(self.truth.pattern.distance_m(ground.x, ground.y) < 0.0));
+        Some(self.through_air(self.ground(ray, ground, shadows, Some(painted)), place, distance))
+    }
+
+    fn through_air(&self, rgb: Vec3, place: Vec3, distance: f32) -> Vec3 {
         let lit = rgb * self.lamps.iter().map(|lamp| lamp.gain(place.truncate())).product::<f32>();
         if self.truth.extinction_per_m == 0.0 {
             return lit;
@@ -168,7 +215,7 @@ impl Scene {
         let vertical = if direction.z < 0.0 {
             (self.ground_distance(origin, direction), Backdrop::Ground)
         } else {
-            ((CEILING_M - origin.z) / direction.z, Backdrop::Ceiling)
+            ((self.ceiling_m - origin.z) / direction.z, Backdrop::Ceiling)
         };
         let to_wall = |position: f32, way: f32, half: f32| (half * way.signum() - position) / way;
         let along_x = to_wall(origin.x, direction.x, self.room_half.x);
@@ -199,23 +246,46 @@ impl Scene {
         waves.map(height).sum::<f64>() as f32
     }
 
-    fn ground(&self, ray: &Ray, place: Vec2) -> Vec3 {
+    /// Returns the light from a place on the ground; `painted` is the part of it that is painted, if that is known.
+    fn ground(&self, ray: &Ray, place: Vec2, shadows: &[Shadow], painted: Option<f32>) -> Vec3 {
         if place.abs().cmpgt(self.carpet_half).any() {
             return self.floor_rgb * (1.0 + 0.12 * self.grain.at(place.x, place.y));
         }
-        let paint = self.paint(ray, place);
-        let carpet = self.carpet_rgb * ((1.0 - paint) * (1.0 + self.blotches.at(place.x, place.y)));
-        if paint == 0.0 {
-            return carpet;
+        let paint = painted.unwrap_or_else(|| self.paint(ray, place));
+        match &self.turf {
+            Turf::Blotches(blotches) => {
+                let carpet = self.carpet_rgb * ((1.0 - paint) * (1.0 + blotches.at(place.x, place.y)));
+                if paint == 0.0 {
+                    return carpet;
+                }
+                carpet + self.line_rgb * (paint * (1.0 + self.wear.at(place.x, place.y)))
+            }
+            Turf::Laid(laid) => {
+                let [right, down] = ray.steps_in_camera;
+                let stretch = ray.origin.z / ray.direction.z.abs().powf(1.5).max(1e-4);
+                let footprint_m = stretch * 0.5 * (right.length() + down.length());
+                let spot = laid.carpet.spot(place, ray.direction, footprint_m);
+                let carpet = self.carpet_rgb * spot.reflectance + spot.sheen;
+                let shade: f32 = shadows.iter().map(|shadow| shadow.light(place)).product();
+                let mut rgb = carpet * (1.0 - paint);
+                if paint > 0.0 {
+                    let wear = 1.0 + self.wear.at(place.x, place.y);
+                    rgb += self.line_rgb * (paint * wear * laid.paint_at(&self.truth.pattern, place));
+                }
+                rgb * (spot.light * shade)
+            }
         }
-        carpet + self.line_rgb * (paint * (1.0 + self.wear.at(place.x, place.y)))
     }
 
     /// Returns the painted fraction of a ray's cell on the ground. A cell on an edge is sampled at many positions; otherwise
     /// edges along rows or columns would jump from ray to ray.
     fn paint(&self, ray: &Ray, place: Vec2) -> f32 {
         let pattern = &self.truth.pattern;
-        let distance_m = pattern.distance_m(place.x, place.y);
+        let ragged_m = match &self.turf {
+            Turf::Blotches(_) => 0.0,
+            Turf::Laid(laid) => laid.edges.1 * laid.edges.0.at(place.x, place.y),
+        };
+        let distance_m = pattern.distance_m(place.x, place.y) + ragged_m;
         let [right, down] = ray.steps_in_camera;
         let stretch = ray.origin.z / (ray.direction.z * ray.direction.z).max(1e-6);
         if distance_m.abs() > 0.6 * stretch * (right.length() + down.length()) {
@@ -229,7 +299,7 @@ impl Scene {
         let [right, down] = [right, down].map(|step| *ray.world_from_camera * step);
         let painted = CELL_PLACES.iter().filter(|[x, y]| {
             let beside = place + ground(right * *x + down * *y) - here;
-            pattern.distance_m(beside.x, beside.y) < 0.0
+            pattern.distance_m(beside.x, beside.y) + ragged_m < 0.0
         });
         painted.count() as f32 / CELL_PLACES.len() as f32
     }
@@ -248,6 +318,39 @@ impl Scene {
             None => self.wall_rgb[wall] * (1.0 + 0.04 * self.grain.at(along.x, along.y)),
         }
     }
+}
+
+impl Laid {
+    fn new(seed: u64, plan: &HallPlan, carpet_half: Vec2, shadows: &[Shadow]) -> Self {
+        let random = &mut Random::stream(seed, "carpet", 0);
+        let carpet = Carpet::new(random, &plan.carpet, carpet_half, shadows);
+        let paint = std::array::from_fn(|_| (1.0 + plan.line_spread * random.normal()) as f32);
+        let (cell_m, ragged_m) = plan.edges;
+        Self { carpet, paint, edges: (Texture::new(random, &[(cell_m, 1.0)]), ragged_m as f32) }
+    }
+
+    /// Returns the factor on the reflectance of the part of the pattern at a place.
+    fn paint_at(&self, pattern: &Pattern, place: Vec2) -> f32 {
+        let distances = pattern.distances_m(place.x, place.y).into_iter().zip(self.paint);
+        distances.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(1.0, |(_, factor)| factor)
+    }
+}
+
+/// Returns half the sides of the carpet, metres.
+fn carpet_half(nominal: &Nominal) -> Vec2 {
+    let field = &nominal.field;
+    let border = (field.border_strip_m + field.line_width_m / 2.0) as f32;
+    Vec2::new(field.length_m as f32, field.width_m as f32) / 2.0 + border
+}
+
+/// Returns goals in two colours and what stands about.
+fn standing(random: &mut Random, truth: &Truth, carpet_half: Vec2, trajectory: &Trajectory) -> Vec<Thing> {
+    let mut things = vec![
+        goal(&truth.field, 1.0, Vec3::new(0.55, 0.42, 0.02)),
+        goal(&truth.field, -1.0, Vec3::new(0.03, 0.09, 0.4)),
+    ];
+    things.extend(furniture::standing_things(random, carpet_half, trajectory));
+    things
 }
 
 const fn hammersley() -> [[f32; 2]; 16] {
@@ -275,138 +378,4 @@ impl Poster {
         let mut color = || Vec3::new(number(0.02, 0.35), number(0.02, 0.35), number(0.02, 0.35));
         Self { wall, center, half, rgb: [color(), color()] }
     }
-}
-
-impl Person {
-    fn at(&self, time_s: f32) -> Thing {
-        let length = self.from.distance(self.to);
-        let way = ((time_s - self.start_s) * self.speed_m_per_s / length).rem_euclid(2.0);
-        let place = self.from.lerp(self.to, if way > 1.0 { 2.0 - way } else { way });
-        self.figure.moved(place.extend(0.0))
-    }
-}
-
-impl Lamp {
-    fn new(strength: f64, shape: Light, nominal: &Nominal) -> Self {
-        let mut lamp = Self { strength: strength as f32, shape, mean: 0.0 };
-        let half = Vec2::new(nominal.field.length_m as f32, nominal.field.width_m as f32) / 2.0;
-        let grid =
-            |count: u8| (0..count).map(move |index| (f32::from(index) + 0.5) / f32::from(count) * 2.0 - 1.0);
-        let places = grid(60).flat_map(|x| grid(40).map(move |y| half * Vec2::new(x, y)));
-        lamp.mean = places.map(|place| lamp.brightness(place)).sum::<f32>() / 2400.0;
-        lamp
-    }
-
-    fn brightness(&self, place: Vec2) -> f32 {
-        match self.shape {
-            Light::Gradient { direction_rad } => place.dot(DVec2::from_angle(direction_rad).as_vec2()) / 3.0,
-            Light::Spot { center_m, sigma_m } => {
-                (-0.5 * place.distance_squared(center_m.as_vec2()) / (sigma_m * sigma_m) as f32).exp()
-            }
-        }
-    }
-
-    fn gain(&self, place: Vec2) -> f32 {
-        (1.0 + self.strength * (self.brightness(place) - self.mean)).max(0.0)
-    }
-}
-
-/// Builds the goal on one side: two posts, a bar and a back of cloth.
-fn goal(truth: &Truth, side: f32, rgb: Vec3) -> Thing {
-    let field = &truth.field;
-    let x = side * field.length_m as f32 / 2.0;
-    let radius = field.goal_post_diameter_m as f32 / 2.0;
-    let y = field.goal_width_m as f32 / 2.0 + radius;
-    let top = field.goal_height_m as f32 + radius;
-    let depth = 0.45 * side;
-    let post = |y: f32| Part::tube(Vec3::new(x, y, 0.0), Vec3::new(x, y, top), radius, rgb);
-    let bar = Part::tube(Vec3::new(x, -y, top), Vec3::new(x, y, top), radius, rgb);
-    let back = Vec3::new(x + depth, 0.0, 0.35);
-    Thing::new(vec![post(y), post(-y), bar, Part::cuboid(back, Vec3::new(0.01, y, 0.35), 0.0, rgb * 0.7)])
-}
-
-/// Draws a ball, one to three robots on the field, and boxes beside it.
-fn standing_things(random: &mut Random, carpet_half: Vec2, trajectory: &Trajectory) -> Vec<Thing> {
-    let mut things = Vec::new();
-    let ball = free_place(random, carpet_half - 1.0, 0.4, trajectory);
-    things.push(Thing::new(vec![Part::ball(ball.extend(0.07), 0.07, Vec3::new(0.5, 0.14, 0.01))]));
-    for _ in 0..=random.below(3) {
-        let place = free_place(random, carpet_half - 0.8, 0.7, trajectory);
-        let heading = random.between(0.0, TAU.into()) as f32;
-        let grey = random.between(0.02, 0.09) as f32;
-        let tint = Vec3::new(random.between(0.7, 1.5) as f32, 1.0, random.between(0.7, 1.5) as f32);
-        things.push(robot(heading, tint * grey).moved(place.extend(0.0)));
-    }
-    for index in 0..5 {
-        let angle = (index as f32 + random.uniform() as f32) * TAU / 5.0;
-        let beside = Vec2::from_angle(angle) * (carpet_half + 1.0);
-        let half = Vec3::new(
-            random.between(0.15, 0.4) as f32,
-            random.between(0.15, 0.4) as f32,
-            random.between(0.15, 0.6) as f32,
-        );
-        let rgb = Vec3::new(
-            random.between(0.01, 0.2) as f32,
-            random.between(0.01, 0.2) as f32,
-            random.between(0.02, 0.25) as f32,
-        );
-        things.push(Thing::new(vec![Part::cuboid(beside.extend(half.z), half, angle, rgb)]));
-    }
-    things
-}
-
-/// Draws a position that the camera keeps away from; the last of many draws if the camera goes everywhere.
-fn free_place(random: &mut Random, half: Vec2, clearance_m: f64, trajectory: &Trajectory) -> Vec2 {
-    let mut place = Vec2::ZERO;
-    for _ in 0..200 {
-        place = Vec2::new(random.between(-1.0, 1.0) as f32, random.between(-1.0, 1.0) as f32) * half;
-        if trajectory.clearance_m(place.as_dvec2()) > clearance_m {
-            break;
-        }
-    }
-    place
-}
-
-/// Builds a robot with two legs, a body, two arms and a head, half a metre tall.
-fn robot(heading_rad: f32, rgb: Vec3) -> Thing {
-    let side = Vec2::from_angle(heading_rad + PI / 2.0);
-    let part = |across: f32, height: f32, half: [f32; 3]| {
-        Part::cuboid((side * across).extend(height), half.into(), heading_rad, rgb)
-    };
-    Thing::new(vec![
-        part(0.05, 0.12, [0.035, 0.03, 0.12]),
-        part(-0.05, 0.12, [0.035, 0.03, 0.12]),
-        part(0.0, 0.33, [0.05, 0.08, 0.1]),
-        part(0.12, 0.32, [0.03, 0.025, 0.1]),
-        part(-0.12, 0.32, [0.03, 0.025, 0.1]),
-        part(0.0, 0.48, [0.04, 0.04, 0.045]),
-    ])
-}
-
-/// Draws people on straight paths across the field that keep clear of the camera's.
-fn people(seed: u64, count: u32, trajectory: &Trajectory) -> Vec<Person> {
-    let random = &mut Random::stream(seed, "people", 0);
-    (0..count).map(|_| person(random, trajectory)).collect()
-}
-
-fn person(random: &mut Random, trajectory: &Trajectory) -> Person {
-    let end =
-        |random: &mut Random| Vec2::new(random.between(-3.2, 3.2) as f32, random.between(-2.2, 2.2) as f32);
-    let (mut from, mut to) = (end(random), end(random));
-    for _ in 0..500 {
-        let along = (0..=8).map(|part| from.lerp(to, part as f32 / 8.0));
-        let clear = along.map(|place| trajectory.clearance_m(place.as_dvec2())).fold(f64::INFINITY, f64::min);
-        if clear > 0.6 && from.distance(to) > 1.2 {
-            break;
-        }
-        (from, to) = (end(random), end(random));
-    }
-    let heading = (to - from).to_angle();
-    let dark = Vec3::splat(random.between(0.015, 0.04) as f32);
-    let body = Part::cuboid(Vec3::new(0.0, 0.0, 1.1), Vec3::new(0.14, 0.22, 0.35), heading, dark * 1.3);
-    let legs = Part::cuboid(Vec3::new(0.0, 0.0, 0.38), Vec3::new(0.11, 0.16, 0.38), heading, dark);
-    let head = Part::ball(Vec3::new(0.0, 0.0, 1.6), 0.12, dark * 2.0);
-    let figure = Thing::new(vec![legs, body, head]);
-    let speed_m_per_s = random.between(0.5, 1.0) as f32;
-    Person { figure, from, to, speed_m_per_s, start_s: random.between(-5.0, 5.0) as f32 }
 }

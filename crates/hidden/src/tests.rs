@@ -3,11 +3,13 @@
 use glam::{DMat3, DQuat, DVec2, DVec3, Mat3, Vec3};
 
 use crate::{
-    Hidden, Recipe, Walk,
+    Hidden, Recipe,
     exposure::Exposer,
+    lens::Bend,
     nominal::Nominal,
+    rig::Station,
     scene::{Ray, Scene},
-    trajectory::{Station, Trajectory},
+    trajectory::Trajectory,
     truth::Truth,
 };
 
@@ -18,20 +20,25 @@ struct Shot {
     truth: Truth,
     trajectory: Trajectory,
     scene: Scene,
+    exposer: Exposer,
 }
 
 impl Shot {
     fn new(seed: u64, effects: &[Hidden]) -> Self {
-        let nominal = Nominal::new(seed, SIZE);
-        let truth = Truth::new(&nominal, effects);
-        let inside = DVec2::new(2.5, 1.5);
-        let trajectory = Trajectory::new(seed, Walk::Walking, 12.0, inside, nominal.height_m);
-        let scene = Scene::new(seed, &nominal, &truth, &trajectory);
-        Self { nominal, truth, trajectory, scene }
+        Self::of(&Recipe { size: SIZE, ..Recipe::new(seed) }, effects)
+    }
+
+    fn of(recipe: &Recipe, effects: &[Hidden]) -> Self {
+        let setting = recipe.setting();
+        let truth = Truth::new(&setting.nominal, effects);
+        let trajectory = recipe.trajectory(&setting);
+        let scene = Scene::new(recipe.seed, &setting, &truth, &trajectory);
+        let exposer = Exposer::new(&truth, SIZE, setting.psf);
+        Self { nominal: setting.nominal, truth, trajectory, scene, exposer }
     }
 
     fn light(&self, time_s: f64) -> [Vec<f32>; 3] {
-        Exposer::new(&self.truth, SIZE, 0.5).expose(&self.scene, &self.trajectory, time_s)
+        self.exposer.expose(&self.scene, &self.trajectory, time_s)
     }
 }
 
@@ -40,7 +47,9 @@ fn pixel_of(truth: &Truth, station: Station, point: DVec3) -> DVec2 {
     let seen = station.world_from_camera.transpose() * (point - station.position);
     let across = seen.x.hypot(seen.y);
     let t = across.atan2(seen.z);
-    let [k1, k2, k3, k4] = truth.lens.k;
+    let Bend::Fisheye([k1, k2, k3, k4]) = truth.lens.bend else {
+        unreachable!("standard worlds have fisheyes")
+    };
     let bent = t * (1.0 + k1 * t.powi(2) + k2 * t.powi(4) + k3 * t.powi(6) + k4 * t.powi(8));
     DVec2::new(seen.x, seen.y) * (truth.lens.focal_px * bent / across) + truth.lens.center_px
 }
@@ -136,7 +145,7 @@ fn the_carpet_has_its_nominal_colour_on_average() {
                 steps_in_camera: [Vec3::X * 1e-3, Vec3::Y * 1e-3],
                 world_from_camera: &down,
             };
-            sum += shot.scene.light(&ray, std::iter::empty());
+            sum += shot.scene.light(&ray, std::iter::empty(), &[]);
             count += 1.0;
         }
     }
@@ -150,7 +159,7 @@ fn written_reference_poses_are_the_true_ones_with_the_noise_of_motion_capture() 
     let folder = tempfile::tempdir().unwrap();
     let recipe = Recipe { frames: 60, size: [16, 16], ..Recipe::new(5) };
     recipe.record(folder.path()).unwrap();
-    let trajectory = recipe.trajectory(&Nominal::new(5, recipe.size));
+    let trajectory = recipe.trajectory(&recipe.setting());
     let text = std::fs::read_to_string(folder.path().join("groundtruth.tum")).unwrap();
     let rows = text.lines().filter(|line| !line.starts_with('#'));
     let (mut metres, mut radians) = (0.0, 0.0);

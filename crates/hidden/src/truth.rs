@@ -4,31 +4,40 @@ use glam::DVec2;
 use reality_sim_core::field::FieldDimensions;
 
 use crate::{
-    effect::{Course, Falloff, Hidden, Light},
-    lens::Fisheye,
+    effect::{Course, Falloff, Hidden, Light, Mistake},
+    lens::Lens,
     nominal::Nominal,
     pattern::Pattern,
+    rig::Rig,
 };
 
 /// Camera, hall and odometry as they are. Effects of one kind add up.
 #[derive(Debug, Clone)]
 pub struct Truth {
     /// The lens for green light.
-    pub lens: Fisheye,
+    pub lens: Lens,
     /// Magnification of red, green, blue.
     pub magnification: [f64; 3],
     /// Displacements in parts of the picture.
     pub dents: Vec<Patch>,
-    /// Pitch in the camera frame, radians.
-    pub mount_pitch_rad: f64,
-    /// Roll about the optical axis, after the pitch, radians.
-    pub mount_roll_rad: f64,
-    /// Height of the camera above the nominal one, metres.
-    pub raised_m: f64,
+    /// Place of the camera relative to the believed one, without the sway of the gait.
+    pub mount: Rig,
+    /// Sway of the gait that the believed poses lack: amplitudes of the pitch, radians, and of the height, metres.
+    pub sway: [f64; 2],
     /// Readout time from the first row to the last, seconds.
     pub readout_s: f64,
     /// Offset of the robot's clock, seconds.
     pub offset_s: f64,
+    /// Jump of the pictures' clock in the middle, seconds.
+    pub jump_s: f64,
+    /// Number of pictures lost in the middle.
+    pub lost: usize,
+    /// Number of pictures stored twice.
+    pub doubled: usize,
+    /// Delay of the odometry, seconds.
+    pub odometry_delay_s: f64,
+    /// Delay of IMU and joints, seconds.
+    pub imu_delay_s: f64,
     /// Exposure time, seconds.
     pub exposure_s: f64,
     /// Standard deviation of the defocus disc, pixels; squares add up.
@@ -49,6 +58,14 @@ pub struct Truth {
     pub black_level: f64,
     /// Ratio of the noise's standard deviation to the nominal one.
     pub noise: f64,
+    /// Unsharp masks: amount, and standard deviation in pixels.
+    pub sharpening: Vec<[f64; 2]>,
+    /// Share of the picture's mean light that is added everywhere.
+    pub glare: f64,
+    /// Factors on the reflectance of carpet and lines.
+    pub reflectance: [f64; 2],
+    /// Mistakes in the files.
+    pub mistakes: Vec<Mistake>,
     /// Illumination of the hall: strength and shape.
     pub lights: Vec<(f64, Light)>,
     /// Extinction per metre.
@@ -97,7 +114,8 @@ impl Truth {
             truth.hide_in_camera(effect, size);
             truth.hide_in_light(effect, size);
             truth.hide_in_hall(effect);
-            truth.hide_in_odometry(effect);
+            truth.hide_in_files(effect);
+            truth.hide_between(effect);
         }
         truth.pattern.resize(&truth.field);
         truth
@@ -108,11 +126,15 @@ impl Truth {
             lens: nominal.lens,
             magnification: [1.0; 3],
             dents: Vec::new(),
-            mount_pitch_rad: 0.0,
-            mount_roll_rad: 0.0,
-            raised_m: 0.0,
+            mount: Rig::default(),
+            sway: [0.0; 2],
             readout_s: 0.0,
             offset_s: 0.0,
+            jump_s: 0.0,
+            lost: 0,
+            doubled: 0,
+            odometry_delay_s: 0.0,
+            imu_delay_s: 0.0,
             exposure_s: 0.0,
             defocus_px: 0.0,
             vignettes: Vec::new(),
@@ -123,6 +145,10 @@ impl Truth {
             gamma_change: 0.0,
             black_level: 0.0,
             noise: 1.0,
+            sharpening: Vec::new(),
+            glare: 0.0,
+            reflectance: [1.0; 2],
+            mistakes: Vec::new(),
             lights: Vec::new(),
             extinction_per_m: 0.0,
             waves: Vec::new(),
@@ -135,19 +161,27 @@ impl Truth {
         }
     }
 
-    /// Applies effects of lens, mount and time.
+    /// Returns the place of the camera relative to the believed one at a phase of the gait.
+    pub fn rig(&self, gait_phase_rad: f64) -> Rig {
+        let mut rig = self.mount;
+        if self.sway != [0.0; 2] {
+            let [pitch_rad, height_m] = self.sway;
+            rig.pitch_rad += pitch_rad * (2.0 * gait_phase_rad + 0.7).sin();
+            rig.raised_m += height_m * (2.0 * gait_phase_rad).cos();
+        }
+        rig
+    }
+
+    /// Applies effects of the lens and of the exposure.
     fn hide_in_camera(&mut self, effect: &Hidden, size_px: DVec2) {
         match *effect {
-            Hidden::RadialDistortion { k } => {
-                self.lens.k.iter_mut().zip(k).for_each(|(nominal, change)| *nominal += change);
+            Hidden::RadialDistortion { k } => self.lens.bend.add(k),
+            Hidden::TangentialDistortion { p1, p2 } => {
+                self.lens.p = [self.lens.p[0] + p1, self.lens.p[1] + p2];
             }
             Hidden::PrincipalPoint { dx_px, dy_px } => self.lens.center_px += DVec2::new(dx_px, dy_px),
             Hidden::FocalLength { scale } => self.lens.focal_px *= 1.0 + scale,
-            Hidden::MountPitch { angle_rad } => self.mount_pitch_rad += angle_rad,
-            Hidden::MountRoll { angle_rad } => self.mount_roll_rad += angle_rad,
-            Hidden::CameraHeight { height_m } => self.raised_m += height_m,
             Hidden::RollingShutter { readout_s } => self.readout_s += readout_s,
-            Hidden::TimeOffset { offset_s } => self.offset_s += offset_s,
             Hidden::MotionBlur { exposure_s } => self.exposure_s += exposure_s,
             Hidden::Defocus { sigma_px } => self.defocus_px = self.defocus_px.hypot(sigma_px),
             Hidden::ChromaticAberration { red_scale, blue_scale } => {
@@ -175,6 +209,8 @@ impl Truth {
             }
             Hidden::ExposureDrift { amplitude_ev, course } => self.drifts.push((amplitude_ev, course)),
             Hidden::SensorNoise { factor } => self.noise *= 1.0 + factor,
+            Hidden::Sharpening { amount, radius_px } => self.sharpening.push([amount, radius_px]),
+            Hidden::VeilingGlare { share } => self.glare += share,
             Hidden::FlickerBands { amplitude, bands, roll } => self.flicker.push([amplitude, bands, roll]),
             Hidden::LensDirt { opacity, center, sigma } => self.dirt.push(Patch {
                 center_px: center * size_px,
@@ -195,6 +231,9 @@ impl Truth {
             }
             Hidden::MissingLine { positive_x } => self.pattern.goal_areas[usize::from(positive_x)] = false,
             Hidden::ShiftedLine { shift_m } => self.pattern.halfway_shift_m += shift_m as f32,
+            Hidden::WideLine { width_m } => self.pattern.halfway_extra_m += width_m as f32,
+            Hidden::CarpetReflectance { change } => self.reflectance[0] *= 1.0 + change,
+            Hidden::LineReflectance { change } => self.reflectance[1] *= 1.0 + change,
             Hidden::MovingPeople { count } => self.people = (self.people + count).min(8),
             Hidden::Fog { extinction_per_m } => self.extinction_per_m += extinction_per_m,
             Hidden::WavyGround { amplitude_m, wavelength_m, angles_rad: [direction_rad, phase_rad] } => {
@@ -205,11 +244,38 @@ impl Truth {
         }
     }
 
-    fn hide_in_odometry(&mut self, effect: &Hidden) {
+    /// Applies effects of odometry and clocks, and mistakes.
+    fn hide_in_files(&mut self, effect: &Hidden) {
         match *effect {
             Hidden::OdometryScale { scale } => self.odometry_scale *= 1.0 + scale,
             Hidden::OdometryYawDrift { rate_rad_per_s } => self.odometry_drift_rad_per_s += rate_rad_per_s,
             Hidden::OdometryLateralSlip { slip_m_per_m } => self.odometry_slip += slip_m_per_m,
+            Hidden::TimeOffset { offset_s } => self.offset_s += offset_s,
+            Hidden::ClockJump { jump_s } => self.jump_s += jump_s,
+            Hidden::OdometryDelay { delay_s } => self.odometry_delay_s += delay_s,
+            Hidden::ImuDelay { delay_s } => self.imu_delay_s += delay_s,
+            Hidden::LostFrames { count } => self.lost += count as usize,
+            Hidden::DoubledFrames { count } => self.doubled += count as usize,
+            Hidden::Mistake(mistake) => self.mistakes.push(mistake),
+            _ => {}
+        }
+    }
+
+    /// Applies effects between the believed camera and the true one.
+    fn hide_between(&mut self, effect: &Hidden) {
+        let mount = &mut self.mount;
+        match *effect {
+            Hidden::MountPitch { angle_rad } => mount.pitch_rad += angle_rad,
+            Hidden::MountRoll { angle_rad } => mount.roll_rad += angle_rad,
+            Hidden::CameraHeight { height_m } => mount.raised_m += height_m,
+            Hidden::CameraYaw { angle_rad } => mount.yaw_rad += angle_rad,
+            Hidden::CameraOffset { forward_m, left_m, up_m } => {
+                mount.offset_m += DVec2::new(forward_m, left_m);
+                mount.raised_m += up_m;
+            }
+            Hidden::GaitSway { pitch_rad, height_m } => {
+                self.sway = [self.sway[0] + pitch_rad, self.sway[1] + height_m];
+            }
             _ => {}
         }
     }
