@@ -1,16 +1,13 @@
 //! Sizes of hidden effects in detection limits of the recording that they are hidden in.
 
-use std::{
-    collections::{BTreeMap, btree_map::Entry},
-    error::Error,
-};
+use std::error::Error;
 
 use reality_sim::sensor::{Role, effect};
 use reality_sim_hidden::{Hidden, Random};
 
 use crate::{
-    plan::{Part, Task},
-    run,
+    plan::{Chosen, Task},
+    run::Limits,
     truth::{hidden_size, main_size, parameters},
 };
 
@@ -19,38 +16,25 @@ const LARGEST: f64 = 0.8;
 /// Largest plausible factor of the noise's standard deviation.
 const LARGEST_NOISE_FACTOR: f64 = 4.0;
 
-/// Detection limits of a recording by effect: name of the parameter and its size.
-type OfRecording = BTreeMap<String, (String, f64)>;
-
-/// Detection limits by seed and picture size, each determined in that recording with nothing hidden.
-#[derive(Default)]
-pub struct Limits(BTreeMap<(u64, [u32; 2]), OfRecording>);
-
-impl Limits {
-    /// Returns an effect's size as a multiple of [`Hidden::of`]'s, and in the recording's detection limits. None if the
-    /// effect cannot be seen in that recording.
-    pub fn size(
-        &mut self,
-        task: &Task,
-        id: &str,
-        in_limits: f64,
-    ) -> Result<Option<(f64, f64)>, Box<dyn Error>> {
-        let limits = match self.0.entry((task.seed, task.picture)) {
-            Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(unknown) => {
-                let nothing = Task { part: Part::Nulls, effects: Vec::new(), without: None, ..task.clone() };
-                unknown.insert(run::run(&nothing, &[])?.limits)
-            }
-        };
-        let Some((parameter, limit)) = limits.get(id) else { return Ok(None) };
-        let unit = Hidden::of(id, 1.0, &mut Random::new(task.seed.wrapping_mul(77)))?;
-        let limit = hidden_size(&unit, *limit);
-        let known = parameters(&unit).into_iter().find(|(name, _)| name == parameter);
-        let per_multiple = known.map_or(main_size(&unit), |(_, value)| value).abs();
-        let largest = LARGEST * reach(id, &unit) / main_size(&unit).abs();
-        let multiple = (in_limits * limit / per_multiple).min(largest);
-        Ok(Some((multiple, multiple * per_multiple / limit)))
-    }
+/// Returns an effect at a size in detection limits of the task's recording. None if the effect cannot be seen there, or if
+/// the size is not plausible.
+pub fn chosen(
+    task: &Task,
+    id: &str,
+    in_limits: f64,
+    limits: &Limits,
+) -> Result<Option<Chosen>, Box<dyn Error>> {
+    let Some((parameter, limit)) = limits.get(id) else { return Ok(None) };
+    let unit = Hidden::of(id, 1.0, &mut Random::new(task.seed.wrapping_mul(77)))?;
+    let limit = hidden_size(&unit, *limit, task.recipe().facts().noise_shot);
+    let known = parameters(&unit).into_iter().find(|(name, _)| name == parameter);
+    let per_multiple = known.map_or(main_size(&unit), |(_, value)| value).abs();
+    let largest = LARGEST * reach(id, &unit) / main_size(&unit).abs();
+    let multiple = (in_limits * limit / per_multiple).min(largest);
+    let reached = multiple * per_multiple / limit;
+    // What is asked for at six limits may be at three, if it cannot plausibly be larger.
+    let enough = reached > 0.99 * in_limits.min(crate::plan::CLEAR);
+    Ok(enough.then(|| Chosen { id: id.to_owned(), multiple, in_limits: reached }))
 }
 
 /// Returns how far an effect's first size may plausibly be from its neutral value, on the side on which it is hidden.

@@ -1,32 +1,38 @@
-//! Hidden-effect study of `docs/gap.md`. A ray caster that shares no code with the fitted model makes recordings, with an
-//! effect, or none, hidden in each by seed. The workflow's verdict is compared with the truth only afterwards.
+//! Hidden-effect study of `docs/gap.md`. A ray caster that shares no code with the fitted model draws a world for each walk,
+//! and hides effects there, or none. The workflow's verdict is compared with the truth only afterwards.
 //!
 //! `cargo run --release --example gap_study -- --out FOLDER` appends its runs to `FOLDER/runs.jsonl`, skipping those that
 //! are already there, and writes `FOLDER/study.md`. `--page docs/gap.md` also puts the tables between the page's marks.
-//! `--draw N` makes other recordings.
-//! `--part nulls|singles|pairs|removed|foreign|full`, `--effect ID` and `--runs N` select a part of the study.
+//! `--purpose development|validation|final` chooses worlds that the others do not have; the final ones need code that has
+//! not been changed since the last commit. Runs of different states of the code are not mixed.
+//! `--part nulls|singles|removed|pairs|triples|foreign|unmeasured`, `--effect ID`, `--walks N` and `--budget-min N` select a
+//! part of the study: worlds come in turn over the effects, so that any part of it is a smaller study.
 
+mod code;
 mod limits;
+mod memory;
 mod page;
 mod plan;
 mod run;
-mod sight;
+mod studio;
 mod summary;
 mod truth;
+mod workflow;
 
 use std::{
-    collections::BTreeSet,
+    collections::BTreeMap,
     error::Error,
-    fs::{self, OpenOptions},
+    fs::{self, File, OpenOptions},
     io::Write,
-    path::PathBuf,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
 };
 
 use clap::Parser;
 
-use limits::Limits;
-use plan::Part;
+use plan::{Chosen, Part, Purpose, Task};
 use run::Outcome;
+use studio::Studio;
 
 /// Makes recordings with hidden effects and lets the workflow find them.
 #[derive(Debug, Parser)]
@@ -34,18 +40,21 @@ struct Args {
     /// Folder for runs.jsonl and study.md
     #[arg(long)]
     out: PathBuf,
-    /// Which draw of recordings and effects: the rules were made on draws 0 to 2
-    #[arg(long, default_value_t = 3)]
-    draw: u64,
+    /// What the worlds are for: rules are made on the first, checked on the second, reported on the last
+    #[arg(long, value_enum, default_value = "development")]
+    purpose: Purpose,
     /// Only these parts
     #[arg(long, value_enum)]
     part: Vec<Part>,
     /// Only runs in which one of these effects is hidden
     #[arg(long)]
     effect: Vec<String>,
-    /// At most so many runs of each part
+    /// Number of worlds of each effect
+    #[arg(long, default_value_t = plan::WALKS)]
+    walks: u64,
+    /// Stops after these minutes, at the end of a run
     #[arg(long)]
-    runs: Option<usize>,
+    budget_min: Option<f64>,
     /// A page that is to have the tables between its marks
     #[arg(long)]
     page: Option<PathBuf>,
@@ -58,30 +67,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let args = Args::parse();
     fs::create_dir_all(&args.out)?;
     let file = args.out.join("runs.jsonl");
-    let mut outcomes = read(&file)?;
-    if !args.summary {
-        let parts = if args.part.is_empty() { Part::ALL.to_vec() } else { args.part.clone() };
-        let done: BTreeSet<String> = outcomes.iter().map(|outcome| outcome.task.key()).collect();
-        let mut log = OpenOptions::new().create(true).append(true).open(&file)?;
-        let mut limits = Limits::default();
-        for part in parts {
-            let mut tasks = plan::tasks(part, args.draw);
-            if !args.effect.is_empty() {
-                tasks.retain(|task| task.effects.iter().any(|id| args.effect.contains(id)));
-            }
-            tasks.truncate(args.runs.unwrap_or(usize::MAX));
-            for task in tasks.into_iter().filter(|task| !done.contains(&task.key())) {
-                let Some(chosen) = task.chosen(&mut limits)? else {
-                    eprintln!("{}: cannot be seen in this recording", task.key());
-                    continue;
-                };
-                let outcome = run::run(&task, &chosen)?;
-                eprintln!("{}", outcome.line());
-                writeln!(log, "{}", serde_json::to_string(&outcome)?)?;
-                outcomes.push(outcome);
-            }
-        }
+    let code = code::fingerprint()?;
+    if args.purpose == Purpose::Final && !args.summary && code::is_changed(&code) {
+        return Err("the code has been changed: commit it before the final draw".into());
     }
+    let mut study = Study::resume(&file, code)?;
+    if !args.summary {
+        study.run(&args)?;
+    }
+    let outcomes: Vec<&Outcome> = study.outcomes.values().collect();
     let tables = summary::text(&outcomes);
     fs::write(args.out.join("study.md"), &tables)?;
     if let Some(page) = &args.page {
@@ -90,9 +84,88 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn read(file: &PathBuf) -> Result<Vec<Outcome>, Box<dyn Error>> {
-    if !file.exists() {
-        return Ok(Vec::new());
+/// Runs done, by the key of their task, and the file in which they are kept.
+struct Study {
+    outcomes: BTreeMap<String, Outcome>,
+    code: String,
+    log: File,
+    studio: Studio,
+}
+
+impl Study {
+    /// Reads the runs that are there. Fails if they are of another state of the code.
+    fn resume(file: &Path, code: String) -> Result<Self, Box<dyn Error>> {
+        let log = OpenOptions::new().create(true).append(true).open(file)?;
+        let text = fs::read_to_string(file)?;
+        let outcomes = text.lines().map(serde_json::from_str).collect::<Result<Vec<Outcome>, _>>()?;
+        if let Some(other) = outcomes.iter().find(|outcome| outcome.code != code) {
+            return Err(format!(
+                "{} has runs of the code {}, and this is {code}: use another folder, or go back to that code",
+                file.display(),
+                other.code
+            )
+            .into());
+        }
+        let outcomes = outcomes.into_iter().map(|outcome| (outcome.task.key(), outcome)).collect();
+        Ok(Self { outcomes, code, log, studio: Studio::default() })
     }
-    Ok(fs::read_to_string(file)?.lines().map(serde_json::from_str).collect::<Result<_, _>>()?)
+
+    fn run(&mut self, args: &Args) -> Result<(), Box<dyn Error>> {
+        let start = Instant::now();
+        let budget = args.budget_min.map(|minutes| Duration::from_secs_f64(60.0 * minutes));
+        let parts = if args.part.is_empty() { Part::ALL.to_vec() } else { args.part.clone() };
+        let mut tasks = plan::tasks(args.purpose, &parts, args.walks);
+        if !args.effect.is_empty() {
+            tasks.retain(|task| task.effects.iter().any(|id| args.effect.contains(id)));
+        }
+        for (done, task) in tasks.iter().enumerate() {
+            if budget.is_some_and(|budget| start.elapsed() > budget) {
+                eprintln!("{done} of {} runs are done: the time is over", tasks.len());
+                break;
+            }
+            if self.outcomes.contains_key(&task.key()) {
+                continue;
+            }
+            match self.chosen(task)? {
+                Some(chosen) => self.add(task, &chosen)?,
+                None => eprintln!("{}: cannot be seen in this recording", task.key()),
+            }
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, task: &Task, hidden: &[Chosen]) -> Result<(), Box<dyn Error>> {
+        let outcome = run::run(&mut self.studio, task, hidden, &self.code)?;
+        eprintln!("{}", outcome.line());
+        writeln!(self.log, "{}", serde_json::to_string(&outcome)?)?;
+        self.outcomes.insert(task.key(), outcome);
+        Ok(())
+    }
+
+    /// Returns the effects to hide with their sizes. None if one of them cannot be seen in the recording, or if the wanted
+    /// size is not plausible.
+    fn chosen(&mut self, task: &Task) -> Result<Option<Vec<Chosen>>, Box<dyn Error>> {
+        let mut all = Vec::with_capacity(task.effects.len());
+        if task.part == Part::Foreign {
+            for id in &task.effects {
+                let multiple = plan::foreign_multiple(id);
+                all.push(Chosen { id: id.clone(), multiple, in_limits: 0.0 });
+            }
+            let effects = studio::effects(task, &all)?;
+            return Ok(self.studio.is_in_sight(task, &effects)?.then_some(all));
+        }
+        if task.effects.is_empty() {
+            return Ok(Some(all));
+        }
+        let nothing = task.with_nothing_hidden();
+        if !self.outcomes.contains_key(&nothing.key()) {
+            self.add(&nothing, &[])?;
+        }
+        for id in &task.effects {
+            let limits = &self.outcomes[&nothing.key()].limits;
+            let Some(chosen) = limits::chosen(task, id, task.size, limits)? else { return Ok(None) };
+            all.push(chosen);
+        }
+        Ok(Some(all))
+    }
 }

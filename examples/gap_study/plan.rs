@@ -1,12 +1,17 @@
-//! Plan of the study: the recordings to make and the effects hidden in them.
-
-use std::error::Error;
+//! Plan of the study: the worlds, the effects hidden in them, and what is left out of the library or of the files.
 
 use clap::ValueEnum;
-use reality_sim_hidden::{FOREIGN, LIBRARY, Random};
+use reality_sim_hidden::{FOREIGN, Given, LIBRARY, Random, Recipe};
 use serde::{Deserialize, Serialize};
 
-use crate::{limits::Limits, sight::is_in_sight};
+/// Purposes of recordings. No two share a world: rules are made on the first, checked on the second, and reported on the
+/// last, which is drawn once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Purpose {
+    Development,
+    Validation,
+    Final,
+}
 
 /// Parts of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
@@ -16,44 +21,77 @@ pub enum Part {
     Nulls,
     /// Every effect of the library, at several sizes.
     Singles,
-    /// Two effects.
-    Pairs,
     /// Every effect, taken out of the library.
     Removed,
+    /// Two effects.
+    Pairs,
+    /// Three effects.
+    Triples,
     /// Effects that no library has.
     Foreign,
-    /// Some of all that at full size.
-    Full,
+    /// Effects of light and sensor in recordings whose files tell nothing of brightness, noise and sharpness but the gamma.
+    Unmeasured,
 }
 
 impl Part {
-    pub const ALL: [Self; 6] =
-        [Self::Nulls, Self::Singles, Self::Pairs, Self::Removed, Self::Foreign, Self::Full];
+    pub const ALL: [Self; 7] = [
+        Self::Nulls,
+        Self::Singles,
+        Self::Removed,
+        Self::Pairs,
+        Self::Triples,
+        Self::Foreign,
+        Self::Unmeasured,
+    ];
+}
+
+/// What the files tell of brightness, noise and sharpness.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Told {
+    /// What the world's seed draws.
+    Drawn,
+    /// Everything.
+    All,
+    /// Nothing but the gamma.
+    Gamma,
 }
 
 /// Sizes of single effects, in detection limits.
 pub const SIZES: [f64; 3] = [3.0, 6.0, 1.0];
 /// Size from which on an effect has to be named, in detection limits.
 pub const CLEAR: f64 = 3.0;
-const SEEDS_OF_A_DRAW: u64 = 1_000_000;
-const NULLS: u64 = 220;
-const SEEDS: u64 = 3;
-const PAIRS: u64 = 48;
-const FOREIGN_SEEDS: u64 = 6;
-/// Size of the effects of a pair, and of those taken out of the library, in detection limits.
+/// Size of effects beside others, and of those taken out of the library, in detection limits.
 const LARGE: f64 = 6.0;
+/// Size of effects without nominal values, in detection limits of the same recording with them.
+const UNMEASURED: f64 = 2.0;
+/// Effects that have to be seen without nominal values.
+const OF_LIGHT: [&str; 5] = ["vignetting", "exposure_drift", "tone_curve", "motion_blur", "sensor_noise"];
+
+/// Number of worlds of each effect.
+pub const WALKS: u64 = 30;
+/// Number of worlds with nothing hidden, besides those of the effects.
+const NULLS: u64 = 300;
+const PAIRS: u64 = 60;
+const TRIPLES: u64 = 40;
+
+const SEEDS_OF_A_PURPOSE: u64 = 100_000_000;
+const SEEDS_OF_A_PART: u64 = 1_000_000;
+const SEEDS_OF_AN_EFFECT: u64 = 10_000;
 
 /// Recording with its hidden effects and the options of its analysis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Task {
     pub part: Part,
+    /// Seed of the world, which is a walk of its own.
     pub seed: u64,
     /// Ids of the hidden effects.
     pub effects: Vec<String>,
-    /// Size of each hidden effect, in detection limits.
+    /// Size of each hidden effect, in detection limits; 0 where there are none.
     pub size: f64,
     /// Effect that is left out of the library.
     pub without: Option<String>,
+    pub told: Told,
     pub frames: usize,
     pub picture: [u32; 2],
 }
@@ -70,50 +108,50 @@ pub struct Chosen {
 
 impl Task {
     pub fn key(&self) -> String {
-        format!(
-            "{:?} {} {:?} {} {:?} {:?}",
-            self.part, self.seed, self.effects, self.size, self.without, self.picture
-        )
+        let Self { part, seed, effects, size, without, told, picture, frames } = self;
+        format!("{part:?} {seed} {effects:?} {size} {without:?} {told:?} {picture:?} {frames}")
     }
 
-    /// Returns the effects to hide with their sizes. None if one of them cannot be seen in the recording, or if the wanted
-    /// size is not plausible.
-    pub fn chosen(&self, limits: &mut Limits) -> Result<Option<Vec<Chosen>>, Box<dyn Error>> {
-        let mut all = Vec::with_capacity(self.effects.len());
-        for id in &self.effects {
-            let size = if self.part == Part::Foreign {
-                Some((foreign_multiple(id), 0.0))
-            } else {
-                let enough = 0.99 * self.size.min(CLEAR);
-                limits.size(self, id, self.size)?.filter(|(_, in_limits)| *in_limits > enough)
-            };
-            let Some((multiple, in_limits)) = size else { return Ok(None) };
-            let chosen = Chosen { id: id.clone(), multiple, in_limits };
-            if self.part == Part::Foreign && !is_in_sight(self, &chosen)? {
-                return Ok(None);
-            }
-            all.push(chosen);
+    /// Returns the same recording with nothing hidden, on which detection limits are measured: with nominal values where
+    /// the task's files lack them.
+    pub fn with_nothing_hidden(&self) -> Self {
+        let told = if self.told == Told::Gamma { Told::All } else { self.told };
+        Self { part: Part::Nulls, effects: Vec::new(), size: 0.0, without: None, told, ..self.clone() }
+    }
+
+    pub fn recipe(&self) -> Recipe {
+        let given = match self.told {
+            Told::Drawn => None,
+            Told::All => Some(Given::ALL),
+            Told::Gamma => Some(Given::GAMMA_ALONE),
+        };
+        Recipe { frames: self.frames, size: self.picture, given, ..Recipe::drawn(self.seed) }
+    }
+
+    fn null(seed: u64) -> Self {
+        Self {
+            part: Part::Nulls,
+            seed,
+            effects: Vec::new(),
+            size: 0.0,
+            without: None,
+            told: Told::Drawn,
+            frames: 60,
+            picture: [640, 480],
         }
-        Ok(Some(all))
     }
 
-    fn small(part: Part, seed: u64) -> Self {
-        Self { part, seed, effects: Vec::new(), size: 0.0, without: None, frames: 40, picture: [320, 240] }
-    }
-
-    fn single(part: Part, seed: u64, id: &str, size: f64) -> Self {
-        Self { effects: vec![id.to_owned()], size, ..Self::small(part, seed) }
-    }
-
-    fn full(self) -> Self {
-        Self { part: Part::Full, frames: 60, picture: [640, 480], ..self }
+    fn hiding(part: Part, seed: u64, effects: &[&str], size: f64) -> Self {
+        let effects = effects.iter().map(|id| (*id).to_owned()).collect();
+        Self { part, effects, size, ..Self::null(seed) }
     }
 }
 
 /// Returns the size of an effect outside the library, as a multiple of [`reality_sim_hidden::Hidden::of`]'s: dirt that takes
-/// 40 % of the light, bands of 10 %, a line displaced by 7.5 cm, six people, fog of 0.08 per metre (a fifth of the contrast
-/// at three metres), waves of ±15 mm, a dent of half a percent of the picture's width. A missing line has no size.
-fn foreign_multiple(id: &str) -> f64 {
+/// 40 % of the light, bands of 10 %, a line displaced by 7.5 cm or wider by 1.5 cm, six people, fog of 0.08 per metre (a fifth
+/// of the contrast at three metres), waves of ±15 mm, a dent of half a percent of the picture's width, five pictures lost or
+/// stored twice. A missing line has no size.
+pub fn foreign_multiple(id: &str) -> f64 {
     match id {
         "lens_dirt" => 4.0,
         "moving_people" => 6.0,
@@ -122,53 +160,69 @@ fn foreign_multiple(id: &str) -> f64 {
     }
 }
 
-/// Returns all runs of a part, on recordings that no other draw has.
-pub fn tasks(part: Part, draw: u64) -> Vec<Task> {
-    let of_draw = |task: Task| Task { seed: task.seed + draw * SEEDS_OF_A_DRAW, ..task };
-    planned(part, draw).into_iter().map(of_draw).collect()
-}
-
-fn planned(part: Part, draw: u64) -> Vec<Task> {
-    match part {
-        Part::Nulls => (0..NULLS).map(|seed| Task::small(part, 10_000 + seed)).collect(),
-        Part::Singles => singles(part, &SIZES),
-        Part::Removed => {
-            let without = |task: Task| Task { without: task.effects.first().cloned(), ..task };
-            singles(part, &[LARGE]).into_iter().map(without).collect()
-        }
-        Part::Pairs => pairs(draw),
-        Part::Foreign => {
-            let of_seed = |seed| FOREIGN.iter().map(move |id| Task::single(part, 40_000 + seed, id, 0.0));
-            (0..FOREIGN_SEEDS).flat_map(of_seed).collect()
-        }
-        Part::Full => {
-            let nulls = (0..3).map(|seed| Task::small(part, 50_000 + seed));
-            let singles = (0..).zip(LIBRARY).map(|(index, id)| Task::single(part, 50_100 + index, id, LARGE));
-            nulls.chain(singles).map(Task::full).collect()
-        }
-    }
-}
-
-/// Returns runs with single effects, all effects at one size before the next size, so that the first runs alone are a study
-/// too.
-fn singles(part: Part, sizes: &[f64]) -> Vec<Task> {
+/// Returns the runs of these parts, those of a world one after the other, and the worlds in turn over the effects: what is
+/// done when the time is over is a smaller study.
+pub fn tasks(purpose: Purpose, parts: &[Part], walks: u64) -> Vec<Task> {
     let mut tasks = Vec::new();
-    for seed in 0..SEEDS {
-        for &size in sizes {
-            tasks.extend(LIBRARY.iter().map(|id| Task::single(part, 20_000 + seed, id, size)));
+    for walk in 0..walks {
+        for part in Part::ALL.into_iter().filter(|part| parts.contains(part)) {
+            let first = (purpose as u64 + 1) * SEEDS_OF_A_PURPOSE;
+            let share = |count: u64| (count * walk / walks)..(count * (walk + 1) / walks);
+            match part {
+                Part::Nulls => tasks.extend(share(NULLS).map(|index| Task::null(first + index))),
+                Part::Pairs => tasks.extend(share(PAIRS).map(|index| together(part, first, index, 2))),
+                Part::Triples => tasks.extend(share(TRIPLES).map(|index| together(part, first, index, 3))),
+                // These are the worlds of single effects.
+                Part::Removed if parts.contains(&Part::Singles) => {}
+                _ => tasks.extend(of_effects(part, first, walk, parts)),
+            }
         }
     }
     tasks
 }
 
-fn pairs(draw: u64) -> Vec<Task> {
-    let mut random = Random::new(7 + draw);
-    let mut pair = |seed| {
-        let count = LIBRARY.len() as u64;
-        let first = random.below(count);
-        let second = (first + 1 + random.below(count - 1)) % count;
-        let effects = [first, second].map(|index| LIBRARY[index as usize].to_owned()).to_vec();
-        Task { effects, size: LARGE, ..Task::small(Part::Pairs, 30_000 + seed) }
+/// Returns the runs of a walk of every effect.
+fn of_effects(part: Part, first: u64, walk: u64, parts: &[Part]) -> Vec<Task> {
+    let ids: &[&str] = match part {
+        Part::Foreign => &FOREIGN,
+        Part::Unmeasured => &OF_LIGHT,
+        _ => &LIBRARY,
     };
-    (0..PAIRS).map(&mut pair).collect()
+    let number = match part {
+        Part::Foreign => 4,
+        Part::Unmeasured => 5,
+        _ => 1,
+    };
+    let of_effect = |(index, id): (u64, &&str)| {
+        let seed = first + number * SEEDS_OF_A_PART + index * SEEDS_OF_AN_EFFECT + walk;
+        let hiding = |part, size| Task::hiding(part, seed, &[*id], size);
+        match part {
+            Part::Foreign => vec![hiding(part, 0.0)],
+            Part::Unmeasured => vec![Task { told: Told::Gamma, ..hiding(part, UNMEASURED) }],
+            _ => {
+                let sizes = SIZES.into_iter().filter(|_| parts.contains(&Part::Singles));
+                let mut tasks: Vec<Task> = sizes.map(|size| hiding(Part::Singles, size)).collect();
+                if parts.contains(&Part::Removed) {
+                    let without = Some((*id).to_owned());
+                    tasks.push(Task { without, ..hiding(Part::Removed, LARGE) });
+                }
+                tasks
+            }
+        }
+    };
+    (0..).zip(ids).flat_map(of_effect).collect()
+}
+
+/// Returns a run with several effects of the library.
+fn together(part: Part, first: u64, index: u64, count: usize) -> Task {
+    let seed = first + (count as u64) * SEEDS_OF_A_PART + index;
+    let mut random = Random::stream(seed, "effects together", 0);
+    let mut effects: Vec<&str> = Vec::new();
+    while effects.len() < count {
+        let id = LIBRARY[random.below(LIBRARY.len() as u64) as usize];
+        if !effects.contains(&id) {
+            effects.push(id);
+        }
+    }
+    Task::hiding(part, seed, &effects, LARGE)
 }

@@ -1,31 +1,44 @@
 //! Run of the study: a recording, the workflow, and the outcome.
 
-use std::{collections::BTreeMap, error::Error, path::Path, time::Instant};
+use std::{collections::BTreeMap, error::Error, time::Instant};
 
 use reality_sim::{
     Sequence,
     gap::{
-        Options, Recording, RecordingError, ReferenceSource, analyse, gap_of,
+        Options,
         report::{Finding, Report, Verdict},
     },
     sensor::{Model, effect},
 };
-use reality_sim_hidden::{Hidden, Random, Recipe};
+use reality_sim_hidden::Hidden;
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    memory,
     plan::{Chosen, Task},
+    studio::{Studio, effects},
     truth::{has_the_librarys_form, main_size, parameters},
+    workflow,
 };
+
+/// Detection limits by effect: name of the parameter and its size.
+pub type Limits = BTreeMap<String, (String, f64)>;
 
 /// Outcome of a run.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Outcome {
+    /// Fingerprint of the code that was run.
+    pub code: String,
+    /// Name of the workflow.
+    pub workflow: String,
     pub task: Task,
+    pub world: World,
     pub hidden: Vec<Chosen>,
     /// Main sizes of the hidden effects.
     pub hidden_sizes: Vec<f64>,
-    pub verdict: Verdict,
+    /// None if the workflow refused the recording: the message is `refused`.
+    pub verdict: Option<Verdict>,
+    pub refused: Option<String>,
     /// Named effects, each with those that it is confusable with.
     pub named: Vec<(String, Vec<String>)>,
     pub unexplained: Vec<Finding>,
@@ -36,8 +49,19 @@ pub struct Outcome {
     pub gap: [f64; 2],
     pub oracle: Option<f64>,
     pub seconds: f64,
-    /// Detection limits by effect: name of the parameter and its size.
-    pub limits: BTreeMap<String, (String, f64)>,
+    /// Memory that the workflow took, where the system tells it.
+    pub peak_mb: Option<f64>,
+    pub limits: Limits,
+}
+
+/// World of a run.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct World {
+    pub lens: String,
+    pub across_deg: f64,
+    pub height_m: f64,
+    pub rate_hz: f64,
+    pub field_m: [f64; 2],
 }
 
 /// Estimate of a parameter beside its true value.
@@ -56,73 +80,87 @@ impl Outcome {
             .hidden
             .iter()
             .zip(&self.hidden_sizes)
-            .map(|(chosen, size)| {
-                let Chosen { id, multiple, in_limits } = chosen;
-                format!("{id} {size:.3e} = {multiple:.3} × = {in_limits:.1} limits")
-            })
+            .map(|(Chosen { id, in_limits, .. }, size)| format!("{id} {size:.3e} = {in_limits:.1} limits"))
             .collect();
+        let named: Vec<&str> = self.named.iter().map(|(id, _)| id.as_str()).collect();
         format!(
-            "{:?} {} {:?} -> {:?} {:?} {:?} {:.1}s",
-            self.task.part, self.task.seed, hidden, self.verdict, self.named, self.unexplained, self.seconds
+            "{:?} {} {hidden:?} -> {:?} {named:?} {:.1} s",
+            self.task.part, self.task.seed, self.verdict, self.seconds
         )
+    }
+
+    /// Whether the gap on frames that no fit has seen grew by what was named.
+    pub fn grew(&self) -> bool {
+        !self.named.is_empty() && self.gap[1] > self.gap[0]
     }
 }
 
-/// Records a task's sequence with these effects hidden; the seed draws their signs and shapes.
-pub fn record(
+/// Runs a task with these effects hidden.
+pub fn run(
+    studio: &mut Studio,
     task: &Task,
     hidden: &[Chosen],
-    folder: &Path,
-) -> Result<(Sequence, Vec<Hidden>), Box<dyn Error>> {
-    let mut random = Random::new(task.seed.wrapping_mul(77));
-    let drawn = hidden.iter().map(|chosen| Hidden::of(&chosen.id, chosen.multiple, &mut random));
-    let effects: Vec<Hidden> = drawn.collect::<Result<_, _>>()?;
-    let mut recipe = Recipe::new(task.seed);
-    recipe.frames = task.frames;
-    recipe.size = task.picture;
-    recipe.effects.clone_from(&effects);
-    Ok((recipe.record(folder)?, effects))
-}
-
-/// Runs a task with these effects hidden.
-pub fn run(task: &Task, hidden: &[Chosen]) -> Result<Outcome, Box<dyn Error>> {
+    code: &str,
+) -> Result<Outcome, Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
-    let (sequence, effects) = record(task, hidden, folder.path())?;
-    let start = Instant::now();
+    let effects = effects(task, hidden)?;
+    let sequence = studio.record(task, &effects, folder.path())?;
     let options = Options { seed: task.seed, without: task.without.iter().cloned().collect() };
-    let report = examine(&sequence, &Model::default(), &options)?;
+    memory::reset();
+    let before_mb = memory::now_and_peak_mb();
+    let start = Instant::now();
+    let report = workflow::examine(&sequence, &options);
     let seconds = start.elapsed().as_secs_f64();
-    Ok(Outcome {
+    let peak_mb = before_mb.zip(memory::now_and_peak_mb()).map(|([now, _], [_, peak])| peak - now);
+    let facts = task.recipe().facts();
+    let mut outcome = Outcome {
+        code: code.to_owned(),
+        workflow: workflow::NAME.to_owned(),
         task: task.clone(),
+        world: World {
+            lens: facts.lens.to_owned(),
+            across_deg: facts.across_rad.to_degrees(),
+            height_m: facts.height_m,
+            rate_hz: facts.rate_hz,
+            field_m: facts.field_m,
+        },
         hidden: hidden.to_vec(),
         hidden_sizes: effects.iter().map(main_size).collect(),
-        verdict: report.verdict,
-        named: report
-            .effects
-            .iter()
-            .map(|effect| (effect.id.clone(), effect.confusable_with.clone()))
-            .collect(),
-        unexplained: report.unexplained.clone(),
-        estimates: effects.iter().flat_map(|hidden| compared(hidden, &report)).collect(),
-        gap: [report.gap.before, report.gap.after],
-        oracle: oracle(&sequence, &effects, &options)?,
+        verdict: None,
+        refused: None,
+        named: Vec::new(),
+        unexplained: Vec::new(),
+        estimates: Vec::new(),
+        gap: [0.0; 2],
+        oracle: None,
         seconds,
-        limits: report
+        peak_mb,
+        limits: Limits::new(),
+    };
+    match report {
+        Ok(report) => {
+            outcome.take(&report, &effects);
+            outcome.oracle = oracle(&sequence, &effects, &options)?;
+        }
+        Err(error) => outcome.refused = Some(error.to_string()),
+    }
+    Ok(outcome)
+}
+
+impl Outcome {
+    fn take(&mut self, report: &Report, effects: &[Hidden]) {
+        self.verdict = Some(report.verdict);
+        let named = report.effects.iter().map(|effect| (effect.id.clone(), effect.confusable_with.clone()));
+        self.named = named.collect();
+        self.unexplained.clone_from(&report.unexplained);
+        self.estimates = effects.iter().flat_map(|hidden| compared(hidden, report)).collect();
+        self.gap = [report.gap.before, report.gap.after];
+        let limits = report
             .not_found
             .iter()
-            .map(|effect| (effect.id.clone(), (effect.parameter.clone(), effect.detection_limit.value)))
-            .collect(),
-    })
-}
-
-fn examine(sequence: &Sequence, model: &Model, options: &Options) -> Result<Report, Box<dyn Error>> {
-    Ok(analyse(&open(sequence)?, model, options, &|_| ())?.report)
-}
-
-/// Opens a recording with all of its frames and their true poses.
-fn open(sequence: &Sequence) -> Result<Recording<'_>, RecordingError> {
-    let poses: Vec<_> = sequence.reference_poses().collect();
-    Recording::new(sequence, &poses, ReferenceSource::Measured, None)
+            .map(|effect| (effect.id.clone(), (effect.parameter.clone(), effect.detection_limit.value)));
+        self.limits = limits.collect();
+    }
 }
 
 fn compared(hidden: &Hidden, report: &Report) -> Vec<Compared> {
@@ -158,5 +196,5 @@ fn oracle(sequence: &Sequence, effects: &[Hidden], options: &Options) -> Result<
     if effects.is_empty() {
         return Ok(None);
     }
-    Ok(Some(gap_of(&open(sequence)?, &model, options)?.before))
+    workflow::gap_left(sequence, &model, options).map(Some)
 }

@@ -2,9 +2,6 @@
 
 use reality_sim_hidden::{Falloff, Hidden};
 
-/// Nominal shot noise of the recordings: variance of a linear value of 1.
-const SHOT_NOISE: f64 = 0.0015;
-
 /// Returns the number that stands for an effect's size.
 pub fn main_size(hidden: &Hidden) -> f64 {
     match hidden {
@@ -12,6 +9,12 @@ pub fn main_size(hidden: &Hidden) -> f64 {
         Hidden::ExposureDrift { amplitude_ev, .. } => *amplitude_ev,
         Hidden::UnevenIllumination { strength, .. } => *strength,
         Hidden::PrincipalPoint { dx_px, dy_px } => dx_px.hypot(*dy_px),
+        Hidden::CameraOffset { forward_m, left_m, .. } => forward_m.hypot(*left_m),
+        Hidden::TangentialDistortion { p1, p2 } => p1.hypot(*p2),
+        Hidden::Sharpening { amount, .. } => *amount,
+        Hidden::VeilingGlare { share } => *share,
+        Hidden::CarpetReflectance { change } | Hidden::LineReflectance { change } => *change,
+        Hidden::GaitSway { pitch_rad, .. } => *pitch_rad,
         Hidden::FieldDimensions { length_m, width_m } => length_m.hypot(*width_m),
         Hidden::ChromaticAberration { red_scale, blue_scale } => red_scale.abs().max(blue_scale.abs()),
         Hidden::WhiteBalance { red_gain, blue_gain } => red_gain.abs().max(blue_gain.abs()),
@@ -19,11 +22,12 @@ pub fn main_size(hidden: &Hidden) -> f64 {
     }
 }
 
-/// Returns the size of a hidden effect that corresponds to a value of the library's parameter.
-pub fn hidden_size(hidden: &Hidden, parameter: f64) -> f64 {
+/// Returns the size of a hidden effect that corresponds to a value of the library's parameter, with a sensor whose noise has
+/// this variance at a linear value of 1.
+pub fn hidden_size(hidden: &Hidden, parameter: f64, noise_shot: f64) -> f64 {
     match hidden {
         // The library's parameter is added to the variance, whereas the hidden factor multiplies the standard deviation.
-        Hidden::SensorNoise { .. } => (1.0 + parameter / SHOT_NOISE).sqrt() - 1.0,
+        Hidden::SensorNoise { .. } => (1.0 + parameter / noise_shot).sqrt() - 1.0,
         _ => parameter,
     }
 }
@@ -60,6 +64,13 @@ pub fn parameters(hidden: &Hidden) -> Vec<(&'static str, f64)> {
         Hidden::OdometryScale { scale } => vec![("scale", scale)],
         Hidden::OdometryYawDrift { rate_rad_per_s } => vec![("rad_per_s", rate_rad_per_s)],
         Hidden::OdometryLateralSlip { slip_m_per_m } => vec![("m_per_m", slip_m_per_m)],
+        Hidden::CameraYaw { angle_rad } => vec![("yaw_rad", angle_rad)],
+        Hidden::CameraOffset { forward_m, left_m, .. } => {
+            vec![("forward_m", forward_m), ("left_m", left_m)]
+        }
+        Hidden::TangentialDistortion { p1, p2 } => vec![("p1", p1), ("p2", p2)],
+        Hidden::OdometryDelay { delay_s } | Hidden::ImuDelay { delay_s } => vec![("delay_s", delay_s)],
+        Hidden::ClockJump { jump_s } => vec![("jump_s", jump_s)],
         // The other effects have other parameters than those of the library.
         _ => Vec::new(),
     }
@@ -71,4 +82,20 @@ pub fn has_the_librarys_form(hidden: &Hidden) -> bool {
     let is_other =
         matches!(hidden, Hidden::Defocus { .. } | Hidden::Vignetting { falloff: Falloff::Cos4, .. });
     !is_other && !parameters(hidden).is_empty()
+}
+
+/// Returns the unit of [`main_size`].
+pub fn unit(id: &str) -> &'static str {
+    match id {
+        "principal_point" | "defocus" => "px",
+        "mount_pitch" | "mount_roll" | "camera_yaw" | "gait_sway" => "rad",
+        "camera_height" | "field_dimensions" | "camera_offset" => "m",
+        "rolling_shutter" | "time_offset" | "motion_blur" | "odometry_delay" | "imu_delay" | "clock_jump" => {
+            "s"
+        }
+        "exposure_drift" => "EV",
+        "odometry_yaw_drift" => "rad/s",
+        "odometry_lateral_slip" => "m/m",
+        _ => "1",
+    }
 }
