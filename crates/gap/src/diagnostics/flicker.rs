@@ -82,7 +82,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
-    use crate::diagnostics::carpet::pictures::with_pictures;
+    use crate::diagnostics::carpet::pictures::with_walk;
 
     /// Wave along a fraction of the picture, with a phase that differs from picture to picture.
     fn rolling(frame: u32, along: f64) -> f64 {
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn bands_that_roll_along_the_rows_are_found_with_their_size() {
-        let found = with_pictures(|frame, place| rolling(frame, place.y), flicker).unwrap();
+        let found = with_walk(|frame, place, _| rolling(frame, place.y), flicker).unwrap();
         // Root mean square of a sine with amplitude 0.1.
         assert!((found.size() - 0.07).abs() < 0.015, "{found:?}");
         assert!(found.p_value().unwrap() < Thresholds::DEFAULT.inference.significance);
@@ -99,12 +99,12 @@ mod tests {
 
     #[test]
     fn constant_bands_bands_along_the_columns_and_even_carpet_are_no_flicker() {
-        assert_eq!(with_pictures(|_, place| rolling(0, place.y), flicker), None);
-        assert_eq!(with_pictures(|frame, place| rolling(frame, place.x), flicker), None);
+        assert_eq!(with_walk(|_, place, _| rolling(0, place.y), flicker), None);
+        assert_eq!(with_walk(|frame, place, _| rolling(frame, place.x), flicker), None);
         assert_eq!(
-            with_pictures(|frame, place| rolling(frame, place.x) + rolling(frame, place.y), flicker),
+            with_walk(|frame, place, _| rolling(frame, place.x) + rolling(frame, place.y), flicker),
             None
         );
-        assert_eq!(with_pictures(|_, _| 0.0, flicker), None);
+        assert_eq!(with_walk(|_, _, _| 0.0, flicker), None);
     }
 }

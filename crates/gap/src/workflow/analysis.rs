@@ -9,6 +9,7 @@ use crate::{
     diagnostics::DETECTORS,
     diagnostics::detector::{FitResiduals, FrameResiduals},
     diagnostics::finding::Finding,
+    diagnostics::objects::objects,
     frame_index::FrameIndex,
     inference::detection_limit::{NotFound, limit},
     inference::effect_fit::EffectFits,
@@ -54,12 +55,13 @@ pub fn analyse(
     let mut effects = effect_reports(recording, &tests, &found, (&found.named, model), &after)?;
     effects.sort_by(|a, b| b.held_out_gain.value.total_cmp(&a.held_out_gain.value));
     let in_model = effect_reports(recording, &tests, &found, (&found.given, model), &after)?;
-    let unexplained = if tests.fits.evidence.views() < LEAST_VIEWS {
-        // A pattern in a single view may be due to that place.
-        Vec::new()
-    } else {
-        findings(recording, &found, &channels, &ModelError::new(&found, &before, &after))
-    };
+    let delta = nuisance_fit(&found);
+    let model_error = ModelError::new(&found, &before, &after);
+    let fit = fit_residuals(recording, &found, &delta, (&channels, &model_error));
+    // A pattern in a single view may be due to that place.
+    let has_views = tests.fits.evidence.views() >= LEAST_VIEWS;
+    let unexplained = if has_views { findings(&fit) } else { Vec::new() };
+    let objects = objects(&fit);
     let (not_found, unobservable) = others(recording, &tests, &found.all());
     let report = Report {
         recording: recording.sequence.name.clone(),
@@ -70,6 +72,7 @@ pub fn analyse(
         effects,
         in_model,
         unexplained,
+        objects,
         gap: whole_gap(channels),
         not_found,
         unobservable,
@@ -233,19 +236,18 @@ fn others(
     (not_found, unobservable)
 }
 
-/// Returns what no effect explains in the training frames, with only poses and nuisance parameters fitted.
-fn findings(
-    recording: &Recording<'_>,
-    found: &SelectedModel,
-    gaps: &BTreeMap<Channel, ChannelGap>,
-    model_error: &ModelError,
-) -> Vec<Finding> {
-    let delta = nuisance_fit(found);
+/// Returns the residuals of the training frames with only poses and nuisance parameters fitted; `delta` is that fit.
+fn fit_residuals<'a>(
+    recording: &'a Recording<'a>,
+    found: &'a SelectedModel,
+    delta: &'a DVector<f64>,
+    (gaps, model_error): (&'a BTreeMap<Channel, ChannelGap>, &'a ModelError),
+) -> FitResiduals<'a> {
     let linearized = &found.linearized;
-    let fit = FitResiduals {
+    FitResiduals {
         recording,
         start_s: recording.start_s(),
-        frames: frame_residuals(recording, found, &delta),
+        frames: frame_residuals(recording, found, delta),
         steps: found.split.training().map(|frame| &recording.frames[frame]).collect(),
         measurements: found.split.training().map(|frame| &linearized.measurements[frame]).collect(),
         sigmas: &linearized.system.sigmas,
@@ -253,8 +255,12 @@ fn findings(
         nuisance_values: &delta.as_slice()[found.columns.len()..],
         model_error,
         gaps,
-    };
-    DETECTORS.iter().flat_map(|detector| detector.detect(&fit)).collect()
+    }
+}
+
+/// Returns what no effect explains.
+fn findings(fit: &FitResiduals<'_>) -> Vec<Finding> {
+    DETECTORS.iter().flat_map(|detector| detector.detect(fit)).collect()
 }
 
 /// Returns the change of all columns that fits the nuisance parameters. The effects' fit has converged, so they keep their
