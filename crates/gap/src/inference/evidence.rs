@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::{
-    inference::cluster_covariance::{self, LAG},
-    inference::hypothesis_test::hotelling_p_value,
+    inference::cluster_covariance,
+    inference::hypothesis_test::{bartlett_degrees, hotelling_p_value},
     linear_model::column::ColumnIndex,
     linear_model::normal_equations::NormalEquations,
     linear_model::reduced_equations::{Fit, MOST_PRIOR_SHARE, ReducedEquations},
@@ -36,10 +36,9 @@ impl<'a> Evidence<'a> {
     }
 
     /// Degrees of freedom of the scatter between views. They are fewer than the views because neighbouring views are
-    /// correlated (Kiefer and Vogelsang 2005: for Bartlett's kernel about 1.5 times the number of views over the kernel's
-    /// width).
+    /// correlated.
     pub(crate) fn degrees_of_freedom(&self) -> usize {
-        3 * self.views() / (2 * (LAG + 1))
+        bartlett_degrees(self.views())
     }
 
     /// Fits the free columns by least squares with their priors; the other columns are neutral. None if the fit is singular.

@@ -7,9 +7,10 @@ use crate::{
     inference::effect_fit::{EffectFits, base},
     inference::effect_test::EffectTests,
     inference::evidence::Evidence,
+    inference::held_out::Comparison,
     inference::split::HeldOutSplit,
     linear_model::initial_values::starting_values,
-    linear_model::linearization::{MeasureError, linearise, measure_frames},
+    linear_model::linearization::{MeasureError, linearise, measure_chosen, measure_frames},
     linear_model::nuisance::{Nuisance, nuisances},
     linear_model::parameters::FittedParameter,
     linear_model::{linearized_frame::LinearizedFrame, system::LinearSystem},
@@ -43,8 +44,7 @@ impl LinearizedRecording {
         split: &HeldOutSplit,
         search: f64,
     ) -> Result<Self, MeasureError> {
-        let search_px = search * f64::from(recording.sequence.setup.camera.width);
-        let measurements = measure_frames(recording, &model, search_px)?;
+        let measurements = measure_frames(recording, &model, search_px(recording, search))?;
         let nuisances = nuisances(measurements.as_slice());
         let mut frames = linearise(recording, &measurements, &model, columns, &nuisances)?;
         // An odometry step that ends at a held-out frame is not fitted.
@@ -77,6 +77,9 @@ pub(crate) trait Linearize {
 
     /// Returns the starting values of an effect that is not in the model yet.
     fn starting_values(&self, effect: &'static dyn Effect) -> Vec<f64>;
+
+    /// Compares a model with that of a linearised recording on held-out frames.
+    fn compare(&self, model: &Model, with: &LinearizedRecording) -> Result<Comparison, MeasureError>;
 }
 
 /// Recording with the parameters that are fitted to it. Lines are searched for near where a model expects them.
@@ -95,4 +98,26 @@ impl Linearize for FittedRecording<'_> {
     fn starting_values(&self, effect: &'static dyn Effect) -> Vec<f64> {
         starting_values(effect, self.recording)
     }
+
+    fn compare(&self, model: &Model, with: &LinearizedRecording) -> Result<Comparison, MeasureError> {
+        // Lines are measured where the second model expects them and, if it finds none there, where the first one does.
+        let mut measurements = with.measurements.clone();
+        if *model != with.model {
+            let search_px = search_px(self.recording, Thresholds::DEFAULT.inference.search_again);
+            let is_held_out = |frame| self.split.is_held_out(frame);
+            let others = measure_chosen(self.recording, model, search_px, is_held_out)?;
+            let both = measurements.iter().zip(&others).map(|(own, other)| own.clone().with_lines_of(other));
+            measurements = both.collect();
+        }
+        let linearise_at =
+            |model: &Model| linearise(self.recording, &measurements, model, &[], &with.nuisances);
+        let [before, after] = [linearise_at(model)?, linearise_at(&with.model)?];
+        let lost = |frame| measurements[frame].lost_lines() as f64;
+        Ok(Comparison::new([&before, &after], lost, with, self.split))
+    }
+}
+
+/// Returns a part of the picture's width, pixels.
+fn search_px(recording: &Recording<'_>, part: f64) -> f64 {
+    part * f64::from(recording.sequence.setup.camera.width)
 }

@@ -5,9 +5,11 @@
 //! cluster_covariance ─┬─ evidence ─┬─ effect_fit ─┬─ detection_limit
 //! hypothesis_test ────┘            │              └─ effect_test ─ effect_selection ─ model_search
 //! split, gain ─────────────────────┴─ cross_validation ─┘
+//! held_out ── confirmation (of model_search)
 //! ```
 
 pub(crate) mod cluster_covariance;
+pub(crate) mod confirmation;
 pub(crate) mod cross_validation;
 pub(crate) mod detection_limit;
 pub(crate) mod effect_fit;

@@ -37,7 +37,7 @@ pub(crate) type ConvergedSet = (Vec<EffectIndex>, LinearizedRecording);
 
 impl ModelSearch<'_> {
     /// Returns all effects of a model: the given ones and these named ones.
-    fn all(&self, named: &[EffectIndex]) -> Vec<EffectIndex> {
+    pub(crate) fn all(&self, named: &[EffectIndex]) -> Vec<EffectIndex> {
         self.given.iter().chain(named).copied().collect()
     }
 

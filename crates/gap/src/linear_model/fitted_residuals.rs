@@ -47,4 +47,9 @@ impl FittedResiduals {
         }
         Self { residuals, pose_error, pose_variance: covariance.diagonal() }
     }
+
+    /// Returns the sum of squares of the estimated pose error, in its standard deviations.
+    pub(crate) fn pose_penalty(&self, pose_sigmas: &[f64; 6]) -> f64 {
+        self.pose_error.dot(&(prior_precision(pose_sigmas) * self.pose_error))
+    }
 }

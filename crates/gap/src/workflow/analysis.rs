@@ -11,11 +11,13 @@ use crate::{
     diagnostics::finding::Finding,
     diagnostics::objects::objects,
     frame_index::FrameIndex,
+    inference::confirmation::without,
     inference::detection_limit::{NotFound, limit},
     inference::effect_fit::EffectFits,
     inference::effect_test::{EffectTest, EffectTests},
     inference::gain::Gain,
-    inference::held_out::{ChannelGap, HeldOutResiduals, gaps},
+    inference::held_out::{ChannelGap, HeldOutResiduals},
+    inference::linearized_recording::{FittedRecording, Linearize},
     inference::model_error::ModelError,
     inference::selected_model::SelectedModel,
     linear_model::column::ColumnIndex,
@@ -51,10 +53,10 @@ pub fn analyse(
     let tests = found.effect_tests();
     let before = HeldOutResiduals::new(recording, &found, model)?;
     let after = HeldOutResiduals::new(recording, &found, &found.linearized.model)?;
-    let channels = gaps(&found, &before, &after);
-    let mut effects = effect_reports(recording, &tests, &found, (&found.named, model), &after)?;
+    let channels = compared(recording, &found, model)?;
+    let mut effects = effect_reports(recording, &tests, &found, (&found.named, model))?;
     effects.sort_by(|a, b| b.held_out_gain.value.total_cmp(&a.held_out_gain.value));
-    let in_model = effect_reports(recording, &tests, &found, (&found.given, model), &after)?;
+    let in_model = effect_reports(recording, &tests, &found, (&found.given, model))?;
     let delta = nuisance_fit(&found);
     let model_error = ModelError::new(&found, &before, &after);
     let fit = fit_residuals(recording, &found, &delta, (&channels, &model_error));
@@ -93,16 +95,17 @@ pub fn analyse(
 /// Returns the same errors as [`analyse`].
 pub fn gap_of(recording: &Recording<'_>, model: &Model, options: &Options) -> Result<Gap, MeasureError> {
     let found = as_given(recording, model, options)?;
-    let residuals = HeldOutResiduals::new(recording, &found, model)?;
-    Ok(whole_gap(gaps(&found, &residuals, &residuals)))
+    Ok(whole_gap(compared(recording, &found, model)?))
 }
 
-/// Returns a model without one effect.
-fn without(model: &Model, effect: EffectIndex) -> Model {
-    let id = effect.effect().id();
-    let mut model = model.clone();
-    model.effects.retain(|used| used.effect.id() != id);
-    model
+/// Returns the gaps of a model and of the extended one on held-out frames.
+fn compared(
+    recording: &Recording<'_>,
+    found: &SelectedModel,
+    model: &Model,
+) -> Result<BTreeMap<Channel, ChannelGap>, MeasureError> {
+    let source = FittedRecording { recording, columns: &found.columns, split: &found.split };
+    Ok(source.compare(model, &found.linearized)?.gaps())
 }
 
 /// Returns the fraction of each channel's distance to the noise floor that is closed, for channels with a distance worth
@@ -110,7 +113,7 @@ fn without(model: &Model, effect: EffectIndex) -> Model {
 fn closed(gaps: &BTreeMap<Channel, ChannelGap>) -> BTreeMap<Channel, f64> {
     let part = |gap: &ChannelGap| {
         let open = gap.before - gap.floor;
-        (open > THRESHOLDS.least_open_gap * gap.floor).then(|| (gap.before - gap.after) / open)
+        (open > THRESHOLDS.least_open_gap * gap.floor).then(|| ((gap.before - gap.after) / open).min(1.0))
     };
     let parts = gaps.iter().filter_map(|(channel, gap)| Some((*channel, part(gap)?)));
     parts.filter(|(_, part)| *part > THRESHOLDS.least_closed_part).collect()
@@ -139,14 +142,13 @@ fn effect_reports(
     tests: &EffectTests<'_>,
     found: &SelectedModel,
     (effects, given): (&[EffectIndex], &Model),
-    after: &HeldOutResiduals,
 ) -> Result<Vec<EffectReport>, MeasureError> {
     let all = found.all();
     let tested = tests.fits.effects().len();
     let made = effects.iter().filter_map(|&effect| tests.test(effect, &all, tested));
     let report = |test: EffectTest| {
         let others = without(&found.linearized.model, test.effect);
-        let closes = closed(&gaps(found, &HeldOutResiduals::new(recording, found, &others)?, after));
+        let closes = closed(&compared(recording, found, &others)?);
         Ok(effect_report(&tests.fits, &test, found, given, closes))
     };
     made.map(report).collect()

@@ -76,6 +76,7 @@ pub(crate) fn find(
         p_values.extend(new.filter_map(|effect| Some((effect, search.p_value(&tests, &named, effect)?))));
         (named, linearized) = (set, converged);
     }
+    (named, linearized) = search.confirmed(model, (named, linearized))?;
     if named.is_empty() && linearized.model != as_given {
         linearized = LinearizedRecording::new(recording, as_given, &columns, &split, SEARCH_AGAIN)?;
     }

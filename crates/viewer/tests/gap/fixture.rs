@@ -56,7 +56,7 @@ fn maps() -> Maps {
 
 /// Returns a report with content in every part.
 pub fn report() -> Report {
-    let channel = ChannelGap { before: 0.2, after: 0.05, floor: 0.04 };
+    let channel = ChannelGap { before: 0.2, after: 0.05, floor: 0.04, left_out: 0.1 };
     let confusable = EffectReport {
         confusable_with: vec!["black_level".to_owned()],
         ..effect("tone_curve", "gamma_change")

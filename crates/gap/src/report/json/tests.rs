@@ -94,8 +94,8 @@ fn full() -> Report {
     noise.closes = [(Channel::Noise, 0.9)].into();
     let mut pitch = effect_report("mount_pitch", -0.02);
     pitch.given = [("pitch_rad".to_owned(), -0.0143)].into();
-    let channels =
-        Channel::ALL.map(|channel| (channel, ChannelGap { before: 0.143, after: 0.06, floor: 0.04 }));
+    let channels = Channel::ALL
+        .map(|channel| (channel, ChannelGap { before: 0.143, after: 0.06, floor: 0.04, left_out: 0.1 }));
     let not_found = NotFoundReport {
         id: "rolling_shutter".to_owned(),
         parameter: "readout_s".to_owned(),

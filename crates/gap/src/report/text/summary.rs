@@ -244,8 +244,8 @@ mod tests {
     /// Returns a report with these effects and findings.
     fn of(verdict: Verdict, effects: &[EffectReport], unexplained: &[Finding]) -> Report {
         let channels = [
-            (Channel::Photometry, ChannelGap { before: 0.3, after: 0.06, floor: 0.04 }),
-            (Channel::Geometry, ChannelGap { before: 0.5, after: 0.42, floor: 0.4 }),
+            (Channel::Photometry, ChannelGap { before: 0.3, after: 0.06, floor: 0.04, left_out: 0.1 }),
+            (Channel::Geometry, ChannelGap { before: 0.5, after: 0.42, floor: 0.4, left_out: 0.1 }),
         ];
         let gap = Gap { before: 7.0, after: 1.5, floor: 1.0, channels: channels.into() };
         Report { verdict, effects: effects.to_vec(), unexplained: unexplained.to_vec(), gap, ..report() }
