@@ -12,6 +12,7 @@ use crate::{
     inference::model_search::{ConvergedSet, ModelSearch},
     linear_model::linearization::MeasureError,
     linear_model::linearized_frame::LinearizedFrame,
+    linear_model::normal_equations::PRIOR,
     linear_model::robust_weights::INDEPENDENT,
     linear_model::system::LinearSystem,
     measurement::quantity::Channel,
@@ -87,7 +88,8 @@ impl ModelSearch<'_> {
     }
 
     /// Returns by how much the likelihood of held-out frames is larger with an effect than without it, natural logarithm. Both
-    /// times all else is fitted to the training frames; outliers count at most as such.
+    /// times all else is fitted to the training frames, and nominal values that it takes out of their tolerance count against it;
+    /// outliers count at most as such.
     fn held_out_gain(
         &self,
         linearized: &LinearizedRecording,
@@ -102,7 +104,9 @@ impl ModelSearch<'_> {
             let delta = fits.fit_in_range(effects)?.delta;
             let of_frame =
                 |frame| log_likelihood(&linearized.frames[frame], &linearized.system, &delta, claimed);
-            Some(self.split.held_out().map(of_frame).sum::<f64>())
+            // Nominal values that would have to be far off make a fit less plausible, which no frame shows.
+            let nuisances = delta.rows_range(self.columns.len()..).norm_squared();
+            Some(self.split.held_out().map(of_frame).sum::<f64>() - 0.5 * PRIOR * nuisances)
         };
         // A fit that is singular says nothing against the effect.
         likelihood(&all).zip(likelihood(&without)).map_or(f64::INFINITY, |(with, without)| with - without)

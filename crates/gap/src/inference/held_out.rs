@@ -44,13 +44,8 @@ impl HeldOutResiduals {
 
 /// Returns a frame's residuals at its reference pose and nominal values.
 fn at_reference(frame: &LinearizedFrame, linearized: &LinearizedRecording) -> Vec<f64> {
-    residuals(frame, linearized, &[1e-12; 6])
-}
-
-/// Returns a frame's residuals at nominal values, with the pose refitted within these standard deviations.
-fn residuals(frame: &LinearizedFrame, linearized: &LinearizedRecording, pose_sigmas: &[f64; 6]) -> Vec<f64> {
     let nowhere = DVector::zeros(linearized.system.size);
-    refitted(frame, &linearized.system, &nowhere, pose_sigmas).residuals
+    refitted(frame, &linearized.system, &nowhere, &[1e-12; 6]).residuals
 }
 
 /// Returns a frame's residuals after a change of the columns, with the pose refitted twice: what is an outlier is seen after the
@@ -171,15 +166,21 @@ struct Rows<'a> {
     residuals: [Vec<f64>; 2],
     /// Residuals with the pose refitted.
     refitted: [Vec<f64>; 2],
+    /// Error of the pose by the second model.
+    pose_error: Vector6<f64>,
 }
 
 impl<'a> Rows<'a> {
     fn new(frames: [&'a LinearizedFrame; 2], linearized: &'a LinearizedRecording) -> Self {
+        let system = &linearized.system;
+        let nowhere = DVector::zeros(system.size);
+        let [before, after] = frames.map(|frame| refitted(frame, system, &nowhere, &system.pose_sigmas));
         Self {
             frames,
             linearized,
             residuals: frames.map(|frame| at_reference(frame, linearized)),
-            refitted: frames.map(|frame| residuals(frame, linearized, &linearized.system.pose_sigmas)),
+            pose_error: after.pose_error,
+            refitted: [before.residuals, after.residuals],
         }
     }
 
@@ -203,7 +204,7 @@ impl<'a> Rows<'a> {
             squares.after += after * after;
             squares.change += (before - after).powi(2);
             squares.count += 1.0;
-            squares.poses += pose_variance(&self.frames[1].pose_gradients[index], &system.pose_sigmas);
+            squares.poses += self.frames[1].pose_gradients[index].dot(&self.pose_error).powi(2);
             if !explains(1) {
                 continue;
             }
@@ -227,7 +228,7 @@ struct Squares {
     count: f64,
     /// Number of measurements that are left out.
     left_out: f64,
-    /// Sum of the variances due to the reference poses' errors.
+    /// Sum of squares of what the reference poses' errors make.
     poses: f64,
     /// Sum of half the squared differences between neighbouring measurements.
     steps: f64,
@@ -251,11 +252,6 @@ impl Squares {
     fn relative_change(&self) -> f64 {
         (self.change / self.count.max(1.0)).sqrt() / self.gap().floor.max(1e-9)
     }
-}
-
-/// Variance of a measurement due to the pose's errors, from its gradient and the standard deviations of the pose.
-fn pose_variance(gradient: &Vector6<f64>, sigmas: &[f64; 6]) -> f64 {
-    gradient.iter().zip(sigmas).map(|(gradient, sigma)| (gradient * sigma).powi(2)).sum()
 }
 
 #[cfg(test)]
@@ -343,12 +339,10 @@ mod tests {
 
     #[test]
     fn lines_that_neither_model_finds_are_left_out_of_geometry() {
-        let frames = frames(&[0.0]).iter().map(|frame| {
-            let mut frame = frame.clone();
-            frame.measurements[0].quantity = Quantity::LineOffset;
-            frame
-        });
-        let frames: PerFrame<LinearizedFrame> = frames.collect();
+        let mut frames = frames(&[0.0]);
+        for frame in FrameIndex::first(FRAMES) {
+            frames[frame].measurements[0].quantity = Quantity::LineOffset;
+        }
         let mut system = system_of(vec![(nalgebra::DMatrix::zeros(1, 1), DVector::zeros(1)); FRAMES]);
         system.sigmas = BTreeMap::from([(Quantity::LineOffset, SIGMA)]);
         let (measurements, nuisances) = (PerFrame::from(Vec::new()), Vec::new());

@@ -8,8 +8,9 @@ use reality_sim_sensor::{EffectIndex, Model};
 use crate::{
     inference::effect_fit::EffectFits,
     inference::effect_test::{EffectTest, EffectTests},
-    inference::linearized_recording::{Linearize, LinearizedRecording},
+    inference::linearized_recording::LinearizedRecording,
     inference::model_comparison::{indistinguishable_below, minus_log_likelihood},
+    inference::recording_source::Linearize,
     inference::split::HeldOutSplit,
     linear_model::column::ColumnIndex,
     linear_model::linearization::MeasureError,

@@ -10,7 +10,7 @@ use crate::linear_model::{
 pub(crate) struct FittedResiduals {
     pub(crate) residuals: Vec<f64>,
     /// Estimated error of the reference pose.
-    pub(super) pose_error: Vector6<f64>,
+    pub(crate) pose_error: Vector6<f64>,
     /// Posterior variances of the pose error.
     pub(super) pose_variance: Vector6<f64>,
 }

@@ -89,6 +89,9 @@ pub(crate) struct InferenceThresholds {
     pub(crate) claimed_share: f64,
     /// Part of recordings in which an effect at its detection limit is found. Chosen: it defines the limit.
     pub(crate) power: f64,
+    /// Recordings that are simulated to see how often an effect of a certain size is found. Derived: a share of 90 % is then known
+    /// to 5 %, and the limit, from which the share rises with about its logarithm, to 6 %.
+    pub(crate) limit_draws: u64,
     /// Part of what a model explains that its residuals may be off by: discs are no Gaussians, clipped colours no gains. Set
     /// on draw 0. Not [`Self::compared_model_error`], which is of log-likelihoods and decides ties.
     pub(crate) model_error: f64,
@@ -126,6 +129,7 @@ impl InferenceThresholds {
         least_gap_change: 0.02,
         claimed_share: 0.3,
         power: 0.9,
+        limit_draws: 40,
         model_error: 0.04,
         outlying_sigmas: LinearModelThresholds::DEFAULT.tukey_sigmas,
     };

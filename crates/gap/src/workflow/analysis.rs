@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DVector;
+use rayon::prelude::*;
 use reality_sim_sensor::{EffectIndex, Model};
 
 use crate::{
@@ -17,8 +18,9 @@ use crate::{
     inference::effect_test::{EffectTest, EffectTests},
     inference::gain::Gain,
     inference::held_out::{ChannelGap, HeldOutResiduals},
-    inference::linearized_recording::{FittedRecording, Linearize},
     inference::model_error::ModelError,
+    inference::power::PowerAnalysis,
+    inference::recording_source::{FittedRecording, Linearize},
     inference::selected_model::SelectedModel,
     linear_model::column::ColumnIndex,
     linear_model::fitted_residuals::FittedResiduals,
@@ -64,7 +66,7 @@ pub fn analyse(
     let has_views = tests.fits.evidence.views() >= LEAST_VIEWS;
     let unexplained = if has_views { findings(&fit) } else { Vec::new() };
     let objects = objects(&fit);
-    let (not_found, unobservable) = others(recording, &tests, &found.all());
+    let (not_found, unobservable) = others(recording, &found, &tests);
     let report = Report {
         recording: recording.sequence.name.clone(),
         frames: recording.frames.len(),
@@ -214,16 +216,21 @@ fn correlations(fits: &EffectFits<'_>, test: &EffectTest) -> BTreeMap<String, BT
 /// Reports the effects outside the model: those with a detection limit, and those that are unobservable.
 fn others(
     recording: &Recording<'_>,
+    found: &SelectedModel,
     tests: &EffectTests<'_>,
-    all: &[EffectIndex],
 ) -> (Vec<NotFoundReport>, Vec<Unobservable>) {
+    let (all, effects) = (found.all(), tests.fits.effects());
+    let views = recording.views();
+    let power = PowerAnalysis::new(&tests.fits, found.split.training().map(|frame| views[frame]).collect());
+    let outside: Vec<EffectIndex> = effects.iter().copied().filter(|effect| !all.contains(effect)).collect();
+    let limits: Vec<NotFound> =
+        outside.par_iter().map(|&effect| limit(recording, &power, effect, &all)).collect();
     let (mut not_found, mut unobservable) = (Vec::new(), Vec::new());
-    let effects = tests.fits.effects();
-    for &index in effects.iter().filter(|effect| !all.contains(effect)) {
+    for (index, limit) in outside.into_iter().zip(limits) {
         let id = index.effect().id().to_owned();
-        match limit(recording, &tests.fits, index, all) {
+        match limit {
             NotFound::Limit { value, unit, parameter } => {
-                let test = tests.test(index, all, effects.len());
+                let test = tests.test(index, &all, effects.len());
                 not_found.push(NotFoundReport {
                     id,
                     parameter: parameter.to_owned(),

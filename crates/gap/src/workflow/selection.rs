@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use reality_sim_sensor::{EffectIndex, Model};
 
 use crate::{
-    inference::linearized_recording::{FittedRecording, LinearizedRecording},
+    inference::linearized_recording::LinearizedRecording,
     inference::model_search::ModelSearch,
+    inference::recording_source::FittedRecording,
     inference::selected_model::SelectedModel,
     inference::split::HeldOutSplit,
     linear_model::linearization::{MeasureError, check},

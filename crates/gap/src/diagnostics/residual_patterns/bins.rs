@@ -23,12 +23,18 @@ const THRESHOLDS: PatternThresholds = Thresholds::DEFAULT.diagnostics.patterns;
 
 /// Sums of a bin: information and score of its mean. The mean offset of lines in the picture is a vector; every other mean is
 /// a number, in the first component.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 struct Bin {
     information: DMat2,
     score: DVec2,
     /// Number of measurements.
     count: f64,
+}
+
+impl Default for Bin {
+    fn default() -> Self {
+        Self { information: DMat2::ZERO, score: DVec2::ZERO, count: 0.0 }
+    }
 }
 
 impl Bin {

@@ -6,10 +6,8 @@ use super::{FRAMES, Signature, World, effect};
 use crate::{
     frame_index::{FrameIndex, PerFrame},
     inference::{
-        held_out::Comparison,
-        linearized_recording::{Linearize, LinearizedRecording},
-        model_search::ModelSearch,
-        split::HeldOutSplit,
+        held_out::Comparison, linearized_recording::LinearizedRecording, model_search::ModelSearch,
+        recording_source::Linearize, split::HeldOutSplit,
     },
     linear_model::{linearization::MeasureError, linearized_frame::LinearizedFrame},
 };
@@ -198,7 +196,7 @@ fn held_out_frames_confirm_effects_that_are_there() {
 #[test]
 fn an_effect_that_held_out_frames_contradict_is_dropped_and_the_others_are_fitted_without_it() {
     // What is seen of the second effect in the training frames is the opposite in the others.
-    let mut world = World::new(&[(PITCH, FIRST, 3.0), (ROLL, PARTLY_FIRST, 2.0)]);
+    let mut world = World::new(&[(PITCH, FIRST, 3.0), (ROLL, SECOND, 2.0)]);
     world.course = |frame, column| if column == 1 && is_held_out(frame) { -1.0 } else { 1.0 };
     let [pitch, roll] = [PITCH, ROLL].map(effect);
     let (named, model) = confirmed(&world, &[pitch, roll]);
