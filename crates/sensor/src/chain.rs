@@ -48,7 +48,7 @@ pub struct Chain {
 
 /// Returns the variance of a Gaussian kernel sampled at the pixels' centres. Below half a pixel it is less than the square
 /// of sigma, because the kernel hardly reaches the neighbouring pixels.
-fn sampled_variance_px2(sigma_px: f64) -> f64 {
+pub(crate) fn sampled_variance_px2(sigma_px: f64) -> f64 {
     if sigma_px <= 0.0 {
         return 0.0;
     }
@@ -186,6 +186,11 @@ impl Chain {
     /// Returns the gain of red, green and blue in the frame with this timestamp.
     pub fn gain(&self, time_s: f64) -> [f64; 3] {
         product(&self.exposure, |used| used.effect.gain(&used.values, time_s))
+    }
+
+    /// Whether an effect of the exposure is present.
+    pub(crate) fn changes_gain(&self) -> bool {
+        !self.exposure.is_empty()
     }
 
     /// Returns the variance along each axis, in pixels², of the blur by lens and sensor at a pixel: the nominal variance

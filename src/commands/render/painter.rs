@@ -1,17 +1,18 @@
 //! Source of the pictures: recorded ones, or the model of the field.
 
-use std::{path::Path, time::Instant};
+use std::time::Instant;
 
 use image::RgbImage;
 
 use reality_sim::{
-    FieldDimensions, Reconstruction, StampedPose, Synthesizer,
-    sensor::{Model, Renderer, SceneColors, Trajectory},
+    Archive, Reconstruction, StampedPose, Synthesizer,
+    sensor::{Renderer, SceneColors, Trajectory},
     sequence::CameraSetup,
     synthesis::MethodKind,
 };
 
 use super::options::PictureMethod;
+use crate::commands::model_file::ModelFile;
 
 /// Pictures at different times have different noise.
 const NOISE_SEED: u64 = 0;
@@ -69,14 +70,19 @@ impl<'a> Painter<'a> {
 
     /// Makes a painter for the simulated camera with the effects of a model file, moving along its trajectory.
     pub fn with_model(
-        model: &Path,
+        model: &ModelFile,
+        archive: &Archive,
         trajectory: Trajectory,
-        field: &FieldDimensions,
         setup: &CameraSetup,
     ) -> anyhow::Result<Self> {
-        let colors = SceneColors::new(setup, field);
-        let renderer = Renderer::with_model(setup, field, colors, &Model::read(model)?);
-        Ok(Self::Modelled(Box::new(renderer.map_err(|error| error.in_file(model))?), trajectory))
+        let field = archive.field();
+        let renderer = Renderer::with_model(
+            setup,
+            field,
+            SceneColors::new(setup, field),
+            &archive.missing_of(&model.model),
+        );
+        Ok(Self::Modelled(Box::new(renderer.map_err(|error| error.in_file(model.path()))?), trajectory))
     }
 
     /// Returns the name of the method.

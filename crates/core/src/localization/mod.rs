@@ -65,6 +65,7 @@ mod builder;
 mod config;
 mod error;
 mod frame;
+mod half_evidence;
 mod localizer;
 mod observation;
 mod picture;
