@@ -38,7 +38,7 @@ const MAY_USE: [(&str, &[&str]); 10] = [
     ("reality-sim-core", &[]),
     (GPU, &["reality-sim-core"]),
     ("reality-sim-db", &["reality-sim-core"]),
-    ("reality-sim-synthesis", &["reality-sim-core", "reality-sim-db", "reality-sim-sensor"]),
+    ("reality-sim-synthesis", &["reality-sim-core", "reality-sim-db"]),
     ("reality-sim-pipeline", &["reality-sim-core", "reality-sim-db", "reality-sim-synthesis"]),
     ("reality-sim-sensor", &["reality-sim-core"]),
     ("reality-sim-hidden", &["reality-sim-core"]),

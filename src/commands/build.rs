@@ -16,7 +16,6 @@ use reality_sim::{
 use super::{
     device::BackendArgs,
     filter::{filter_plan, pose_error},
-    model_file::{ModelArgs, Use, open_corrected},
     output::{StageProgress, aligned, check_output_file, print, print_json},
 };
 
@@ -42,8 +41,6 @@ pub struct BuildArgs {
     #[arg(long, default_value_t = 0)]
     seed: u64,
     #[command(flatten)]
-    model: ModelArgs,
-    #[command(flatten)]
     backend: BackendArgs,
     /// Do not measure the walls and the ceiling of the hall
     #[arg(long)]
@@ -62,9 +59,6 @@ struct Report {
     /// The hall, if it was measured in this run.
     #[serde(skip_serializing_if = "Option::is_none")]
     hall: Option<HallReport>,
-    /// What of the model was used.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    corrections: Option<String>,
 }
 
 /// Distances of walls, ceiling and goals from the field's centre.
@@ -104,15 +98,11 @@ impl BuildArgs {
 
 /// Runs the command.
 pub fn run(args: &BuildArgs) -> anyhow::Result<()> {
-    let model = args.model.read()?;
-    let open = |folder: &PathBuf| open_corrected(folder, model.as_ref()).map(Arc::new);
-    let sequences: Vec<Arc<Sequence>> = args.sequences.iter().map(open).collect::<Result<_, _>>()?;
-    let mut inputs: Vec<PathBuf> = sequences.iter().flat_map(|sequence| sequence.files.clone()).collect();
-    inputs.extend(args.model.model.clone());
+    let sequences: Vec<Arc<Sequence>> =
+        args.sequences.iter().map(|folder| Sequence::open(folder).map(Arc::new)).collect::<Result<_, _>>()?;
+    let inputs: Vec<PathBuf> = sequences.iter().flat_map(|sequence| sequence.files.clone()).collect();
     check_output_file(&args.out, &inputs)?;
-    let corrections =
-        model.map(|model| model.words(&sequences[0].setup, &sequences[0].field, Use::Recording));
-    let mut report = Report { database: args.out.display().to_string(), corrections, ..Report::default() };
+    let mut report = Report { database: args.out.display().to_string(), ..Report::default() };
     let mut sources: Vec<&'static str> = Vec::new();
     let mut progress = StageProgress::default();
     for event in args.plan(&sequences).start() {
@@ -215,7 +205,6 @@ impl Report {
                 format!("x {min_x_m:.1} to {max_x_m:.1} m, y {min_y_m:.1} to {max_y_m:.1} m, ceiling {ceiling_m:.1} m"),
             ));
         }
-        lines.extend(self.corrections.iter().map(|corrections| ("camera", corrections.clone())));
         lines.push(("database", format!("{}, {} pictures", self.database, self.images)));
         aligned(&lines)
     }

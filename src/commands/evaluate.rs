@@ -16,7 +16,6 @@ use reality_sim::{
 };
 
 use super::{
-    model_file::{ModelArgs, ModelFile, Use, open_corrected},
     output::{check_distinct, check_output_file, create_output_folder, frame_progress, print, print_json},
     picture_at::SynthesisArgs,
 };
@@ -30,8 +29,6 @@ pub struct EvaluateArgs {
     probes: PathBuf,
     #[command(flatten)]
     synthesis: SynthesisArgs,
-    #[command(flatten)]
-    model: ModelArgs,
     /// Write the results of every probe to this CSV file
     #[arg(long, value_name = "FILE")]
     details: Option<PathBuf>,
@@ -53,9 +50,6 @@ struct Report {
     images: usize,
     /// Results by method.
     methods: BTreeMap<&'static str, MethodReport>,
-    /// What of the model was used.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    corrections: Option<String>,
 }
 
 impl EvaluateArgs {
@@ -67,11 +61,8 @@ impl EvaluateArgs {
 
 /// Runs the command.
 pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
-    let model = args.model.read()?;
-    let archive = args.synthesis.archive(&args.database, model.as_ref())?;
-    // Where the database was built without the model, the true poses have to stay as they were there, too.
-    let is_corrected = archive.corrected_by().is_some();
-    let probes = open_corrected(&args.probes, model.as_ref().filter(|_| is_corrected))?;
+    let archive = args.synthesis.archive(&args.database)?;
+    let probes = Sequence::open(&args.probes)?;
     if !probes.has_reference_poses() {
         bail!(
             "{}: has no ground truth: give a sequence with the true poses of its pictures",
@@ -81,7 +72,8 @@ pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
     check_poses(args, &probes)?;
     check_outputs(args, &probes)?;
     let synthesizer = args.synthesis.synthesizer(archive.clone(), probes.setup.camera.clone())?;
-    let renderer = renderer(&archive, &probes, model.as_ref())?;
+    let renderer =
+        Renderer::new(&probes.setup, archive.field(), SceneColors::new(&probes.setup, archive.field()));
     let with_truth = probes.reference_poses().enumerate().filter_map(|(frame, pose)| Some((frame, pose?)));
     let with_truth: Vec<(usize, CameraPose)> = with_truth.collect();
     let progress = frame_progress(with_truth.len())?;
@@ -100,22 +92,8 @@ pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
     if let Some(file) = &args.details {
         write_atomically(file, details_csv(&results).as_bytes())?;
     }
-    let mut report = Report::new(args, &archive, &results);
-    let purpose = Use::Pictures { is_corrected };
-    report.corrections = model.map(|model| model.words(archive.setup(), archive.field(), purpose));
+    let report = Report::new(args, &archive, &results);
     if args.json { print_json(&report) } else { print(&report.text()) }
-}
-
-/// Makes the renderer of the simulated pictures: of the camera that took the probes, with the effects that the archive's
-/// camera does not contain yet.
-fn renderer(archive: &Archive, probes: &Sequence, model: Option<&ModelFile>) -> anyhow::Result<Renderer> {
-    let (setup, field) = (&probes.setup, archive.field());
-    let colors = SceneColors::new(setup, field);
-    Ok(match model {
-        Some(model) => Renderer::with_model(setup, field, colors, &archive.missing_of(&model.model))
-            .map_err(|error| error.in_file(model.path()))?,
-        None => Renderer::new(setup, field, colors),
-    })
 }
 
 /// Refuses ground truth with poses that no camera can have.
@@ -134,7 +112,6 @@ fn check_outputs(args: &EvaluateArgs, probes: &Sequence) -> anyhow::Result<()> {
     let mut inputs = probes.files.clone();
     inputs.extend(probes.frames.iter().map(|frame| probes.folder.join(&frame.image)));
     inputs.push(args.database.clone());
-    inputs.extend(args.model.model.clone());
     check_distinct(&[&args.details, &args.pictures].into_iter().flatten().collect::<Vec<_>>())?;
     args.details.as_ref().map_or(Ok(()), |file| check_output_file(file, &inputs))?;
     args.pictures.as_ref().map_or(Ok(()), |folder| create_output_folder(folder, &inputs))
@@ -186,7 +163,6 @@ impl Report {
                 .count(),
             images: archive.images().len(),
             methods: names().map(|name| (name, MethodReport::new(name, results))).collect(),
-            corrections: None,
         }
     }
 
@@ -199,10 +175,6 @@ impl Report {
                 "{} probes are in the database, which makes their results meaningless: build it without them\n",
                 self.probes_in_database
             );
-        }
-        if let Some(corrections) = &self.corrections {
-            // Writing into a string cannot fail.
-            let _ = writeln!(text, "camera: {corrections}\n");
         }
         text.push_str("method      PSNR of the field    PSNR    SSIM       time  answered\n");
         let shown = |value: Option<f64>, digits: usize| {

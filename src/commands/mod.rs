@@ -10,7 +10,6 @@ mod evaluate;
 mod filter;
 mod gap;
 mod info;
-mod model_file;
 mod output;
 mod picture_at;
 mod render;

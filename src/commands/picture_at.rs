@@ -6,7 +6,7 @@ use clap::Args;
 
 use reality_sim::{Archive, Camera, Synthesizer, synthesis::SynthesisConfig, warp::MAX_SOURCES};
 
-use super::{device::BackendArgs, model_file::ModelFile};
+use super::device::BackendArgs;
 
 /// How pictures are made.
 #[derive(Debug, Args)]
@@ -25,13 +25,9 @@ pub struct SynthesisArgs {
 }
 
 impl SynthesisArgs {
-    /// Opens a database, and evens out the light of its pictures by the model, if there is one.
-    pub fn archive(&self, database: &Path, model: Option<&ModelFile>) -> anyhow::Result<Arc<Archive>> {
-        let archive = Archive::open(database, (self.cache as usize) << 20)?;
-        Ok(Arc::new(match model {
-            Some(model) => model.light(archive, database)?,
-            None => archive,
-        }))
+    /// Opens a database.
+    pub fn archive(&self, database: &Path) -> anyhow::Result<Arc<Archive>> {
+        Ok(Arc::new(Archive::open(database, (self.cache as usize) << 20)?))
     }
 
     /// Makes the synthesizer for pictures of a camera.

@@ -7,7 +7,7 @@ use clap::Args;
 
 use reality_sim_viewer::ViewerOptions;
 
-use super::{device, model_file::ModelArgs};
+use super::device;
 
 /// Path of the demonstration, relative to the project's folder.
 const DEMONSTRATION: &str = "assets/walk";
@@ -18,8 +18,6 @@ pub struct ViewerArgs {
     /// Folder of a sequence, database, or folder of a report; the demonstration walk if left out
     #[arg(value_name = "SEQUENCE|DATABASE|REPORT")]
     open: Option<PathBuf>,
-    #[command(flatten)]
-    model: ModelArgs,
 }
 
 /// Runs the command.
@@ -38,8 +36,7 @@ pub fn run(args: &ViewerArgs) -> anyhow::Result<()> {
             "viewer: the demonstration ({DEMONSTRATION}) is neither here nor beside the program: give a recording's folder, a database or a report's folder"
         ),
     };
-    let model = args.model.read()?.map(|file| file.model);
-    Ok(reality_sim_viewer::run(ViewerOptions { open, demonstration, model, devices: device::all() })?)
+    Ok(reality_sim_viewer::run(ViewerOptions { open, demonstration, devices: device::all() })?)
 }
 
 /// Finds the demonstration: in the current folder, in a folder above the program, or where the program was built.

@@ -91,6 +91,8 @@ fn wrong_usage_exits_with_2() {
             "--out",
             "x.png",
         ],
+        &["render", database, "--pose", "1,2,3", "--model", "m.toml", "--out", "x.png"],
+        &["render", database, "--pose", "1,2,3", "--method", "blend", "--model", "m.toml", "--out", "x.png"],
         &["render", database, "--pose", "1,2,3", "--neighbours", "9", "--out", "x.png"],
         &["evaluate", database],
         &["info"],

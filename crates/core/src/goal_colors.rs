@@ -11,10 +11,12 @@ use crate::{camera::Camera, field::FieldDimensions, pose::CameraPose, setters::s
 pub struct GoalColorConfig {
     /// Number of samples along each post and crossbar, 24: one every 4 to 10 cm, which is a few pixels apart.
     pub samples: u32,
-    /// Log-odds of one sample whose colour is clearly that of one goal, 0.1: neighbouring samples are not independent. What
-    /// pictures of one goal can tell together is limited by
-    /// [`crate::localization::TrackConfig::deceiving_view_probability`].
+    /// Log-odds of one sample whose colour is clearly that of one goal, 0.1: neighbouring samples are not independent, so
+    /// that a whole goal in view gives about as much as one picture may.
     pub sample_log_odds: f64,
+    /// Maximum log-odds of one picture, 2: pictures of the same wall are not independent. Two pictures are needed for
+    /// [`crate::localization::TrackConfig::max_mirrored_probability`].
+    pub max_log_odds: f64,
     /// Minimum distance between the goals' chromaticities, 0.05: nearer ones count as one colour.
     pub min_color_distance: f64,
     /// Maximum distance of a sample's colour from a goal's, as a fraction of the distance between both goals' colours,
@@ -25,13 +27,20 @@ pub struct GoalColorConfig {
 setters!(GoalColorConfig {
     with_samples: samples = u32,
     with_sample_log_odds: sample_log_odds = f64,
+    with_max_log_odds: max_log_odds = f64,
     with_min_color_distance: min_color_distance = f64,
     with_color_reach: color_reach = f64,
 });
 
 impl Default for GoalColorConfig {
     fn default() -> Self {
-        Self { samples: 24, sample_log_odds: 0.1, min_color_distance: 0.05, color_reach: 0.35 }
+        Self {
+            samples: 24,
+            sample_log_odds: 0.1,
+            max_log_odds: 2.0,
+            min_color_distance: 0.05,
+            color_reach: 0.35,
+        }
     }
 }
 
@@ -60,35 +69,29 @@ impl GoalColors {
         })
     }
 
-    /// Returns the log-odds, from one picture, of the mirror pose against the pose itself: by the goal at −x, then by that
-    /// at +x. Neither counts yet that the picture may deceive.
-    pub fn mirrored_log_odds(&self, picture: &RgbImage, pose: CameraPose) -> [f64; 2] {
-        let mut log_odds = [0.0; 2];
-        for &(point, at_positive_x) in &self.points {
-            log_odds[usize::from(at_positive_x)] +=
-                self.sample_log_odds(picture, pose, point, at_positive_x).unwrap_or_default();
-        }
-        log_odds
-    }
-
-    /// Returns the log-odds of one sample; `None` where it is not in view or has neither goal's colour.
-    fn sample_log_odds(
-        &self,
-        picture: &RgbImage,
-        pose: CameraPose,
-        point_in_world: DVec3,
-        at_positive_x: bool,
-    ) -> Option<f64> {
-        let pixel = self.camera.project(pose.camera_from_world(point_in_world)).ok()?;
-        let color = chromaticity(picture.get_pixel(pixel.x.round() as u32, pixel.y.round() as u32).0)?;
-        let (here, there) =
-            if at_positive_x { (self.positive, self.negative) } else { (self.negative, self.positive) };
-        let reach = self.config.color_reach * distance(self.positive, self.negative);
-        match (distance(color, here) < reach, distance(color, there) < reach) {
-            (false, true) => Some(self.config.sample_log_odds),
-            (true, false) => Some(-self.config.sample_log_odds),
-            _ => None,
-        }
+    /// Returns the log-odds, from one picture, of the mirror pose against the pose itself.
+    pub fn mirrored_log_odds(&self, picture: &RgbImage, pose: CameraPose) -> f64 {
+        let sum: f64 = self
+            .points
+            .iter()
+            .filter_map(|&(point, at_positive_x)| {
+                let pixel = self.camera.project(pose.camera_from_world(point)).ok()?;
+                let color =
+                    chromaticity(picture.get_pixel(pixel.x.round() as u32, pixel.y.round() as u32).0)?;
+                let (here, there) = if at_positive_x {
+                    (self.positive, self.negative)
+                } else {
+                    (self.negative, self.positive)
+                };
+                let reach = self.config.color_reach * distance(self.positive, self.negative);
+                match (distance(color, here) < reach, distance(color, there) < reach) {
+                    (false, true) => Some(self.config.sample_log_odds),
+                    (true, false) => Some(-self.config.sample_log_odds),
+                    _ => None,
+                }
+            })
+            .sum();
+        sum.clamp(-self.config.max_log_odds, self.config.max_log_odds)
     }
 }
 
@@ -141,10 +144,8 @@ mod tests {
             }
             picture
         };
-        let [behind, ahead] = colors.mirrored_log_odds(&painted(field.goal_srgb_positive_x), pose);
-        assert!(behind == 0.0 && ahead <= -1.0, "{behind} {ahead}");
-        let [behind, ahead] = colors.mirrored_log_odds(&painted(field.goal_srgb_negative_x), pose);
-        assert!(behind == 0.0 && ahead >= 1.0, "{behind} {ahead}");
+        assert!(colors.mirrored_log_odds(&painted(field.goal_srgb_positive_x), pose) <= -1.0);
+        assert!(colors.mirrored_log_odds(&painted(field.goal_srgb_negative_x), pose) >= 1.0);
         let plain = FieldDimensions { goal_srgb_positive_x: None, ..field };
         assert!(GoalColors::new(&camera, &plain, GoalColorConfig::default()).is_none());
     }

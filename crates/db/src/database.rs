@@ -12,7 +12,7 @@ use glam::DVec2;
 use image::RgbImage;
 use reality_sim_core::{
     field::FieldDimensions,
-    sequence::{CameraSetup, decode_image, model_of_camera},
+    sequence::{CameraSetup, decode_image},
     warp::Hall,
 };
 use rusqlite::{Connection, OpenFlags, OptionalExtension, Row, Transaction, params};
@@ -83,13 +83,6 @@ impl Database {
         let setup =
             |(id, text): (i64, String)| Ok((id, CameraSetup::from_toml(&self.origin("camera", id), &text)?));
         texts.into_iter().map(setup).collect()
-    }
-
-    /// Returns the texts of the models by which recordings were corrected before they were stored, by the ids of the
-    /// corrected cameras.
-    pub fn models(&self) -> Result<BTreeMap<i64, String>, DbError> {
-        let texts = self.read(|transaction| texts(transaction, "SELECT id, toml FROM cameras"))?;
-        Ok(texts.into_iter().filter_map(|(id, text)| Some((id, model_of_camera(&text)?))).collect())
     }
 
     /// Returns the fields by id.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use reality_sim_core::{
     field::FieldDimensions,
-    sequence::{CameraSetup, Sequence, camera_with_model},
+    sequence::{CameraSetup, Sequence},
 };
 
 use crate::{
@@ -51,20 +51,11 @@ impl Recording {
     pub fn of_sequence(sequence: &Sequence, source: PoseSource) -> Result<Self, DbError> {
         Ok(Self {
             first_frame: first_frame(sequence),
-            camera: corrected_camera(sequence)?,
+            camera: sequence.setup.to_toml(&sequence.folder)?,
             field: sequence.field.to_toml(&sequence.folder)?,
             ..Self::new(&sequence.name, &sequence.setup, &sequence.field, source)?
         })
     }
-}
-
-/// Returns the text of a sequence's camera, with the model by which it was corrected, if there is one.
-fn corrected_camera(sequence: &Sequence) -> Result<String, DbError> {
-    let camera = sequence.setup.to_toml(&sequence.folder)?;
-    Ok(match &sequence.corrected_by {
-        Some(model) => camera_with_model(&camera, model),
-        None => camera,
-    })
 }
 
 /// Returns everything that is known of the first frame except the picture: it distinguishes a sequence from others of its

@@ -216,7 +216,6 @@ impl Takes {
             setup: plan.nominal.setup(plan.stated)?,
             frames,
             start: Some(logger.start()),
-            corrected_by: None,
             field: if other_field { drawn::another_league(field) } else { field.clone() },
         };
         mistaken.iter().for_each(|mistake| mistakes::make(*mistake, &mut sequence.frames));

@@ -17,6 +17,11 @@ use crate::{
     trajectory::Trajectory,
 };
 
+/// Tolerance of an inverted tone curve, encoded.
+const INVERSION_TOLERANCE: f64 = 1e-7;
+/// Largest number of steps of an inversion; a few suffice.
+const MOST_INVERSION_STEPS: usize = 60;
+
 /// Gamma of a camera without photometric calibration.
 const DEFAULT_GAMMA: f64 = 2.2;
 
@@ -48,7 +53,7 @@ pub struct Chain {
 
 /// Returns the variance of a Gaussian kernel sampled at the pixels' centres. Below half a pixel it is less than the square
 /// of sigma, because the kernel hardly reaches the neighbouring pixels.
-pub(crate) fn sampled_variance_px2(sigma_px: f64) -> f64 {
+fn sampled_variance_px2(sigma_px: f64) -> f64 {
     if sigma_px <= 0.0 {
         return 0.0;
     }
@@ -188,11 +193,6 @@ impl Chain {
         product(&self.exposure, |used| used.effect.gain(&used.values, time_s))
     }
 
-    /// Whether an effect of the exposure is present.
-    pub(crate) fn changes_gain(&self) -> bool {
-        !self.exposure.is_empty()
-    }
-
     /// Returns the variance along each axis, in pixels², of the blur by lens and sensor at a pixel: the nominal variance
     /// plus the effects'. It excludes the pixel's own extent (1/12) and motion blur.
     pub fn psf_variance_px2(&self, pixel: DVec2) -> f64 {
@@ -219,6 +219,32 @@ impl Chain {
     /// Returns the pixel value, 0 to 1, for the sensor's linear output.
     pub fn encode(&self, linear: f64) -> f64 {
         self.tone.encode(linear)
+    }
+
+    /// Returns the linear value of light, before the sensor's response, that is encoded as this pixel value, 0 to 1. Values
+    /// that no light has are clipped to those of the darkest and the brightest.
+    pub fn linear_of(&self, encoded: f64) -> f64 {
+        let excess = |linear: f64| self.encode(self.respond(linear)) - encoded;
+        let (mut low, mut high) = ((0.0, excess(0.0)), (1.0, excess(1.0)));
+        if low.1 >= 0.0 || high.1 <= 0.0 {
+            return if low.1 >= 0.0 { 0.0 } else { 1.0 };
+        }
+        // Nearly right where the chain is a power law; bounds close in from both sides (Illinois algorithm, Dowell and
+        // Jarratt 1971).
+        let mut next = encoded.powf(self.tone.gamma);
+        for _ in 0..MOST_INVERSION_STEPS {
+            let found = (next, excess(next));
+            if found.1.abs() < INVERSION_TOLERANCE {
+                break;
+            }
+            if found.1 > 0.0 {
+                (high, low.1) = (found, 0.5 * low.1);
+            } else {
+                (low, high.1) = (found, 0.5 * high.1);
+            }
+            next = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        }
+        next
     }
 
     /// Returns the motion that the odometry reports for a true motion of the camera that took `duration_s` seconds. The

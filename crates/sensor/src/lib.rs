@@ -7,8 +7,6 @@
 //! | [`Effect`], [`library()`] | a deviation of a real camera or robot from the nominal model; all known effects |
 //! | [`Model`] | the effects present and their sizes, as in `model.toml` |
 //! | [`Chain`] | a camera with its model, for points, light and motions one by one |
-//! | [`Corrected`] | camera, field and recordings as a model corrects them |
-//! | [`Shading`] | what lens and exposure do to the light of whole pictures, taken out and put in |
 //! | [`Trajectory`] | the camera's pose at any time, interpolated between stamped poses |
 //! | [`Frame`] | projection of points into one picture, row by row |
 //! | [`SceneColors`] | the colours of carpet, lines, goals and hall |
@@ -47,7 +45,6 @@
 mod blur;
 mod chain;
 mod colors;
-mod corrected;
 mod effect;
 mod effect_index;
 mod effects;
@@ -59,11 +56,9 @@ mod model;
 mod motion;
 mod noise;
 mod projected_scene;
-mod reach;
 mod renderer;
 mod scene;
 mod sensor;
-mod shading;
 pub mod text;
 mod tone;
 mod trajectory;
@@ -71,16 +66,13 @@ mod trajectory;
 pub use self::{
     chain::Chain,
     colors::SceneColors,
-    corrected::{Corrected, CorrectionError},
     effect::{About, Changes, Covariate, Effect, Estimates, Growth, Need, Opposite, Parameter, Role, Stage},
     effect_index::EffectIndex,
     effects::{effect, library},
     frame::Frame,
     model::{Model, ModelError, ModelFault, Used},
     noise::Noise,
-    reach::Reach,
     renderer::{RenderError, Renderer},
-    shading::Shading,
     tone::{InvalidTone, Tone},
     trajectory::{Trajectory, TrajectoryError, Twist},
 };

@@ -17,8 +17,6 @@ use reality_sim_db::{
     metric::PixelMetric,
 };
 
-use reality_sim_sensor::{Model, ModelError, Shading};
-
 use crate::{SynthesisError, cache::PictureCache};
 
 /// Recorded images, indexed by pose. Threads share one archive.
@@ -32,8 +30,6 @@ pub struct Archive {
     proxy: ProxyGeometry,
     index: PoseIndex,
     cache: PictureCache,
-    shading: Option<Shading>,
-    corrected_by: Option<String>,
 }
 
 impl Archive {
@@ -54,7 +50,6 @@ impl Archive {
         let cameras = cameras.collect();
         let camera_id = most_common(images.iter().map(|image| image.camera_id)).ok_or_else(empty)?;
         let setup = setups.remove(&camera_id).ok_or_else(empty)?;
-        let corrected_by = database.models()?.remove(&camera_id);
         let poses: Vec<CameraPose> = images.iter().map(|image| image.pose).collect();
         let metric = PixelMetric::new(&setup.camera, usual_pose(&poses), &field)
             .ok_or_else(|| SynthesisError::BlindCamera { database: path.display().to_string() })?;
@@ -63,36 +58,7 @@ impl Archive {
         let proxy = poses.iter().fold(proxy, |proxy, pose| proxy.holding(*pose));
         let index = PoseIndex::new(metric, poses);
         let cache = PictureCache::new(cache_bytes);
-        let shading = None;
-        Ok(Self { database, images, cameras, setup, field, proxy, index, cache, shading, corrected_by })
-    }
-
-    /// Takes what a model says of the lens's falloff and of gains out of the recorded pictures, so that neighbours meet
-    /// without seams, and puts the falloff into those that are made. Fails where the model leaves no valid camera.
-    pub fn with_model(self, model: &Model) -> Result<Self, ModelError> {
-        let rest = self.missing_of(model).corrected(&self.setup, &self.field)?;
-        let cache = PictureCache::new(self.cache.limit_bytes());
-        Ok(Self { shading: Shading::new(rest.chain()), cache, ..self })
-    }
-
-    /// Returns the part of a model that the archive does not contain yet: all of it, or, where the recordings were corrected
-    /// before they were stored, what it says of light and simulated pictures.
-    pub fn missing_of(&self, model: &Model) -> Model {
-        match self.corrected_by {
-            Some(_) => model.without_corrected(&self.setup, &self.field),
-            None => model.clone(),
-        }
-    }
-
-    /// Returns the shading that is taken out of pictures of a camera, if there is one.
-    pub(crate) fn shading_of(&self, camera: &Camera) -> Option<&Shading> {
-        self.shading.as_ref().filter(|shading| shading.size() == [camera.width, camera.height])
-    }
-
-    /// Returns the text of the model by which the recordings of [`Archive::setup`] were corrected before they were stored, if
-    /// there was one.
-    pub fn corrected_by(&self) -> Option<&str> {
-        self.corrected_by.as_deref()
+        Ok(Self { database, images, cameras, setup, field, proxy, index, cache })
     }
 
     /// Returns the database that was opened.
@@ -141,15 +107,7 @@ impl Archive {
     ///
     /// Panics if there is no such image: indices come from [`Archive::index`].
     pub fn picture(&self, image: ImageIndex) -> Result<Arc<Picture>, SynthesisError> {
-        let record = &self.images[image as usize];
-        let decode = || {
-            let mut picture = self.database.picture(record.id)?;
-            if let Some(shading) = self.shading_of(self.camera_of(image)) {
-                let (colors, _) = picture.as_chunks_mut();
-                shading.take_out(colors, record.timestamp_s);
-            }
-            Ok(Picture::from(&picture))
-        };
+        let decode = || Ok(Picture::from(&self.database.picture(self.images[image as usize].id)?));
         self.cache.get(image, decode)
     }
 

@@ -30,11 +30,6 @@ impl PictureCache {
         Self { limit_bytes, held: Mutex::default() }
     }
 
-    /// Largest size of the pictures held, bytes.
-    pub(crate) fn limit_bytes(&self) -> usize {
-        self.limit_bytes
-    }
-
     /// Returns a picture, decoded by `decode` if it is not held. Two threads may decode the same picture at once; one of
     /// the two results is kept.
     pub(crate) fn get<E>(

@@ -47,10 +47,6 @@ impl Synthesizer {
         let near = self.archive().index().check_reach(pose, self.config().reach_px);
         near.map_err(|reason| SynthesisError::NoNeighbours { pose, reason })?;
         let (colors, _) = buffer.as_chunks_mut();
-        let provenance = method.draw(self, pose, colors)?;
-        if let Some(shading) = self.archive().shading_of(self.camera()) {
-            shading.put_in(colors);
-        }
-        Ok(provenance)
+        method.draw(self, pose, colors)
     }
 }

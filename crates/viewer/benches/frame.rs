@@ -41,7 +41,7 @@ fn frames(criterion: &mut Criterion) {
 fn window() -> Window {
     let walk = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/walk");
     let device = Device::processor();
-    let options = ViewerOptions { open: walk, demonstration: None, model: None, devices: vec![device] };
+    let options = ViewerOptions { open: walk, demonstration: None, devices: vec![device] };
     let builder = Harness::builder().with_size([1280.0, 820.0]);
     let mut window = builder.wgpu().build_eframe(|cc| ViewerApp::new(cc, options));
     while window.query_by_label("Camera picture").is_none() {

@@ -128,8 +128,7 @@ fn write_report(recording: &Path, to: &Path) -> Result<(), Box<dyn Error>> {
 
 fn open(path: &Path) -> Window {
     let device = Device::processor();
-    let options =
-        ViewerOptions { open: path.to_path_buf(), demonstration: None, model: None, devices: vec![device] };
+    let options = ViewerOptions { open: path.to_path_buf(), demonstration: None, devices: vec![device] };
     let builder = Harness::builder().with_size([1280.0, 820.0]).with_max_steps(16);
     builder.wgpu().build_eframe(|cc| ViewerApp::new(cc, options))
 }

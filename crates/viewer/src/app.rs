@@ -9,7 +9,6 @@ use eframe::{
     CreationContext, Frame, Storage,
     egui::{self, Context, ThemePreference, Ui},
 };
-use reality_sim_sensor::Model;
 
 use crate::{
     ViewerOptions,
@@ -32,7 +31,6 @@ use crate::{
 pub struct ViewerApp {
     settings: Settings,
     devices: Vec<Device>,
-    model: Option<Model>,
     demonstration: Option<PathBuf>,
     /// Name of the graphics adapter that draws the window.
     adapter: String,
@@ -74,7 +72,6 @@ impl ViewerApp {
         let mut app = Self {
             settings,
             devices: options.devices,
-            model: options.model,
             demonstration: options.demonstration.map(|path| whole(&path)),
             adapter: adapter(cc),
             frame_times: FrameTimes::default(),
@@ -99,8 +96,7 @@ impl ViewerApp {
     fn open(&mut self, ctx: &Context, purpose: Purpose, path: &Path) {
         let path = whole(path);
         let (title, wanted) = (format!("Opening {} …", path.display()), path.clone());
-        let model = self.model.clone();
-        let task = Task::spawn(ctx, title, move |_| open(&wanted, model.as_ref()));
+        let task = Task::spawn(ctx, title, move |_| open(&wanted));
         self.opening = Some(Opening { purpose, path, task });
     }
 
@@ -326,18 +322,14 @@ mod tests {
 
     /// Returns a window that is opening something, and the sender whose message ends the opening.
     fn with_endless_opening() -> (Harness<'static, ViewerApp>, mpsc::Sender<()>) {
-        let options = ViewerOptions {
-            open: "/no/such/walk".into(),
-            demonstration: None,
-            model: None,
-            devices: Vec::new(),
-        };
+        let options =
+            ViewerOptions { open: "/no/such/walk".into(), demonstration: None, devices: Vec::new() };
         let mut harness =
             Harness::builder().with_size([1280.0, 820.0]).build_eframe(|cc| ViewerApp::new(cc, options));
         let (go, wait) = mpsc::channel();
         let task = Task::spawn(&harness.ctx, "Opening it …", move |_| {
             wait.recv().map_err(|error| error.to_string())?;
-            open(Path::new("/no/such/walk/either"), None)
+            open(Path::new("/no/such/walk/either"))
         });
         harness.state_mut().opening = Some(Opening { purpose: Purpose::Open, path: PathBuf::new(), task });
         harness.run_steps(2);

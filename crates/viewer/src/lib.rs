@@ -17,7 +17,7 @@
 //! use reality_sim_viewer::{Device, ViewerOptions, run};
 //!
 //! let devices = vec![Device::processor()];
-//! run(ViewerOptions { open: "assets/walk".into(), demonstration: None, model: None, devices })?;
+//! run(ViewerOptions { open: "assets/walk".into(), demonstration: None, devices })?;
 //! # Ok::<(), reality_sim_viewer::ViewerError>(())
 //! ```
 

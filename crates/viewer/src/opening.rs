@@ -6,7 +6,6 @@ use std::{
 };
 
 use reality_sim_core::sequence::Sequence;
-use reality_sim_sensor::Model;
 use reality_sim_synthesis::Archive;
 
 use crate::gap::Loaded;
@@ -32,29 +31,17 @@ impl Opened {
     }
 }
 
-/// Opens a folder as a recording or a report, a file as a database; a model corrects the former and evens out the light of the
-/// latter. The error names the fault and the remedy.
-pub fn open(path: &Path, model: Option<&Model>) -> Result<Opened, String> {
+/// Opens a folder as a recording or a report, a file as a database. The error names the fault and the remedy.
+pub fn open(path: &Path) -> Result<Opened, String> {
     if is_report(path) {
         Ok(Opened::Report(Box::new(Loaded::read(path)?)))
     } else if path.is_file() {
         let archive = Archive::open(path, CACHE_BYTES).map_err(|error| error.to_string())?;
-        Ok(Opened::Database(Arc::new(match model {
-            Some(model) => archive.with_model(model).map_err(|error| with_path(path, &error))?,
-            None => archive,
-        })))
+        Ok(Opened::Database(Arc::new(archive)))
     } else {
         let sequence = Sequence::open(path).map_err(|error| error.to_string())?;
-        Ok(Opened::Recording(Arc::new(match model {
-            Some(model) => model.correct(&sequence).map_err(|error| with_path(path, &error))?,
-            None => sequence,
-        })))
+        Ok(Opened::Recording(Arc::new(sequence)))
     }
-}
-
-/// Returns the message of a model that does not fit what is opened.
-fn with_path(path: &Path, error: &dyn std::error::Error) -> String {
-    format!("{}: the model cannot correct it: {error}", path.display())
 }
 
 /// Whether a folder was written by `reality-sim gap`, complete or not. A recording with reports in its folder remains a

@@ -2,8 +2,6 @@
 
 use std::path::PathBuf;
 
-use reality_sim_sensor::Model;
-
 use crate::Device;
 
 /// Options of the window: what it first shows, and the devices that it offers.
@@ -13,8 +11,6 @@ pub struct ViewerOptions {
     pub open: PathBuf,
     /// Recording that ships with the program, if it is found.
     pub demonstration: Option<PathBuf>,
-    /// Effects of the camera by which recordings are corrected and the light of databases' pictures is evened out.
-    pub model: Option<Model>,
     /// Devices for the filter and the pictures, the default one first. At least one.
     pub devices: Vec<Device>,
 }

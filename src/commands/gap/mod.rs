@@ -1,6 +1,5 @@
 //! `reality-sim gap`: finds the effect that a model of the camera lacks, and measures what adding it brings.
 
-mod corrected_files;
 mod options;
 mod poses;
 mod text;
@@ -18,7 +17,6 @@ use reality_sim::{
     sequence::{save_image, write_atomically},
 };
 
-use self::corrected_files::corrected_files;
 pub use self::options::GapArgs;
 use super::output::{create_output_folder, print, print_json};
 
@@ -42,8 +40,7 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
     progress.finish_and_clear();
     let analysis = analysis?;
     let pictures = Pictures::new(&recording, &given, &analysis)?;
-    let files = corrected_files(args, &sequence, &analysis)?;
-    write(&args.out, &analysis, &pictures, files)?;
+    write(&args.out, &analysis, &pictures)?;
     if args.json { print_json(&analysis.report) } else { print(&text::text(&analysis.report, &args.out)) }
 }
 
@@ -56,12 +53,7 @@ fn refuse_held(args: &GapArgs, given: &Model) -> anyhow::Result<()> {
 }
 
 /// Writes the report's files. `report.json`, by which other commands recognise the folder, comes last.
-fn write(
-    folder: &Path,
-    analysis: &Analysis,
-    pictures: &Pictures,
-    corrected: [(&str, String); 2],
-) -> anyhow::Result<()> {
+fn write(folder: &Path, analysis: &Analysis, pictures: &Pictures) -> anyhow::Result<()> {
     let shown = folder.join("pictures");
     fs::create_dir_all(&shown).with_context(|| format!("{}: cannot be created", shown.display()))?;
     for (name, picture) in
@@ -71,8 +63,9 @@ fn write(
     }
     let json = serde_json::to_string_pretty(&analysis.report)?;
     let page = html::page(&analysis.report, pictures);
-    let files = [("model.toml", analysis.model.to_toml()), ("report.html", page), ("report.json", json)];
-    for (name, text) in corrected.into_iter().chain(files) {
+    for (name, text) in
+        [("model.toml", analysis.model.to_toml()), ("report.html", page), ("report.json", json)]
+    {
         write_atomically(&folder.join(name), text.as_bytes())?;
     }
     Ok(())

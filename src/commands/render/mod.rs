@@ -19,22 +19,17 @@ use reality_sim::{
 
 pub use self::options::RenderArgs;
 use self::{
-    options::PictureMethod,
     painter::{Painted, Painter, Work},
     report::{Report, used},
 };
-use super::{
-    model_file::{ModelArgs, Use},
-    output::{frame_progress, print, print_json},
-};
+use super::output::{frame_progress, print, print_json};
 
 /// Number of pictures of a path in its strip.
 const STRIP_PICTURES: usize = 8;
 
 /// Runs the command.
 pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
-    let model = ModelArgs { model: args.model.clone() }.read()?;
-    let archive = args.synthesis.archive(&args.database, model.as_ref())?;
+    let archive = args.synthesis.archive(&args.database)?;
     let poses = args.poses(&archive)?;
     args.check_outputs()?;
     let mut setup = archive.setup().clone();
@@ -44,21 +39,14 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
         setup.photometry = other.photometry.or(setup.photometry);
     }
     let synthesizer = args.synthesis.synthesizer(archive.clone(), setup.camera.clone())?;
-    let painter = match (&model, args.method) {
-        (Some(model), PictureMethod::Simulated) => {
-            Painter::with_model(model, &archive, trajectory(args, &poses)?, &setup)?
-        }
-        (_, method) => Painter::new(method, &synthesizer, &setup),
+    let painter = match &args.model {
+        Some(model) => Painter::with_model(model, trajectory(args, &poses)?, archive.field(), &setup)?,
+        None => Painter::new(args.method, &synthesizer, &setup),
     };
-    let mut report = match &args.path {
+    let report = match &args.path {
         Some(path) => along_path(args, path, &painter, &poses)?,
         None => at_pose(args, &painter, &archive, poses[0])?,
     };
-    let purpose = match args.method {
-        PictureMethod::Simulated => Use::Simulation,
-        PictureMethod::Recorded(_) => Use::Pictures { is_corrected: archive.corrected_by().is_some() },
-    };
-    report.corrections = model.map(|model| model.words(archive.setup(), archive.field(), purpose));
     if args.json { print_json(&report) } else { print(&report.text()) }
 }
 
@@ -85,7 +73,6 @@ fn at_pose(
         milliseconds,
         covered: None,
         used: Vec::new(),
-        corrections: None,
         out: args.out.display().to_string(),
     };
     if let Work::Reconstructed(reconstruction) = work {
@@ -135,7 +122,6 @@ fn along_path(
         milliseconds: percentile(&times, 0.5).unwrap_or_default(),
         covered: (!covered.is_empty()).then(|| covered.iter().sum::<f64>() / covered.len() as f64),
         used: Vec::new(),
-        corrections: None,
         out: args.out.display().to_string(),
     })
 }

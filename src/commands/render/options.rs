@@ -47,9 +47,8 @@ pub struct RenderArgs {
     /// Make the picture of this camera.toml instead of the camera that took the recorded ones
     #[arg(long, value_name = "FILE")]
     pub camera: Option<PathBuf>,
-    /// Effects of the camera, a model.toml as `gap` writes it. Recorded pictures are mixed without the lens's falloff and
-    /// changes of the exposure. A simulated picture has all effects: at a single pose the camera stands still; along --path
-    /// it moves as the poses and their times say
+    /// Effects of the simulated camera (--method simulated), a model.toml as `gap` writes it. At a single pose the camera
+    /// stands still; along --path it moves as the poses and their times say
     #[arg(long, value_name = "FILE")]
     pub model: Option<PathBuf>,
     #[command(flatten)]
@@ -131,6 +130,9 @@ impl RenderArgs {
                 "--origins, --trust: a simulated picture is not made from recorded ones: leave them out"
                     .to_owned(),
             );
+        }
+        if self.method != PictureMethod::Simulated && self.model.is_some() {
+            return Err("--model: only a simulated picture has a model: add --method simulated".to_owned());
         }
         self.synthesis.backend.check_usage()
     }

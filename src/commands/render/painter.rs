@@ -1,18 +1,17 @@
 //! Source of the pictures: recorded ones, or the model of the field.
 
-use std::time::Instant;
+use std::{path::Path, time::Instant};
 
 use image::RgbImage;
 
 use reality_sim::{
-    Archive, Reconstruction, StampedPose, Synthesizer,
-    sensor::{Renderer, SceneColors, Trajectory},
+    FieldDimensions, Reconstruction, StampedPose, Synthesizer,
+    sensor::{Model, Renderer, SceneColors, Trajectory},
     sequence::CameraSetup,
     synthesis::MethodKind,
 };
 
 use super::options::PictureMethod;
-use crate::commands::model_file::ModelFile;
 
 /// Pictures at different times have different noise.
 const NOISE_SEED: u64 = 0;
@@ -70,19 +69,14 @@ impl<'a> Painter<'a> {
 
     /// Makes a painter for the simulated camera with the effects of a model file, moving along its trajectory.
     pub fn with_model(
-        model: &ModelFile,
-        archive: &Archive,
+        model: &Path,
         trajectory: Trajectory,
+        field: &FieldDimensions,
         setup: &CameraSetup,
     ) -> anyhow::Result<Self> {
-        let field = archive.field();
-        let renderer = Renderer::with_model(
-            setup,
-            field,
-            SceneColors::new(setup, field),
-            &archive.missing_of(&model.model),
-        );
-        Ok(Self::Modelled(Box::new(renderer.map_err(|error| error.in_file(model.path()))?), trajectory))
+        let colors = SceneColors::new(setup, field);
+        let renderer = Renderer::with_model(setup, field, colors, &Model::read(model)?);
+        Ok(Self::Modelled(Box::new(renderer.map_err(|error| error.in_file(model))?), trajectory))
     }
 
     /// Returns the name of the method.

@@ -19,9 +19,6 @@ pub struct Report {
     /// Pictures that a single picture was made from.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub used: Vec<UsedReport>,
-    /// What of the model was used.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub corrections: Option<String>,
     pub out: String,
 }
 
@@ -67,7 +64,6 @@ impl Report {
         if let Some(covered) = self.covered {
             lines.push(("recorded", format!("{:.0} % of the pixels; the rest is filled", 100.0 * covered)));
         }
-        lines.extend(self.corrections.iter().map(|corrections| ("camera", corrections.clone())));
         lines.push(("time", format!("{:.1} ms a picture", self.milliseconds)));
         lines.push(("picture", self.out.clone()));
         aligned(&lines)

@@ -21,15 +21,13 @@ use reality_sim::{
 
 pub use self::options::TagArgs;
 use self::report::{PoseResult, Report, details_csv};
-use super::{
-    model_file::Use,
-    output::{check_distinct, check_output_file, create_output_folder, frame_progress, print, print_json},
+use super::output::{
+    check_distinct, check_output_file, create_output_folder, frame_progress, print, print_json,
 };
 
 /// Runs the command.
 pub fn run(args: &TagArgs) -> anyhow::Result<()> {
-    let model = args.model.read()?;
-    let sequence = args.open_sequence(model.as_ref())?;
+    let sequence = args.open_sequence()?;
     check_outputs(args, &sequence)?;
 
     let config = args.config();
@@ -54,9 +52,7 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
             .collect();
         write_tum(out, &stamped)?;
     }
-    let corrections = model.map(|model| model.words(setup, field, Use::Recording));
-    let report =
-        Report::new(args, &sequence, &config, &device, &frames, &poses).with_corrections(corrections);
+    let report = Report::new(args, &sequence, &config, &device, &frames, &poses);
     if args.json { print_json(&report) } else { print(&report.text(&sequence.name)) }
 }
 

@@ -12,13 +12,12 @@ use reality_sim::{
     FieldDimensions, LocalizerConfig, ObservationKind, Pose2, Sequence,
     field::preset_names,
     filter::{Estimator, KldConfig, Resampling},
-    sequence::read_field,
+    sequence::{read_camera, read_field},
 };
 
 use crate::commands::{
     choice::{described, one_of},
     device::{BackendArgs, Device},
-    model_file::{ModelArgs, ModelFile},
 };
 
 /// Distance beyond which a jump of the odometry to its origin counts as a reset, metres.
@@ -83,8 +82,6 @@ pub struct TagArgs {
     /// Camera to use instead of the sequence's: a camera.toml
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
-    #[command(flatten)]
-    pub model: ModelArgs,
     /// Write the poses to this file, in the TUM format
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
@@ -188,14 +185,14 @@ impl TagArgs {
         config
     }
 
-    /// Opens the sequence and applies the options: another camera or field, a model, fewer frames, another start.
-    pub fn open_sequence(&self, model: Option<&ModelFile>) -> anyhow::Result<Sequence> {
-        let mut sequence = Sequence::open_with_camera(&self.sequence, self.camera.as_deref())?;
+    /// Opens the sequence and applies the options: another camera or field, fewer frames, another start.
+    pub fn open_sequence(&self) -> anyhow::Result<Sequence> {
+        let mut sequence = Sequence::open(&self.sequence)?;
+        if let Some(camera) = &self.camera {
+            sequence.setup = read_camera(camera)?;
+        }
         if let Some(field) = &self.field {
             sequence.field = field_by_name(field)?;
-        }
-        if let Some(model) = model {
-            sequence = model.correct(&sequence)?;
         }
         let range = self.range(&sequence)?;
         sequence.start = match (self.start, self.unknown_start) {
@@ -237,7 +234,7 @@ impl TagArgs {
     pub fn inputs(&self, sequence: &Sequence) -> Vec<PathBuf> {
         let mut inputs = sequence.files.clone();
         inputs.extend(sequence.frames.iter().map(|frame| sequence.folder.join(&frame.image)));
-        inputs.extend([&self.camera, &self.field, &self.model.model].into_iter().flatten().cloned());
+        inputs.extend([&self.camera, &self.field].into_iter().flatten().cloned());
         inputs
     }
 }

@@ -91,9 +91,6 @@ pub struct Report {
     out: Option<String>,
     details: Option<String>,
     overlay: Option<String>,
-    /// What of the model was used.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    corrections: Option<String>,
 }
 
 impl Report {
@@ -131,13 +128,7 @@ impl Report {
             out: args.out.as_deref().map(shown),
             details: args.details.as_deref().map(shown),
             overlay: args.overlay.as_deref().map(shown),
-            corrections: None,
         }
-    }
-
-    /// Adds what of the model was used.
-    pub fn with_corrections(self, corrections: Option<String>) -> Self {
-        Self { corrections, ..self }
     }
 
     fn backend_text(&self) -> String {
@@ -158,7 +149,6 @@ impl Report {
             ("time", format!("{:.1} ms a frame (median)", 1e3 * self.seconds_per_frame)),
             ("sure", format!("{} frames; {} searched", self.sure_frames, self.searched_frames)),
         ];
-        lines.extend(self.corrections.iter().map(|corrections| ("camera", corrections.clone())));
         if let Some(error) = &self.error {
             let cm = |metres: f64| format!("{:.2} cm", 100.0 * metres);
             let [mean, median, p95, max] = [error.mean_m, error.median_m, error.p95_m, error.max_m].map(cm);

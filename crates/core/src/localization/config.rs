@@ -184,15 +184,6 @@ pub struct TrackConfig {
     pub confirmed_on_a_long_way: u32,
     /// Probability of the mirror pose below which a pose can be sure, 0.05: the usual level of significance.
     pub max_mirrored_probability: f64,
-    /// Distance between two pictures of a goal from which they are different views of it, 0.5 m: a person's width, so that
-    /// who stands before the goal in one view need not stand there in the other.
-    pub view_distance_m: f64,
-    /// Probability that all pictures of a goal from one place show the colour of the other one, 0.12: by somebody in its
-    /// colour, or in another light. A view thus counts 2 at most, as log-odds; one goal needs two for a pose to be sure.
-    pub deceiving_view_probability: f64,
-    /// Probability that a goal has the colour of the other one from everywhere, 0.02: painted or lit otherwise than the field's
-    /// file says. A goal thus counts 3.9 at most, as log-odds, however many pictures show it.
-    pub deceiving_landmark_probability: f64,
 }
 
 setters!(TrackConfig {
@@ -212,9 +203,6 @@ setters!(TrackConfig {
     with_confirming_frames: confirming_frames = u32,
     with_confirmed_on_a_long_way: confirmed_on_a_long_way = u32,
     with_max_mirrored_probability: max_mirrored_probability = f64,
-    with_view_distance_m: view_distance_m = f64,
-    with_deceiving_view_probability: deceiving_view_probability = f64,
-    with_deceiving_landmark_probability: deceiving_landmark_probability = f64,
 });
 
 impl Default for TrackConfig {
@@ -237,9 +225,6 @@ impl Default for TrackConfig {
             confirming_frames: 4,
             confirmed_on_a_long_way: 2,
             max_mirrored_probability: 0.05,
-            view_distance_m: 0.5,
-            deceiving_view_probability: 0.12,
-            deceiving_landmark_probability: 0.02,
         }
     }
 }

@@ -54,7 +54,7 @@ impl Localizer {
         let begin = Instant::now();
         let picture = self.load(observation)?;
         let mount = observation.mount;
-        let posterior = match self.track.clone() {
+        let posterior = match self.track {
             Some(track) => self.follow(track, &picture, observation)?,
             None => self.begin(&picture, observation)?,
         };
@@ -301,7 +301,7 @@ impl Localizer {
             return Ok(());
         }
         let log_odds = goal_colors.mirrored_log_odds(observation.picture.pixels(), frame.pose);
-        if track.weigh_halves(frame.pose.planar(), log_odds) {
+        if track.weigh_halves(log_odds) {
             self.filter.mirror()?;
             frame.pose = frame.pose.mirrored();
             frame.filter.pose = frame.filter.pose.mirrored();

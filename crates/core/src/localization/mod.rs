@@ -65,7 +65,6 @@ mod builder;
 mod config;
 mod error;
 mod frame;
-mod half_evidence;
 mod localizer;
 mod observation;
 mod picture;

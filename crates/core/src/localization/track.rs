@@ -4,7 +4,7 @@
 //! *unconfirmed* until some consecutive pictures have fitted. It is *doubtful* while they fit badly. Whether the field's
 //! point symmetry has been resolved is tracked separately: a settled pose may still be the mirror image of the right one.
 
-use super::{config::TrackConfig, half_evidence::HalfEvidence};
+use super::config::TrackConfig;
 use crate::{
     filter::{MotionNoise, PlanarSigma},
     pose::{Motion2, Pose2},
@@ -32,7 +32,7 @@ pub(crate) struct Prediction {
 }
 
 /// State of a track.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Track {
     config: TrackConfig,
     /// Last pose that fitted, moved by the odometry since.
@@ -46,16 +46,14 @@ pub(crate) struct Track {
     unconfirmed: Option<u32>,
     /// Number of doubtful pictures since the last one that fitted: in these the filter may have been lost.
     doubtful_frames: u32,
-    /// Log-odds of the mirror pose against the pose itself, apart from what pictures of the goals have told since.
-    prior_mirrored_log_odds: f64,
-    /// What pictures of the goals have told since.
-    half_evidence: HalfEvidence,
+    /// Log-odds of the mirror pose against the pose itself.
+    mirrored_log_odds: f64,
 }
 
 impl Track {
     /// Starts a track at a pose.
     pub fn new(config: TrackConfig, pose: Pose2, odometry: Option<Pose2>, beginning: Beginning) -> Self {
-        let (unconfirmed, prior_mirrored_log_odds) = match beginning {
+        let (unconfirmed, mirrored_log_odds) = match beginning {
             Beginning::Given => (None, f64::NEG_INFINITY),
             Beginning::Searched { is_clear } => ((!is_clear).then_some(0), 0.0),
         };
@@ -67,8 +65,7 @@ impl Track {
             usual_line_fraction: 0.0,
             unconfirmed,
             doubtful_frames: 0,
-            prior_mirrored_log_odds,
-            half_evidence: HalfEvidence::default(),
+            mirrored_log_odds,
         }
     }
 
@@ -80,7 +77,7 @@ impl Track {
         self.anchor_sigma = self.anchor_sigma.plus(prediction.sigma);
         if prediction.is_kidnapped {
             // Whoever carried the robot may have turned it round.
-            self.forget_half(0.0);
+            self.mirrored_log_odds = 0.0;
         }
         prediction
     }
@@ -119,9 +116,7 @@ impl Track {
         if let Some(best) = best {
             // A picture of the lines cannot tell the two halves apart: only prior knowledge can.
             let odds = prior.log_probability(best.mirrored()) - prior.log_probability(best);
-            if odds > self.mirrored_log_odds() {
-                self.forget_half(odds);
-            }
+            self.mirrored_log_odds = self.mirrored_log_odds.max(odds);
         }
     }
 
@@ -198,37 +193,24 @@ impl Track {
 
     /// Returns whether the half of the field is still uncertain and the picture shows enough to decide it.
     pub fn asks_for_half(&self, line_fraction: f64) -> bool {
-        self.prior_mirrored_log_odds != f64::NEG_INFINITY
-            && line_fraction >= self.config.fitting_line_fraction
+        self.mirrored_log_odds != f64::NEG_INFINITY && line_fraction >= self.config.fitting_line_fraction
     }
 
-    /// Adds what a picture taken at a pose tells of the mirror pose: its log-odds by each goal, that at −x first. If the
-    /// mirror pose becomes the more probable one, the track turns round and this returns true.
-    pub fn weigh_halves(&mut self, pose: Pose2, log_odds: [f64; 2]) -> bool {
-        self.half_evidence.add(pose, log_odds, &self.config);
-        let is_mirrored = self.mirrored_log_odds() > 0.0;
+    /// Adds a picture's log-odds of the mirror pose. If the mirror pose becomes the more probable one, the track turns
+    /// round and this returns true.
+    pub fn weigh_halves(&mut self, mirrored_log_odds: f64) -> bool {
+        self.mirrored_log_odds += mirrored_log_odds;
+        let is_mirrored = self.mirrored_log_odds > 0.0;
         if is_mirrored {
-            self.prior_mirrored_log_odds = -self.prior_mirrored_log_odds;
-            self.half_evidence = self.half_evidence.mirrored();
+            self.mirrored_log_odds = -self.mirrored_log_odds;
             self.anchor = self.anchor.mirrored();
         }
         is_mirrored
     }
 
-    /// Starts anew with the halves: whatever the goals have told belongs to a place that may have been left.
-    fn forget_half(&mut self, prior_mirrored_log_odds: f64) {
-        self.prior_mirrored_log_odds = prior_mirrored_log_odds;
-        self.half_evidence = HalfEvidence::default();
-    }
-
-    /// Returns the log-odds of the mirror pose against the pose itself.
-    fn mirrored_log_odds(&self) -> f64 {
-        self.prior_mirrored_log_odds + self.half_evidence.log_odds(&self.config)
-    }
-
     /// Returns the probability that the mirror pose is the right one.
     pub fn mirrored_probability(&self) -> f64 {
-        1.0 / (1.0 + (-self.mirrored_log_odds()).exp())
+        1.0 / (1.0 + (-self.mirrored_log_odds).exp())
     }
 
     /// Returns whether the half of the field is beyond doubt.
@@ -309,12 +291,9 @@ mod tests {
         let mut track = track(Beginning::Searched { is_clear: true });
         assert_eq!(track.mirrored_probability(), 0.5);
         assert!(!track.is_half_sure() && track.asks_for_half(GOOD) && !track.asks_for_half(POOR / 2.0));
-        let goal = [0.0, -4.0];
-        for _ in 0..100 {
-            assert!(!track.weigh_halves(Pose2::new(1.0, 0.0, 0.0), goal));
-            assert!(!track.is_half_sure(), "a hundred pictures of one view are one");
-        }
-        assert!(!track.weigh_halves(Pose2::new(0.0, 0.0, 0.0), goal) && track.is_half_sure());
+        assert!(!track.weigh_halves(-2.0) && !track.is_half_sure());
+        assert!(!track.weigh_halves(-2.0) && track.is_half_sure());
+        assert!((track.mirrored_probability() - 1.0 / (1.0 + 4.0_f64.exp())).abs() < 1e-15);
     }
 
     #[test]
@@ -322,12 +301,11 @@ mod tests {
         let mut track = track(Beginning::Searched { is_clear: true });
         let pose = Pose2::new(1.0, 0.5, 0.2);
         track.settle(pose, GOOD);
-        assert!(!track.weigh_halves(pose, [0.0, -1.0]));
-        let before = track.mirrored_probability();
-        assert!(track.weigh_halves(pose, [0.0, 2.0]));
+        assert!(!track.weigh_halves(-1.0));
+        assert!(track.weigh_halves(3.0));
         assert_eq!(track.prior().pose, pose.mirrored());
-        // The evidence counts for the pose that the track has turned to: 2 − 1 for it is as much as 1 against it was.
-        assert!((track.mirrored_probability() - before).abs() < 1e-12);
+        // The evidence counts for the pose that the track has turned to.
+        assert!((track.mirrored_probability() - 1.0 / (1.0 + 2.0_f64.exp())).abs() < 1e-15);
     }
 
     #[test]
@@ -384,8 +362,7 @@ mod tests {
         let prediction_of = |forward_m| {
             let mut track = settled();
             let odometry = Pose2::new(forward_m, 0.0, 0.0);
-            let prediction = track.predict(Some(odometry), &MotionNoise::default());
-            (track, prediction)
+            (track, track.predict(Some(odometry), &MotionNoise::default()))
         };
         // 0.02 m standing still plus 0.15 m per metre: 0.15 m after 0.87 m, 0.3 m after 1.87 m.
         for (forward_m, is_long, needs_search) in

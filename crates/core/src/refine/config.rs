@@ -87,9 +87,6 @@ pub struct SmoothingConfig {
     /// Squared Mahalanobis distance from the chain above which a picture's fit is an outlier, made on the wrong line, 40. A
     /// right fit exceeds it once in two million times (χ² of six degrees of freedom); fits of wrong lines are far beyond.
     pub outlier_chi2: f64,
-    /// Information of a picture about a direction of its pose above which it can contradict the others there, 1 (a
-    /// standard deviation of 1 m or 1 rad): below it, rounding decides where the picture has the pose.
-    pub min_information: f64,
 }
 
 setters!(SmoothingConfig {
@@ -98,7 +95,6 @@ setters!(SmoothingConfig {
     with_default_sway: default_sway = [f64; 3],
     with_min_sway_pairs: min_sway_pairs = usize,
     with_outlier_chi2: outlier_chi2 = f64,
-    with_min_information: min_information = f64,
 });
 
 impl Default for SmoothingConfig {
@@ -109,7 +105,6 @@ impl Default for SmoothingConfig {
             default_sway: [0.02; 3],
             min_sway_pairs: 10,
             outlier_chi2: 40.0,
-            min_information: 1.0,
         }
     }
 }

@@ -44,18 +44,6 @@ pub struct PoseFit {
 }
 
 impl PoseFit {
-    /// Returns the gradient, at a pose, of the log-likelihood of the picture alone. At the fitted pose the picture and the
-    /// mount pose pull against each other with equal force, so that the picture's pull there is known from the mount pose's.
-    pub(super) fn pull_of_picture(
-        &self,
-        pose: CameraPose,
-        mount: MountPose,
-        mount_information: &Matrix6<f64>,
-    ) -> Vector6<f64> {
-        self.information * pose_difference(pose, self.pose)
-            + mount_information * mount_error(self.pose, mount)
-    }
-
     /// Returns the fit turned by 180° about the field's centre, where x and y change their signs.
     pub fn mirrored(self) -> Self {
         let signs = Matrix6::from_diagonal(&Vector6::new(-1.0, -1.0, 1.0, 1.0, 1.0, 1.0));

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     error::{Fault, SequenceError, excerpt},
-    mounting::Mounting,
     text::read_and_parse,
     toml_text::{NumberCheck, line_of_key, parse, print},
 };
@@ -75,12 +74,6 @@ struct CameraTable {
 #[derive(Serialize, Deserialize)]
 struct MountTable {
     height_m: f64,
-    #[serde(default, skip_serializing_if = "is_as_stated")]
-    correction: Mounting,
-}
-
-fn is_as_stated(correction: &Mounting) -> bool {
-    correction.is_as_stated()
 }
 
 /// Table for an [`ImageCircle`] to which other programs may add keys.
@@ -96,16 +89,6 @@ pub fn read_camera(path: &Path) -> Result<CameraSetup, SequenceError> {
     read_and_parse(path, CameraSetup::from_toml)
 }
 
-/// Reads where the camera is against what the recording's other files state, `[mount.correction]`, from a camera file. Fails
-/// as [`read_camera`] does.
-pub fn read_mounting(path: &Path) -> Result<Mounting, SequenceError> {
-    read_and_parse(path, |path, text| {
-        let table: CameraTable = parse(path, text)?;
-        table.mount.correction.check(path, text)?;
-        Ok(table.mount.correction)
-    })
-}
-
 impl CameraSetup {
     /// Parses the text of a `camera.toml`. Fails with the first value that is missing or invalid. Errors name `origin`:
     /// the file, or another source of the text.
@@ -117,7 +100,6 @@ impl CameraSetup {
         let mount = NumberCheck { path: origin, text, table: "mount" };
         let in_range = |height_m| height_m > 0.0 && height_m <= MAX_HEIGHT_M;
         mount.check("height_m", table.mount.height_m, in_range, "above 0 and at most 100 metres")?;
-        table.mount.correction.check(origin, text)?;
         if let Some(photometry) = &table.photometry {
             check_photometry(origin, text, photometry)?;
         }
@@ -131,11 +113,6 @@ impl CameraSetup {
     /// Returns the text of a `camera.toml` with this camera. Fails if the camera cannot be written as TOML. Errors name
     /// `origin`: the file, or another destination of the text.
     pub fn to_toml(&self, origin: &Path) -> Result<String, SequenceError> {
-        self.to_toml_with(origin, Mounting::default())
-    }
-
-    /// Works as [`CameraSetup::to_toml`], with the camera's placement against what the recording's other files state.
-    pub fn to_toml_with(&self, origin: &Path, correction: Mounting) -> Result<String, SequenceError> {
         let camera = &self.camera;
         let table = CameraTable {
             model: camera.distortion.colmap_name().to_owned(),
@@ -147,7 +124,7 @@ impl CameraSetup {
             cy: camera.cy,
             distortion: camera.distortion.parameters(),
             max_angle_rad: limited_angle_rad(camera),
-            mount: MountTable { height_m: self.mount_height_m, correction },
+            mount: MountTable { height_m: self.mount_height_m },
             image_circle: camera.image_circle.map(|circle| CircleTable {
                 cx: circle.cx,
                 cy: circle.cy,

@@ -5,13 +5,11 @@
 
 mod atomic;
 mod camera_file;
-mod corrected_by;
 mod error;
 mod field_file;
 mod format_error;
 mod frames;
 mod groundtruth;
-mod mounting;
 mod picture;
 mod printable;
 mod sequence_file;
@@ -29,14 +27,12 @@ use image::RgbImage;
 
 pub use self::{
     atomic::write_atomically,
-    camera_file::{CameraSetup, Photometry, read_camera, read_mounting},
-    corrected_by::{camera_with_model, model_of_camera},
+    camera_file::{CameraSetup, Photometry, read_camera},
     error::{Fault, SequenceError},
     field_file::read_field,
     format_error::FormatError,
     frames::FrameRecord,
     groundtruth::match_poses,
-    mounting::Mounting,
     picture::{check_image, decode_image, save_image},
     printable::{Printable, one_line},
     tum::{StampedPose, read_tum, write_tum},
@@ -69,36 +65,25 @@ pub struct Sequence {
     pub frames: Vec<FrameRecord>,
     /// Pose of the first frame in the world, if known.
     pub start: Option<Pose2>,
-    /// Text of the model by which camera, field, poses and odometry have been corrected, if one has been used.
-    pub corrected_by: Option<String>,
 }
 
 impl Sequence {
     /// Reads and validates a sequence's text files, not its pictures. Fails if a file is missing or cannot be read, or
     /// with the first value that is missing or invalid.
     pub fn open(folder: &Path) -> Result<Self, SequenceError> {
-        Self::open_with_camera(folder, None)
-    }
-
-    /// Works as [`Sequence::open`], with another camera file, if one is given, in place of the sequence's own.
-    pub fn open_with_camera(folder: &Path, camera: Option<&Path>) -> Result<Self, SequenceError> {
         check_folder(folder)?;
         let main_file = folder.join(SEQUENCE_FILE);
         let table = read_and_parse(&main_file, parse_sequence)?;
         let parts = [&table.camera, &table.field, &table.frames];
         let parts = parts.into_iter().chain(&table.groundtruth).map(|name| folder.join(name));
         let files = std::iter::once(main_file).chain(parts).collect();
-        let camera = camera.map_or_else(|| folder.join(&table.camera), Path::to_path_buf);
-        let (setup, mounting) = (read_camera(&camera)?, read_mounting(&camera)?);
+        let setup = read_camera(&folder.join(&table.camera))?;
         let field = read_field(&folder.join(&table.field))?;
         let mut frames = read_and_parse(&folder.join(&table.frames), parse_frames)?;
         if let Some(name) = &table.groundtruth {
             let path = folder.join(name);
             let poses = match_poses(&path, read_tum(&path)?, &frames)?;
             frames.iter_mut().zip(poses).for_each(|(frame, pose)| frame.reference_pose = pose);
-        }
-        if !mounting.is_as_stated() {
-            frames.iter_mut().for_each(|frame| mounting.correct(frame));
         }
         Ok(Self {
             folder: folder.to_path_buf(),
@@ -108,14 +93,7 @@ impl Sequence {
             field,
             frames,
             start: table.start.map(Pose2::from),
-            corrected_by: None,
         })
-    }
-
-    /// Returns the path of a recording's camera file. Fails as [`Sequence::open`] does.
-    pub fn camera_file(folder: &Path) -> Result<PathBuf, SequenceError> {
-        check_folder(folder)?;
-        Ok(folder.join(read_and_parse(&folder.join(SEQUENCE_FILE), parse_sequence)?.camera))
     }
 
     /// Returns the reference pose of each frame, if there is one.

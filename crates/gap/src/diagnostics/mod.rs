@@ -1,14 +1,13 @@
-//! Detectors of deviations that no effect of the library explains, one in each file, and the things on the carpet.
+//! Detectors of deviations that no effect of the library explains, one in each file.
 
 mod carpet;
 pub(crate) mod detector;
+mod dynamic_objects;
 pub(crate) mod finding;
 mod flicker;
 mod missing_lines;
 mod nominal_consistency;
-pub(crate) mod object;
-pub(crate) mod objects;
-mod obstruction;
+mod occluders;
 mod odometry;
 mod residual_patterns;
 mod scatter;
@@ -16,10 +15,11 @@ mod scatter;
 use self::detector::Detector;
 
 /// All detectors, in the order in which their findings are reported.
-pub(crate) const DETECTORS: [&dyn Detector; 7] = [
+pub(crate) const DETECTORS: [&dyn Detector; 8] = [
     &residual_patterns::ResidualPatterns,
     &flicker::Flicker,
-    &obstruction::Obstruction,
+    &occluders::Occluders,
+    &dynamic_objects::DynamicObjects,
     &odometry::Odometry,
     &nominal_consistency::NominalConsistency,
     &missing_lines::MissingLines,

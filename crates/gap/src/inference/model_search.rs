@@ -8,9 +8,8 @@ use reality_sim_sensor::{EffectIndex, Model};
 use crate::{
     inference::effect_fit::EffectFits,
     inference::effect_test::{EffectTest, EffectTests},
-    inference::linearized_recording::LinearizedRecording,
+    inference::linearized_recording::{Linearize, LinearizedRecording},
     inference::model_comparison::{indistinguishable_below, minus_log_likelihood},
-    inference::recording_source::Linearize,
     inference::split::HeldOutSplit,
     linear_model::column::ColumnIndex,
     linear_model::linearization::MeasureError,
@@ -38,7 +37,7 @@ pub(crate) type ConvergedSet = (Vec<EffectIndex>, LinearizedRecording);
 
 impl ModelSearch<'_> {
     /// Returns all effects of a model: the given ones and these named ones.
-    pub(crate) fn all(&self, named: &[EffectIndex]) -> Vec<EffectIndex> {
+    fn all(&self, named: &[EffectIndex]) -> Vec<EffectIndex> {
         self.given.iter().chain(named).copied().collect()
     }
 
@@ -56,6 +55,12 @@ impl ModelSearch<'_> {
         let is_supported = |tests: &EffectTests<'_>, effect: EffectIndex, beside: &[EffectIndex]| {
             tests.test(effect, beside, tested).as_ref().is_some_and(EffectTest::is_supported)
         };
+        // A value at the end of its range is no measurement, however much it explains.
+        if let Some(&effect) = named.iter().find(|effect| tests.fits.is_at_end_of_range(**effect)) {
+            let others: Vec<EffectIndex> = named.iter().copied().filter(|other| *other != effect).collect();
+            let converged = self.converge(linearized.clone(), &self.all(&others))?;
+            return Ok(Some((others, converged)));
+        }
         for &unsupported in named.iter().filter(|effect| !is_supported(tests, **effect, &all)) {
             let others: Vec<EffectIndex> =
                 named.iter().copied().filter(|effect| *effect != unsupported).collect();

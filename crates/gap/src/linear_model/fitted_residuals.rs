@@ -3,14 +3,16 @@
 use nalgebra::{DVector, Matrix6, Vector6};
 
 use crate::linear_model::{
-    column::ColumnIndex, linearized_frame::LinearizedFrame, pose_projection::prior_precision,
+    column::{ColumnIndex, Columns},
+    linearized_frame::LinearizedFrame,
+    pose_projection::prior_precision,
 };
 
 /// Residuals of a frame after a change of the columns, with the pose refitted.
 pub(crate) struct FittedResiduals {
     pub(crate) residuals: Vec<f64>,
     /// Estimated error of the reference pose.
-    pub(crate) pose_error: Vector6<f64>,
+    pub(super) pose_error: Vector6<f64>,
     /// Posterior variances of the pose error.
     pub(super) pose_variance: Vector6<f64>,
 }
@@ -21,6 +23,7 @@ impl FittedResiduals {
         frame: &LinearizedFrame,
         weights: &[f64],
         delta: &DVector<f64>,
+        columns: &Columns,
         pose_sigmas: &[f64; 6],
     ) -> Self {
         let change = |derivatives: &Vec<(ColumnIndex, f64)>| {
@@ -29,8 +32,12 @@ impl FittedResiduals {
         let mut residuals: Vec<f64> = frame
             .residuals
             .iter()
-            .zip(&frame.jacobian)
-            .map(|(residual, derivatives)| residual - change(derivatives))
+            .zip(frame.jacobian.iter().zip(&frame.patches))
+            .map(|(residual, (derivatives, patch))| {
+                let reflectance =
+                    patch.map_or(0.0, |(patch, derivative)| derivative * delta[columns.of_patch(patch).0]);
+                residual - change(derivatives) - reflectance
+            })
             .collect();
         let (mut normal, mut gradient) = (prior_precision(pose_sigmas), Vector6::zeros());
         for ((pose_gradient, &weight), residual) in frame.pose_gradients.iter().zip(weights).zip(&residuals) {
@@ -46,10 +53,5 @@ impl FittedResiduals {
             *residual -= pose_gradient.dot(&pose_error);
         }
         Self { residuals, pose_error, pose_variance: covariance.diagonal() }
-    }
-
-    /// Returns the sum of squares of the estimated pose error, in its standard deviations.
-    pub(crate) fn pose_penalty(&self, pose_sigmas: &[f64; 6]) -> f64 {
-        self.pose_error.dot(&(prior_precision(pose_sigmas) * self.pose_error))
     }
 }

@@ -17,7 +17,6 @@ pub use self::{
 };
 pub use crate::{
     diagnostics::finding::{FieldLine, Finding, Movement, NominalValue, OdometryComponent, PatternCell},
-    diagnostics::object::{Object, ObjectMotion},
     inference::detection_limit::{MissingInput, UnobservableCause},
     measurement::quantity::{Channel, ColorChannel},
 };

@@ -30,6 +30,9 @@ pub(crate) struct InferenceThresholds {
     /// Largest p-value of a supported effect, corrected for all effects tested. Chosen, for a rate of wrong names below 2 %
     /// where nothing is missing; measured on draw 3: 0 of 220.
     pub(crate) significance: f64,
+    /// Largest p-value by lines alone and by carpet alone of light that both together show. Chosen: a confirmation, not
+    /// corrected for all effects; patches of carpet alone pass it once in fifty times.
+    pub(crate) surface_significance: f64,
     /// Smallest gain on held-out frames of a supported effect, log-likelihood. Chosen: a likelihood ratio of e⁴ ≈ 55, "strong
     /// evidence" by Kass and Raftery (1995).
     pub(crate) least_gain: f64,
@@ -84,14 +87,8 @@ pub(crate) struct InferenceThresholds {
     /// A gap has changed where it differs by more than this part of what it was. Chosen: measuring the lines anew changes it
     /// by less.
     pub(crate) least_gap_change: f64,
-    /// An effect claims the channels that it changes by more than this part of what it changes the first one by, each in its
-    /// noise floors. Chosen: what is left of the others is a tenth of the variance.
-    pub(crate) claimed_share: f64,
     /// Part of recordings in which an effect at its detection limit is found. Chosen: it defines the limit.
     pub(crate) power: f64,
-    /// Recordings that are simulated to see how often an effect of a certain size is found. Derived: a share of 90 % is then known
-    /// to 5 %, and the limit, from which the share rises with about its logarithm, to 6 %.
-    pub(crate) limit_draws: u64,
     /// Part of what a model explains that its residuals may be off by: discs are no Gaussians, clipped colours no gains. Set
     /// on draw 0. Not [`Self::compared_model_error`], which is of log-likelihoods and decides ties.
     pub(crate) model_error: f64,
@@ -109,6 +106,7 @@ impl InferenceThresholds {
         correlated_clusters: 3,
         least_field_variance_ratio: 1e-3,
         significance: 0.005,
+        surface_significance: 0.02,
         least_gain: 4.0,
         least_gain_score: 2.5,
         material_significance: 0.05,
@@ -127,9 +125,7 @@ impl InferenceThresholds {
         picture_rows: 3000.0,
         odometry_rows: 60.0,
         least_gap_change: 0.02,
-        claimed_share: 0.3,
         power: 0.9,
-        limit_draws: 40,
         model_error: 0.04,
         outlying_sigmas: LinearModelThresholds::DEFAULT.tukey_sigmas,
     };

@@ -27,11 +27,11 @@ mod workflow;
 
 pub(crate) use self::{
     diagnostics::{
-        DiagnosticThresholds, FlickerThresholds, MissingLineThresholds, ObjectThresholds,
-        ObstructionThresholds, OdometryThresholds, PatternThresholds,
+        DiagnosticThresholds, DynamicObjectThresholds, FlickerThresholds, MissingLineThresholds,
+        OdometryThresholds, PatternThresholds,
     },
     inference::InferenceThresholds,
-    linear_model::{LinearModelThresholds, NuisanceThresholds, PoseErrorThresholds},
+    linear_model::{LinearModelThresholds, NuisanceThresholds, PoseErrorThresholds, ReflectanceThresholds},
     measurement::{
         CarpetThresholds, LineThresholds, MeasurementThresholds, ProfileThresholds, VisibilityThresholds,
     },

@@ -3,24 +3,19 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DVector;
-use rayon::prelude::*;
-use reality_sim_sensor::{EffectIndex, Model};
+use reality_sim_sensor::{EffectIndex, Model, Role};
 
 use crate::{
     diagnostics::DETECTORS,
     diagnostics::detector::{FitResiduals, FrameResiduals},
     diagnostics::finding::Finding,
-    diagnostics::objects::objects,
     frame_index::FrameIndex,
-    inference::confirmation::without,
     inference::detection_limit::{NotFound, limit},
     inference::effect_fit::EffectFits,
     inference::effect_test::{EffectTest, EffectTests},
     inference::gain::Gain,
-    inference::held_out::{ChannelGap, HeldOutResiduals},
+    inference::held_out::{ChannelGap, HeldOutResiduals, gaps},
     inference::model_error::ModelError,
-    inference::power::PowerAnalysis,
-    inference::recording_source::{FittedRecording, Linearize},
     inference::selected_model::SelectedModel,
     linear_model::column::ColumnIndex,
     linear_model::fitted_residuals::FittedResiduals,
@@ -55,18 +50,17 @@ pub fn analyse(
     let tests = found.effect_tests();
     let before = HeldOutResiduals::new(recording, &found, model)?;
     let after = HeldOutResiduals::new(recording, &found, &found.linearized.model)?;
-    let channels = compared(recording, &found, model)?;
-    let mut effects = effect_reports(recording, &tests, &found, (&found.named, model))?;
+    let channels = gaps(&found, &before, &after);
+    let mut effects = effect_reports(recording, &tests, &found, (&found.named, model), &after)?;
     effects.sort_by(|a, b| b.held_out_gain.value.total_cmp(&a.held_out_gain.value));
-    let in_model = effect_reports(recording, &tests, &found, (&found.given, model))?;
-    let delta = nuisance_fit(&found);
-    let model_error = ModelError::new(&found, &before, &after);
-    let fit = fit_residuals(recording, &found, &delta, (&channels, &model_error));
-    // A pattern in a single view may be due to that place.
-    let has_views = tests.fits.evidence.views() >= LEAST_VIEWS;
-    let unexplained = if has_views { findings(&fit) } else { Vec::new() };
-    let objects = objects(&fit);
-    let (not_found, unobservable) = others(recording, &found, &tests);
+    let in_model = effect_reports(recording, &tests, &found, (&found.given, model), &after)?;
+    let unexplained = if tests.fits.evidence.views() < LEAST_VIEWS {
+        // A pattern in a single view may be due to that place.
+        Vec::new()
+    } else {
+        findings(recording, &found, &channels, &ModelError::new(&found, &before, &after))
+    };
+    let (not_found, unobservable) = others(recording, &tests, &found.all());
     let report = Report {
         recording: recording.sequence.name.clone(),
         frames: recording.frames.len(),
@@ -76,7 +70,6 @@ pub fn analyse(
         effects,
         in_model,
         unexplained,
-        objects,
         gap: whole_gap(channels),
         not_found,
         unobservable,
@@ -97,17 +90,16 @@ pub fn analyse(
 /// Returns the same errors as [`analyse`].
 pub fn gap_of(recording: &Recording<'_>, model: &Model, options: &Options) -> Result<Gap, MeasureError> {
     let found = as_given(recording, model, options)?;
-    Ok(whole_gap(compared(recording, &found, model)?))
+    let residuals = HeldOutResiduals::new(recording, &found, model)?;
+    Ok(whole_gap(gaps(&found, &residuals, &residuals)))
 }
 
-/// Returns the gaps of a model and of the extended one on held-out frames.
-fn compared(
-    recording: &Recording<'_>,
-    found: &SelectedModel,
-    model: &Model,
-) -> Result<BTreeMap<Channel, ChannelGap>, MeasureError> {
-    let source = FittedRecording { recording, columns: &found.columns, split: &found.split };
-    Ok(source.compare(model, &found.linearized)?.gaps())
+/// Returns a model without one effect.
+fn without(model: &Model, effect: EffectIndex) -> Model {
+    let id = effect.effect().id();
+    let mut model = model.clone();
+    model.effects.retain(|used| used.effect.id() != id);
+    model
 }
 
 /// Returns the fraction of each channel's distance to the noise floor that is closed, for channels with a distance worth
@@ -115,7 +107,7 @@ fn compared(
 fn closed(gaps: &BTreeMap<Channel, ChannelGap>) -> BTreeMap<Channel, f64> {
     let part = |gap: &ChannelGap| {
         let open = gap.before - gap.floor;
-        (open > THRESHOLDS.least_open_gap * gap.floor).then(|| ((gap.before - gap.after) / open).min(1.0))
+        (open > THRESHOLDS.least_open_gap * gap.floor).then(|| (gap.before - gap.after) / open)
     };
     let parts = gaps.iter().filter_map(|(channel, gap)| Some((*channel, part(gap)?)));
     parts.filter(|(_, part)| *part > THRESHOLDS.least_closed_part).collect()
@@ -144,13 +136,14 @@ fn effect_reports(
     tests: &EffectTests<'_>,
     found: &SelectedModel,
     (effects, given): (&[EffectIndex], &Model),
+    after: &HeldOutResiduals,
 ) -> Result<Vec<EffectReport>, MeasureError> {
     let all = found.all();
     let tested = tests.fits.effects().len();
     let made = effects.iter().filter_map(|&effect| tests.test(effect, &all, tested));
     let report = |test: EffectTest| {
         let others = without(&found.linearized.model, test.effect);
-        let closes = closed(&compared(recording, found, &others)?);
+        let closes = closed(&gaps(found, &HeldOutResiduals::new(recording, found, &others)?, after));
         Ok(effect_report(&tests.fits, &test, found, given, closes))
     };
     made.map(report).collect()
@@ -175,7 +168,7 @@ fn effect_report(
     let confusable = found.confusable_with(test.effect).into_iter();
     EffectReport {
         id: effect.id().to_owned(),
-        parameters: estimates(fits, test),
+        parameters: estimates(fits, test, &found.linearized.model),
         correlations: correlations(fits, test),
         given: given.map(|(parameter, value)| (parameter.name.to_owned(), *value)).collect(),
         p_value: found.p_value(test),
@@ -186,7 +179,7 @@ fn effect_report(
 }
 
 /// Returns estimates of an effect's parameters by their names.
-fn estimates(fits: &EffectFits<'_>, test: &EffectTest) -> BTreeMap<String, Estimate> {
+fn estimates(fits: &EffectFits<'_>, test: &EffectTest, model: &Model) -> BTreeMap<String, Estimate> {
     let estimate = |index: ColumnIndex| {
         let column = &fits.columns[index.0];
         let sigma = fits.evidence.sigma(&test.fit, index);
@@ -196,7 +189,18 @@ fn estimates(fits: &EffectFits<'_>, test: &EffectTest) -> BTreeMap<String, Estim
         let parameter = column.parameter();
         (parameter.name.to_owned(), Estimate { value, sigma, unit: Some(parameter.unit.to_owned()) })
     };
-    fits.columns_of(&[test.effect]).into_iter().map(estimate).collect()
+    let fitted = fits.columns_of(&[test.effect]).into_iter().map(estimate);
+    fitted.chain(fixed(test.effect, model)).collect()
+}
+
+/// Iterates over the parameters that the recording gives.
+fn fixed(effect: EffectIndex, model: &Model) -> impl Iterator<Item = (String, Estimate)> {
+    let parameters = effect.effect().parameters().iter();
+    let values = model.values(effect.effect().id()).unwrap_or_default();
+    let given = parameters.zip(values).filter(|(parameter, _)| parameter.role == Role::Fixed);
+    given.map(|(parameter, &value)| {
+        (parameter.name.to_owned(), Estimate { value, sigma: 0.0, unit: Some(parameter.unit.to_owned()) })
+    })
 }
 
 /// Returns correlations of these estimates' errors; each pair of parameters appears once, in their order.
@@ -216,21 +220,16 @@ fn correlations(fits: &EffectFits<'_>, test: &EffectTest) -> BTreeMap<String, BT
 /// Reports the effects outside the model: those with a detection limit, and those that are unobservable.
 fn others(
     recording: &Recording<'_>,
-    found: &SelectedModel,
     tests: &EffectTests<'_>,
+    all: &[EffectIndex],
 ) -> (Vec<NotFoundReport>, Vec<Unobservable>) {
-    let (all, effects) = (found.all(), tests.fits.effects());
-    let views = recording.views();
-    let power = PowerAnalysis::new(&tests.fits, found.split.training().map(|frame| views[frame]).collect());
-    let outside: Vec<EffectIndex> = effects.iter().copied().filter(|effect| !all.contains(effect)).collect();
-    let limits: Vec<NotFound> =
-        outside.par_iter().map(|&effect| limit(recording, &power, effect, &all)).collect();
     let (mut not_found, mut unobservable) = (Vec::new(), Vec::new());
-    for (index, limit) in outside.into_iter().zip(limits) {
+    let effects = tests.fits.effects();
+    for &index in effects.iter().filter(|effect| !all.contains(effect)) {
         let id = index.effect().id().to_owned();
-        match limit {
+        match limit(recording, &tests.fits, index, all) {
             NotFound::Limit { value, unit, parameter } => {
-                let test = tests.test(index, &all, effects.len());
+                let test = tests.test(index, all, effects.len());
                 not_found.push(NotFoundReport {
                     id,
                     parameter: parameter.to_owned(),
@@ -245,41 +244,38 @@ fn others(
     (not_found, unobservable)
 }
 
-/// Returns the residuals of the training frames with only poses and nuisance parameters fitted; `delta` is that fit.
-fn fit_residuals<'a>(
-    recording: &'a Recording<'a>,
-    found: &'a SelectedModel,
-    delta: &'a DVector<f64>,
-    (gaps, model_error): (&'a BTreeMap<Channel, ChannelGap>, &'a ModelError),
-) -> FitResiduals<'a> {
+/// Returns what no effect explains in the training frames, with only poses and nuisance parameters fitted.
+fn findings(
+    recording: &Recording<'_>,
+    found: &SelectedModel,
+    gaps: &BTreeMap<Channel, ChannelGap>,
+    model_error: &ModelError,
+) -> Vec<Finding> {
+    let delta = nuisance_fit(found);
     let linearized = &found.linearized;
-    FitResiduals {
+    let fit = FitResiduals {
         recording,
         start_s: recording.start_s(),
-        frames: frame_residuals(recording, found, delta),
+        frames: frame_residuals(recording, found, &delta),
         steps: found.split.training().map(|frame| &recording.frames[frame]).collect(),
         measurements: found.split.training().map(|frame| &linearized.measurements[frame]).collect(),
         sigmas: &linearized.system.sigmas,
         nuisances: &linearized.nuisances,
-        nuisance_values: &delta.as_slice()[found.columns.len()..],
+        nuisance_values: &delta.as_slice()[found.columns.len()..linearized.system.columns.dense()],
         model_error,
         gaps,
-    }
-}
-
-/// Returns what no effect explains.
-fn findings(fit: &FitResiduals<'_>) -> Vec<Finding> {
-    DETECTORS.iter().flat_map(|detector| detector.detect(fit)).collect()
+    };
+    DETECTORS.iter().flat_map(|detector| detector.detect(&fit)).collect()
 }
 
 /// Returns the change of all columns that fits the nuisance parameters. The effects' fit has converged, so they keep their
 /// values.
 fn nuisance_fit(found: &SelectedModel) -> DVector<f64> {
     let fits = found.effect_fits();
-    let mut delta = fits.evidence.fit(&fits.columns_of(&found.all())).map_or_else(
-        || DVector::zeros(found.columns.len() + found.linearized.nuisances.len()),
-        |fit| fit.delta,
-    );
+    let mut delta = fits
+        .evidence
+        .fit(&fits.columns_of(&found.all()))
+        .map_or_else(|| DVector::zeros(found.linearized.system.columns.len()), |fit| fit.delta);
     delta.rows_mut(0, found.columns.len()).fill(0.0);
     delta
 }
@@ -298,7 +294,8 @@ fn frame_residuals<'a>(
             let frame = &found.linearized.frames[index];
             FrameResiduals {
                 measurements: &frame.measurements,
-                values: FittedResiduals::new(frame, weights, delta, &system.pose_sigmas).residuals,
+                values: FittedResiduals::new(frame, weights, delta, &system.columns, &system.pose_sigmas)
+                    .residuals,
                 time_s: recording.frames[index].time_s,
                 camera: found.linearized.measurements[index].camera_in_world.truncate(),
                 size: [camera.width, camera.height],

@@ -61,12 +61,8 @@ pub fn viewer<'a>(open: &Path) -> Viewer<'a> {
 /// Returns a window of a size, in points, that opens a path and remembers what is stored.
 pub fn viewer_with<'a>(open: &Path, size: Vec2, storage: Option<&'a dyn Storage>) -> Viewer<'a> {
     let device = Device::processor();
-    let options = ViewerOptions {
-        open: open.to_path_buf(),
-        demonstration: Some(walk()),
-        model: None,
-        devices: vec![device],
-    };
+    let options =
+        ViewerOptions { open: open.to_path_buf(), demonstration: Some(walk()), devices: vec![device] };
     Harness::builder().with_size(size).build_eframe(|cc| {
         cc.storage = storage;
         ViewerApp::new(cc, options)

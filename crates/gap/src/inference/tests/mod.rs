@@ -15,7 +15,7 @@ use crate::{
     },
     measurement::{quantity::Quantity, scalar::Measurement},
     recording::ReferenceKind,
-    testing::{Noise, measurement},
+    testing::{Noise, measurement, parameters},
 };
 
 /// Number of frames of a simulated recording; each frame is a view of its own.
@@ -34,8 +34,6 @@ struct World {
     signatures: Vec<Signature>,
     /// True size of each column.
     truth: Vec<f64>,
-    /// Factor of the true sizes, by frame and column.
-    course: fn(usize, usize) -> f64,
     seed: u64,
 }
 
@@ -58,7 +56,6 @@ impl World {
             columns: effects.iter().map(|(id, ..)| column(id)).collect(),
             signatures: effects.iter().map(|(_, signature, _)| *signature).collect(),
             truth: effects.iter().map(|(.., truth)| *truth).collect(),
-            course: |_, _| 1.0,
             seed: 1,
         }
     }
@@ -75,16 +72,19 @@ impl World {
     fn frames(&self, model: &Model) -> PerFrame<LinearizedFrame> {
         let mut noise = Noise(self.seed);
         let units: Vec<f64> = (0..self.columns.len()).map(|column| self.coordinate(column, 1.0)).collect();
-        let left = |frame: usize, column: usize| {
-            let truth = (self.course)(frame, column) * self.coordinate(column, self.truth[column]);
-            truth - self.columns[column].coordinate_in(model)
-        };
+        let left: Vec<f64> = (0..self.columns.len())
+            .map(|column| {
+                let truth = self.coordinate(column, self.truth[column]);
+                truth - self.columns[column].coordinate_in(model)
+            })
+            .collect();
         (0..FRAMES)
             .map(|frame| {
                 let mut made = LinearizedFrame {
                     measurements: Vec::new(),
                     residuals: Vec::new(),
                     jacobian: Vec::new(),
+                    patches: vec![None; ROWS],
                     pose_gradients: vec![Vector6::zeros(); ROWS],
                 };
                 for row in 0..ROWS {
@@ -95,8 +95,7 @@ impl World {
                         .zip(&units)
                         .map(|(signature, unit)| signature(frame, &numbers) / unit)
                         .collect();
-                    let explained: f64 =
-                        (0..).zip(&changes).map(|(column, change)| change * left(frame, column)).sum();
+                    let explained: f64 = changes.iter().zip(&left).map(|(change, left)| change * left).sum();
                     let ground = DVec2::new(0.5 * frame as f64, 0.5 * row as f64);
                     made.measurements.push(Measurement { ground, ..measurement(Quantity::LineBlur) });
                     made.residuals.push(explained + noise.next());
@@ -115,7 +114,7 @@ impl World {
 
     fn system(&self, frames: &[&LinearizedFrame]) -> LinearSystem {
         let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
-        LinearSystem::new(frames, self.columns.len(), ReferenceKind::Whole, &views)
+        LinearSystem::new(frames, parameters(self.columns.len()), ReferenceKind::Whole, &views)
     }
 
     /// Returns a model in the columns' coordinates.

@@ -18,10 +18,15 @@ pub fn finding_place(finding: &Finding) -> String {
         Finding::Flicker { .. } => {
             "bands along the rows that differ from picture to picture, as of lamps that flicker".to_owned()
         }
-        Finding::Obstruction { share, column, row, grid } => format!(
-            "{} of the carpet in view is hidden {} of nearly every picture, wherever the camera looks",
-            percent(*share),
-            picture_place([*column, *row], *grid)
+        Finding::Occluders { share } => {
+            format!(
+                "{} of the carpet in view is hidden by things that the model does not have",
+                percent(*share)
+            )
+        }
+        Finding::DynamicObjects { share } => format!(
+            "things that move: in {} of the pictures something stands on the carpet where others show it plain",
+            percent(*share)
         ),
         Finding::MissingLine { line, found_share, usual_share } => format!(
             "{}: found in {} of the places where it should be, other lines as wide in {}",
@@ -49,7 +54,10 @@ pub fn finding_size(finding: &Finding) -> String {
 
 /// Whether the words of [`finding_place`] already state the finding's size.
 pub(super) fn place_has_size(finding: &Finding) -> bool {
-    matches!(finding, Finding::Obstruction { .. } | Finding::MissingLine { .. })
+    matches!(
+        finding,
+        Finding::Occluders { .. } | Finding::DynamicObjects { .. } | Finding::MissingLine { .. }
+    )
 }
 
 /// Returns where a pattern is strongest.
@@ -100,7 +108,6 @@ fn nominal_value(value: NominalValue) -> String {
     match value {
         NominalValue::LineLevel(color) => format!("{} of lines", color_name(color)),
         NominalValue::CarpetLevel(color) => format!("{} of carpet", color_name(color)),
-        NominalValue::Sheen => "carpet seen at a grazing angle".to_owned(),
         NominalValue::Blur => "the blur".to_owned(),
         NominalValue::BlurByWidth => "the blur of broad lines against thin ones".to_owned(),
         NominalValue::BlurShape => "the shape of the blur".to_owned(),
@@ -170,10 +177,14 @@ mod tests {
                 "7.4 %",
             ),
             (
-                Finding::Obstruction { share: 0.124, column: 0, row: 4, grid: [8, 6] },
-                "12 % of the carpet in view is hidden at the left edge, in the lower part of nearly every picture, wherever \
-                 the camera looks",
+                Finding::Occluders { share: 0.124 },
+                "12 % of the carpet in view is hidden by things that the model does not have",
                 "12 %",
+            ),
+            (
+                Finding::DynamicObjects { share: 0.5 },
+                "things that move: in 50 % of the pictures something stands on the carpet where others show it plain",
+                "50 %",
             ),
             (
                 Finding::MissingLine { line, found_share: 0.1, usual_share: 0.8 },
