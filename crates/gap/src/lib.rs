@@ -14,6 +14,7 @@
 //! | [`report::Report`] | everything that was found: effects with sizes, unexplained findings, detection limits, the gap |
 //! | [`ChannelGap`] | size of one [`Channel`]'s residuals before and after, beside the noise floor |
 //! | [`gap_of`] | returns the gap of a model as it is |
+//! | [`inject`] | hides an effect in a recording, as a control |
 //! | [`html`], [`Pictures`] | report as a page, and the pictures in it |
 //!
 //! ```
@@ -44,6 +45,7 @@
 mod diagnostics;
 mod frame_index;
 mod inference;
+mod injection;
 mod linear_model;
 mod measurement;
 mod progress;
@@ -56,6 +58,7 @@ mod workflow;
 
 pub use self::{
     inference::held_out::ChannelGap,
+    injection::{InjectedRecording, InjectionError, inject, injected_parameter},
     linear_model::linearization::MeasureError,
     measurement::quantity::Channel,
     progress::Progress,

@@ -125,6 +125,7 @@ pub(crate) fn report() -> Report {
         effects: Vec::new(),
         in_model: Vec::new(),
         unexplained: Vec::new(),
+        objects: Vec::new(),
         gap: Gap { before: 1.0, after: 1.0, floor: 1.0, channels: BTreeMap::new() },
         not_found: Vec::new(),
         unobservable: Vec::new(),

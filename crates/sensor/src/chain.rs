@@ -171,6 +171,11 @@ impl Chain {
         self.gain(time_s).map(|gain| light * gain)
     }
 
+    /// Whether effects change the light on the ground from place to place.
+    pub(crate) fn has_uneven_light(&self) -> bool {
+        !self.world.is_empty()
+    }
+
     /// Returns the factor of the light on the ground at a point, metres.
     pub fn light_on_ground(&self, point_in_world: DVec2) -> f64 {
         let light = |used: &Used| used.effect.light(&used.values, point_in_world, &self.field);

@@ -45,6 +45,7 @@
 mod blur;
 mod chain;
 mod colors;
+mod development;
 mod effect;
 mod effect_index;
 mod effects;
@@ -66,6 +67,7 @@ mod trajectory;
 pub use self::{
     chain::Chain,
     colors::SceneColors,
+    development::Redevelopment,
     effect::{About, Changes, Covariate, Effect, Estimates, Growth, Need, Opposite, Parameter, Role, Stage},
     effect_index::EffectIndex,
     effects::{effect, library},

@@ -4,7 +4,10 @@ use std::{collections::BTreeMap, path::Path};
 
 use reality_sim::gap::report::{
     Report, Unobservable,
-    text::{absorbed, amount, effect_size, finding_place, limit, summary, unobservable_reason},
+    text::{
+        absorbed, amount, effect_size, finding_place, limit, object_place, object_share, summary,
+        unobservable_reason,
+    },
 };
 
 use crate::commands::output::aligned;
@@ -30,6 +33,9 @@ pub fn text(report: &Report, folder: &Path) -> String {
     }
     for finding in &report.unexplained {
         lines.push(("unknown", format!("{}: {}", finding.channel().name(), finding_place(finding))));
+    }
+    for object in &report.objects {
+        lines.push(("object", format!("{}: {}", object_place(object), object_share(object))));
     }
     for (channel, gap) in &report.gap.channels {
         let size = |size: f64| amount(*channel, size, channel.unit(), 3);

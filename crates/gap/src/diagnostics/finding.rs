@@ -27,15 +27,17 @@ pub enum Finding {
         /// P-value of the bands.
         p_value: f64,
     },
-    /// Objects in front of the carpet that the model does not have.
-    Occluders {
-        /// Share of the carpet in view that they hide, 0 to 1.
+    /// Carpet that is hidden in the same place of nearly every picture, wherever the camera looks: something on the lens or in
+    /// front of it.
+    Obstruction {
+        /// Share of the carpet in view that is hidden, 0 to 1.
         share: f64,
-    },
-    /// Objects on the carpet that are elsewhere in other pictures.
-    DynamicObjects {
-        /// Share of the pictures that show one, 0 to 1.
-        share: f64,
+        /// Column of its middle in a grid over the picture, from the left.
+        column: usize,
+        /// Row of its middle, from the top.
+        row: usize,
+        /// Number of columns and rows.
+        grid: [usize; 2],
     },
     /// Line of the field that the pictures do not show where the model predicts it.
     MissingLine {
@@ -174,9 +176,7 @@ impl Finding {
     pub fn channel(&self) -> Channel {
         match self {
             Self::Pattern { channel, .. } | Self::Scatter { channel, .. } => *channel,
-            Self::Flicker { .. } | Self::Occluders { .. } | Self::DynamicObjects { .. } => {
-                Channel::Photometry
-            }
+            Self::Flicker { .. } | Self::Obstruction { .. } => Channel::Photometry,
             Self::MissingLine { .. } => Channel::Geometry,
             Self::Odometry { .. } => Channel::Motion,
             Self::NominalValue { value, .. } => value.channel(),
@@ -190,7 +190,7 @@ impl Finding {
             | Self::Flicker { size, .. }
             | Self::Odometry { size, .. }
             | Self::Scatter { size, .. } => *size,
-            Self::Occluders { share } | Self::DynamicObjects { share } => *share,
+            Self::Obstruction { share, .. } => *share,
             Self::MissingLine { found_share, usual_share, .. } => 1.0 - found_share / usual_share,
             Self::NominalValue { off_by, .. } => *off_by,
         }
@@ -200,10 +200,7 @@ impl Finding {
     pub fn unit(&self) -> &'static str {
         match self {
             Self::Pattern { channel, .. } | Self::Scatter { channel, .. } => channel.unit(),
-            Self::Flicker { .. }
-            | Self::Occluders { .. }
-            | Self::DynamicObjects { .. }
-            | Self::MissingLine { .. } => "1",
+            Self::Flicker { .. } | Self::Obstruction { .. } | Self::MissingLine { .. } => "1",
             Self::Odometry { component, .. } => component.unit(),
             Self::NominalValue { value, .. } => value.unit(),
         }

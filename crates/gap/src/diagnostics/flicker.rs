@@ -8,8 +8,7 @@ use crate::{
         detector::{Detector, FitResiduals, FrameResiduals},
         finding::Finding,
     },
-    inference::gain::sum_of,
-    inference::hypothesis_test::two_sided,
+    inference::hypothesis_test::series_p_value,
     measurement::scalar::Measurement,
     thresholds::{FlickerThresholds, Thresholds},
 };
@@ -32,10 +31,11 @@ fn flicker(frames: &[FrameResiduals<'_>]) -> Option<Finding> {
     let rows = band_variances(frames, |measurement, size| measurement.pixel.y / f64::from(size[1]));
     let columns = band_variances(frames, |measurement, size| measurement.pixel.x / f64::from(size[0]));
     let differences: Vec<f64> = rows.iter().zip(&columns).map(|(row, column)| row - column).collect();
-    let sum = sum_of(&differences);
-    let count = frames.len() as f64;
-    let size = (sum.value.max(0.0) / count).sqrt();
-    let p_value = two_sided(sum.value / sum.sigma.max(1e-12), count - 1.0);
+    let sum: f64 = differences.iter().sum();
+    let mean = sum / frames.len().max(1) as f64;
+    let size = mean.max(0.0).sqrt();
+    let deviations: Vec<f64> = differences.iter().map(|difference| difference - mean).collect();
+    let p_value = series_p_value(sum, &deviations);
     (size > THRESHOLDS.material && p_value < Thresholds::DEFAULT.inference.significance)
         .then_some(Finding::Flicker { size, p_value })
 }
@@ -81,8 +81,10 @@ fn variance(values: impl Iterator<Item = f64>) -> f64 {
 mod tests {
     use std::f64::consts::TAU;
 
+    use glam::DVec2;
+
     use super::*;
-    use crate::diagnostics::carpet::pictures::with_pictures;
+    use crate::{diagnostics::carpet::pictures::with_walk, testing::Noise};
 
     /// Wave along a fraction of the picture, with a phase that differs from picture to picture.
     fn rolling(frame: u32, along: f64) -> f64 {
@@ -91,7 +93,7 @@ mod tests {
 
     #[test]
     fn bands_that_roll_along_the_rows_are_found_with_their_size() {
-        let found = with_pictures(|frame, place| rolling(frame, place.y), flicker).unwrap();
+        let found = with_walk(|frame, place, _| rolling(frame, place.y), flicker).unwrap();
         // Root mean square of a sine with amplitude 0.1.
         assert!((found.size() - 0.07).abs() < 0.015, "{found:?}");
         assert!(found.p_value().unwrap() < Thresholds::DEFAULT.inference.significance);
@@ -99,12 +101,28 @@ mod tests {
 
     #[test]
     fn constant_bands_bands_along_the_columns_and_even_carpet_are_no_flicker() {
-        assert_eq!(with_pictures(|_, place| rolling(0, place.y), flicker), None);
-        assert_eq!(with_pictures(|frame, place| rolling(frame, place.x), flicker), None);
+        assert_eq!(with_walk(|_, place, _| rolling(0, place.y), flicker), None);
+        assert_eq!(with_walk(|frame, place, _| rolling(frame, place.x), flicker), None);
         assert_eq!(
-            with_pictures(|frame, place| rolling(frame, place.x) + rolling(frame, place.y), flicker),
+            with_walk(|frame, place, _| rolling(frame, place.x) + rolling(frame, place.y), flicker),
             None
         );
-        assert_eq!(with_pictures(|_, _| 0.0, flicker), None);
+        assert_eq!(with_walk(|_, _, _| 0.0, flicker), None);
+    }
+
+    #[test]
+    fn noise_of_single_pictures_is_seldom_flicker_whatever_its_size() {
+        // Every picture has bands of its own along rows and columns alike.
+        let mut noise = Noise(1);
+        let found = (0..200).filter(|_| {
+            let waves: Vec<[f64; 2]> = (0..24).map(|_| [noise.next(), noise.next()]).collect();
+            let bands = |frame: u32, place: DVec2| {
+                let [rows, columns] = waves[frame as usize];
+                0.1 * (rows * (TAU * 2.0 * place.y).sin() + columns * (TAU * 2.0 * place.x).sin())
+            };
+            with_walk(|frame, place, _| bands(frame, place), flicker).is_some()
+        });
+        let found = found.count();
+        assert!(found <= 4, "{found} of 200");
     }
 }

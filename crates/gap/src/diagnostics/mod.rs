@@ -1,13 +1,14 @@
-//! Detectors of deviations that no effect of the library explains, one in each file.
+//! Detectors of deviations that no effect of the library explains, one in each file, and the things on the carpet.
 
 mod carpet;
 pub(crate) mod detector;
-mod dynamic_objects;
 pub(crate) mod finding;
 mod flicker;
 mod missing_lines;
 mod nominal_consistency;
-mod occluders;
+pub(crate) mod object;
+pub(crate) mod objects;
+mod obstruction;
 mod odometry;
 mod residual_patterns;
 mod scatter;
@@ -15,11 +16,10 @@ mod scatter;
 use self::detector::Detector;
 
 /// All detectors, in the order in which their findings are reported.
-pub(crate) const DETECTORS: [&dyn Detector; 8] = [
+pub(crate) const DETECTORS: [&dyn Detector; 7] = [
     &residual_patterns::ResidualPatterns,
     &flicker::Flicker,
-    &occluders::Occluders,
-    &dynamic_objects::DynamicObjects,
+    &obstruction::Obstruction,
     &odometry::Odometry,
     &nominal_consistency::NominalConsistency,
     &missing_lines::MissingLines,

@@ -46,7 +46,7 @@ mod tests {
     use crate::measurement::quantity::Quantity;
 
     fn scatter_at(after: f64, model_error: &ModelError) -> Option<Finding> {
-        let gap = ChannelGap { before: after, after, floor: 0.5 };
+        let gap = ChannelGap { before: after, after, floor: 0.5, left_out: 0.0 };
         scatter(&BTreeMap::from([(Channel::Geometry, gap)]), model_error)
     }
 

@@ -1,6 +1,6 @@
 //! Recording measured and linearised at a model, with the normal equations of the training frames.
 
-use reality_sim_sensor::{Effect, Model};
+use reality_sim_sensor::Model;
 
 use crate::{
     frame_index::{PerFrame, ViewIndex},
@@ -8,7 +8,6 @@ use crate::{
     inference::effect_test::EffectTests,
     inference::evidence::Evidence,
     inference::split::HeldOutSplit,
-    linear_model::initial_values::starting_values,
     linear_model::linearization::{MeasureError, linearise, measure_frames},
     linear_model::nuisance::{Nuisance, nuisances},
     linear_model::parameters::FittedParameter,
@@ -16,7 +15,6 @@ use crate::{
     measurement::frame::FrameMeasurements,
     measurement::quantity::Channel,
     recording::Recording,
-    thresholds::Thresholds,
 };
 
 /// Recording measured at the lines and the carpet that a model predicts, with the model's linearisation there.
@@ -43,8 +41,7 @@ impl LinearizedRecording {
         split: &HeldOutSplit,
         search: f64,
     ) -> Result<Self, MeasureError> {
-        let search_px = search * f64::from(recording.sequence.setup.camera.width);
-        let measurements = measure_frames(recording, &model, search_px)?;
+        let measurements = measure_frames(recording, &model, search_px(recording, search))?;
         let nuisances = nuisances(measurements.as_slice());
         let mut frames = linearise(recording, &measurements, &model, columns, &nuisances)?;
         // An odometry step that ends at a held-out frame is not fitted.
@@ -70,29 +67,7 @@ impl LinearizedRecording {
     }
 }
 
-/// Source of linearised recordings, which are measured anew at each model.
-pub(crate) trait Linearize {
-    /// Measures and linearises the recording at a model.
-    fn linearize(&self, model: Model) -> Result<LinearizedRecording, MeasureError>;
-
-    /// Returns the starting values of an effect that is not in the model yet.
-    fn starting_values(&self, effect: &'static dyn Effect) -> Vec<f64>;
-}
-
-/// Recording with the parameters that are fitted to it. Lines are searched for near where a model expects them.
-pub(crate) struct FittedRecording<'a> {
-    pub(crate) recording: &'a Recording<'a>,
-    pub(crate) columns: &'a [FittedParameter],
-    pub(crate) split: &'a HeldOutSplit,
-}
-
-impl Linearize for FittedRecording<'_> {
-    fn linearize(&self, model: Model) -> Result<LinearizedRecording, MeasureError> {
-        let search = Thresholds::DEFAULT.inference.search_again;
-        LinearizedRecording::new(self.recording, model, self.columns, self.split, search)
-    }
-
-    fn starting_values(&self, effect: &'static dyn Effect) -> Vec<f64> {
-        starting_values(effect, self.recording)
-    }
+/// Returns a part of the picture's width, pixels.
+pub(super) fn search_px(recording: &Recording<'_>, part: f64) -> f64 {
+    part * f64::from(recording.sequence.setup.camera.width)
 }

@@ -8,8 +8,9 @@ use reality_sim_sensor::{EffectIndex, Model};
 use crate::{
     inference::effect_fit::EffectFits,
     inference::effect_test::{EffectTest, EffectTests},
-    inference::linearized_recording::{Linearize, LinearizedRecording},
+    inference::linearized_recording::LinearizedRecording,
     inference::model_comparison::{indistinguishable_below, minus_log_likelihood},
+    inference::recording_source::Linearize,
     inference::split::HeldOutSplit,
     linear_model::column::ColumnIndex,
     linear_model::linearization::MeasureError,
@@ -37,7 +38,7 @@ pub(crate) type ConvergedSet = (Vec<EffectIndex>, LinearizedRecording);
 
 impl ModelSearch<'_> {
     /// Returns all effects of a model: the given ones and these named ones.
-    fn all(&self, named: &[EffectIndex]) -> Vec<EffectIndex> {
+    pub(crate) fn all(&self, named: &[EffectIndex]) -> Vec<EffectIndex> {
         self.given.iter().chain(named).copied().collect()
     }
 

@@ -46,9 +46,13 @@ impl SelectedModel {
         self.linearized.effect_tests(&self.columns)
     }
 
-    /// P-value of a named effect: the smaller one of those before and after it was added.
+    /// P-value of a named effect: the smaller one of those before and after it was added, corrected for there being two. Wald's
+    /// test loses its power far from zero (Hauck and Donner 1977), hence the one before.
     pub(crate) fn p_value(&self, test: &EffectTest) -> f64 {
-        self.p_values.get(&test.effect).copied().unwrap_or(1.0).min(test.p_value)
+        match self.p_values.get(&test.effect) {
+            Some(before) => (2.0 * before.min(test.p_value)).min(1.0),
+            None => test.p_value,
+        }
     }
 
     /// Returns the effects outside the model that a named one is confusable with.

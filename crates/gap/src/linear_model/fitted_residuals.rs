@@ -10,7 +10,7 @@ use crate::linear_model::{
 pub(crate) struct FittedResiduals {
     pub(crate) residuals: Vec<f64>,
     /// Estimated error of the reference pose.
-    pub(super) pose_error: Vector6<f64>,
+    pub(crate) pose_error: Vector6<f64>,
     /// Posterior variances of the pose error.
     pub(super) pose_variance: Vector6<f64>,
 }
@@ -46,5 +46,10 @@ impl FittedResiduals {
             *residual -= pose_gradient.dot(&pose_error);
         }
         Self { residuals, pose_error, pose_variance: covariance.diagonal() }
+    }
+
+    /// Returns the sum of squares of the estimated pose error, in its standard deviations.
+    pub(crate) fn pose_penalty(&self, pose_sigmas: &[f64; 6]) -> f64 {
+        self.pose_error.dot(&(prior_precision(pose_sigmas) * self.pose_error))
     }
 }

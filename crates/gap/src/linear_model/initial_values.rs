@@ -8,10 +8,14 @@ use crate::{linear_model::parameters::FittedParameter, recording::Recording};
 /// recording's first and last frame.
 pub(crate) fn starting_values(effect: &'static dyn Effect, recording: &Recording<'_>) -> Vec<f64> {
     let frames = recording.frames.as_slice();
-    let (first, last) = (frames.first(), frames.last());
+    values_between(effect, [frames.first(), frames.last()].map(|frame| frame.map(|frame| frame.time_s)))
+}
+
+/// Returns the neutral values of an effect's parameters in a recording from one time to another, seconds.
+pub(crate) fn values_between(effect: &'static dyn Effect, [first_s, last_s]: [Option<f64>; 2]) -> Vec<f64> {
     let given = |name: &str| match name {
-        "from_s" => first.map_or(0.0, |frame| frame.time_s),
-        "to_s" => last.map_or(1.0, |frame| frame.time_s),
+        "from_s" => first_s.unwrap_or(0.0),
+        "to_s" => last_s.unwrap_or(1.0),
         _ => 0.0,
     };
     let value = |parameter: &reality_sim_sensor::Parameter| match parameter.role {

@@ -6,7 +6,7 @@ use reality_sim_core::{pose::Motion2, sequence::SequenceError};
 use reality_sim_sensor::{Chain, Changes, Model, ModelError};
 
 use crate::{
-    frame_index::PerFrame,
+    frame_index::{FrameIndex, PerFrame},
     linear_model::{
         column::ColumnIndex,
         linearized_frame::LinearizedFrame,
@@ -69,13 +69,27 @@ pub(crate) fn measure_frames(
     model: &Model,
     search_px: f64,
 ) -> Result<PerFrame<FrameMeasurements>, MeasureError> {
+    measure_chosen(recording, model, search_px, |_| true)
+}
+
+/// Measures the chosen frames as [`measure_frames`] does; the others get no measurements.
+pub(crate) fn measure_chosen(
+    recording: &Recording<'_>,
+    model: &Model,
+    search_px: f64,
+    is_chosen: impl Fn(FrameIndex) -> bool + Sync,
+) -> Result<PerFrame<FrameMeasurements>, MeasureError> {
     let chain = Chain::new(&recording.sequence.setup, &recording.sequence.field, model)?;
     let config = MeasurementConfig { search_px, gamma: recording.gamma() };
-    let of_frame = |frame: &Frame| -> Result<FrameMeasurements, MeasureError> {
+    let of_frame = |(index, frame): (FrameIndex, &Frame)| -> Result<FrameMeasurements, MeasureError> {
+        if !is_chosen(index) {
+            return Ok(FrameMeasurements::default());
+        }
         let (picture, bytes) = recording.picture(frame)?;
         Ok(measure_frame(&frame_camera(&chain, recording, frame), &picture, &bytes, config))
     };
-    let frames: Result<Vec<_>, _> = recording.frames.as_slice().par_iter().map(of_frame).collect();
+    let indexed: Vec<(FrameIndex, &Frame)> = recording.frames.indexed().collect();
+    let frames: Result<Vec<_>, _> = indexed.into_par_iter().map(of_frame).collect();
     Ok(PerFrame::from(frames?))
 }
 

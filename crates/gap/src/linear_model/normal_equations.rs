@@ -89,6 +89,33 @@ impl NormalEquations {
         score
     }
 
+    /// Returns the equations of linear combinations of the columns: `Vᵀ A V` and `Vᵀ (g − A δ)`, where `V` has a row for each column
+    /// and `δ` is a change of the columns.
+    pub(crate) fn combined(&self, combinations: &DMatrix<f64>, delta: &DVector<f64>) -> Self {
+        let entry = |row: usize, column: usize| combinations[(self.columns[row].0, column)];
+        let stored = DMatrix::from_fn(self.columns.len(), combinations.ncols(), entry);
+        let left = &self.g - &self.a * self.gather(delta);
+        Self {
+            columns: ColumnIndex::first(combinations.ncols()).collect(),
+            a: stored.transpose() * &self.a * &stored,
+            g: stored.transpose() * left,
+        }
+    }
+
+    /// Returns the equations of some columns, renumbered in their order. All columns are stored.
+    pub(crate) fn of_columns(&self, columns: &[ColumnIndex]) -> Self {
+        Self {
+            columns: ColumnIndex::first(columns.len()).collect(),
+            a: DMatrix::from_fn(columns.len(), columns.len(), |i, j| self.a[(columns[i].0, columns[j].0)]),
+            g: DVector::from_iterator(columns.len(), columns.iter().map(|column| self.g[column.0])),
+        }
+    }
+
+    /// Returns the equations with another right side, of which all columns are stored: `A δ` and an error.
+    pub(crate) fn with_score(&self, delta: &DVector<f64>, error: &DVector<f64>) -> Self {
+        Self { g: &self.a * delta + error, ..self.clone() }
+    }
+
     /// Returns the gain in log-likelihood by a change of the columns, `gᵀ δ − ½ δᵀ A δ`.
     pub(crate) fn gain(&self, delta: &DVector<f64>) -> f64 {
         let delta = self.gather(delta);
@@ -101,9 +128,18 @@ impl NormalEquations {
     }
 
     /// Creates normal equations that store all columns.
+    pub(crate) fn of_all(a: DMatrix<f64>, g: DVector<f64>) -> Self {
+        Self { columns: ColumnIndex::first(g.len()).collect(), a, g }
+    }
+
+    /// Returns the equations of measurements with this multiple of the weight.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        Self { columns: self.columns.clone(), a: &self.a * factor, g: &self.g * factor }
+    }
+
     #[cfg(test)]
     pub(crate) fn dense(a: DMatrix<f64>, g: DVector<f64>) -> Self {
-        Self { columns: ColumnIndex::first(g.len()).collect(), a, g }
+        Self::of_all(a, g)
     }
 }
 

@@ -86,6 +86,28 @@ impl ReducedEquations {
         }
     }
 
+    /// Returns the equations of the fitted parameters in a part of the measurements: the nuisance parameters follow them as in
+    /// all measurements together.
+    pub(crate) fn reduce(&self, part: &NormalEquations) -> NormalEquations {
+        let parameters = self.g.len();
+        let size = parameters + self.y.len();
+        let combinations =
+            DMatrix::from_fn(size, parameters, |row, column| match row.checked_sub(parameters) {
+                Some(nuisance) => -self.x[(nuisance, column)],
+                None => f64::from(u8::from(row == column)),
+            });
+        let zeros = DVector::zeros(parameters);
+        part.combined(
+            &combinations,
+            &DVector::from_iterator(size, zeros.iter().chain(self.y.iter()).copied()),
+        )
+    }
+
+    /// Returns the equations that the nuisance parameters' priors add to those of all parts, as [`Self::reduce`] makes them.
+    pub(crate) fn nuisance_priors(&self) -> NormalEquations {
+        NormalEquations::of_all(self.x.transpose() * &self.x * PRIOR, self.x.transpose() * &self.y * PRIOR)
+    }
+
     /// Fits the free columns by least squares; the other fitted parameters become neutral. `base` is the present model in the
     /// coordinates of the fitted parameters. None if the equations are singular.
     pub(crate) fn fit(&self, free: &[ColumnIndex], base: &DVector<f64>) -> Option<Fit> {
@@ -184,6 +206,20 @@ mod tests {
         let reduced = ReducedEquations::new([normal_equations()].iter(), 4, 2);
         let fit = reduced.fit(&BOTH, &base).unwrap();
         assert!((fit.delta - at_once(&base)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn parts_and_priors_without_nuisance_parameters_add_up_to_the_reduced_equations() {
+        let parts = [normal_equations(), normal_equations()];
+        let all = ReducedEquations::new(parts.iter(), 4, 2);
+        let reduced: Vec<NormalEquations> = parts.iter().map(|part| all.reduce(part)).collect();
+        let priors = all.nuisance_priors();
+        let sum = NormalEquations::sum(reduced.iter().chain([&priors]));
+        let alone = ReducedEquations::new([sum].iter(), 2, 2);
+        let base = DVector::zeros(2);
+        let [one, other] = [&all, &alone].map(|equations| equations.fit(&BOTH, &base).unwrap());
+        assert!((one.delta.rows(0, 2) - other.delta).norm() < 1e-12);
+        assert!((one.inverse - other.inverse).norm() < 1e-12);
     }
 
     #[test]

@@ -1,19 +1,25 @@
 //! Measurements of one picture: pieces of white line and blocks of plain carpet.
 
+use std::collections::BTreeMap;
+
 use glam::{DVec2, DVec3};
 use image::RgbImage;
 
-use crate::measurement::{
-    camera::FrameCamera,
-    carpet::{CarpetBlock, Spectrum, measure_carpet},
-    lines::{ExpectedLine, Line, measure_lines},
-    quantity::{ColorChannel, Quantity},
-    quantization::luma_steps,
-    scalar::{Measurement, Subject},
+use crate::{
+    measurement::{
+        camera::FrameCamera,
+        carpet::{CarpetBlock, Spectrum, measure_carpet},
+        curve_index::CurveIndex,
+        lines::{ExpectedLine, Line, measure_lines},
+        quantity::{ColorChannel, Quantity},
+        quantization::luma_steps,
+        scalar::{Measurement, Subject},
+    },
+    thresholds::Thresholds,
 };
 
-/// Measurements of one picture.
-#[derive(Debug, Clone)]
+/// Measurements of one picture; by default, there are none.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct FrameMeasurements {
     /// Projection centre in the world, metres.
     pub(crate) camera_in_world: DVec3,
@@ -24,6 +30,9 @@ pub(crate) struct FrameMeasurements {
     /// Quantisation steps of the coefficients in which noise was measured, grey levels.
     pub(crate) noise_steps: Vec<f64>,
 }
+
+/// Pieces of one curve that were found closer together than this are the same piece, pixels: the distance of pieces.
+const SAME_PIECE_PX: f64 = Thresholds::DEFAULT.measurement.line.spacing_px;
 
 /// Settings of the measurement of a picture.
 #[derive(Debug, Clone, Copy)]
@@ -54,6 +63,34 @@ pub(crate) fn measure_frame(
 }
 
 impl FrameMeasurements {
+    /// Returns these measurements with the pieces of line that were only found by `other`, the measurements of the same picture
+    /// by another model.
+    pub(crate) fn with_lines_of(mut self, other: &Self) -> Self {
+        let own = self.lines.len();
+        for line in &other.lines {
+            let is_same = |found: &Line| {
+                found.curve == line.curve && found.measured_px().distance(line.measured_px()) < SAME_PIECE_PX
+            };
+            if !self.lines[..own].iter().any(is_same) {
+                self.lines.push(*line);
+            }
+        }
+        self
+    }
+
+    /// Returns the number of expected pieces of line, clear of other things, that were not found. Pieces are counted curve by
+    /// curve: another model's pieces of a curve stand for these.
+    pub(crate) fn lost_lines(&self) -> usize {
+        let mut lost: BTreeMap<CurveIndex, i32> = BTreeMap::new();
+        for piece in self.expected_lines.iter().filter(|piece| !piece.is_hidden) {
+            *lost.entry(piece.curve).or_default() += 1;
+        }
+        for line in self.lines.iter().filter(|line| line.is_expected) {
+            *lost.entry(line.curve).or_default() -= 1;
+        }
+        lost.into_values().map(|count| count.max(0) as usize).sum()
+    }
+
     /// Returns the scalar measurements: those of each piece of line, then those of each block of carpet.
     pub(crate) fn measurements(&self, gamma: f64) -> Vec<Measurement> {
         let lines =

@@ -57,6 +57,13 @@ pub(crate) struct Line {
     pub(crate) is_expected: bool,
 }
 
+impl Line {
+    /// Returns the pixel at which the middle was found.
+    pub(crate) fn measured_px(&self) -> DVec2 {
+        self.pixel + self.profile.offset_px * self.normal
+    }
+}
+
 /// Returns the curve of the field that a sample is a piece of.
 pub(crate) fn curve_of(visible: &VisibleSample) -> CurveIndex {
     CurveIndex(visible.sample.curve)

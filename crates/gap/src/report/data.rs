@@ -6,14 +6,14 @@ use reality_sim_core::field::FieldDimensions;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    diagnostics::finding::Finding,
+    diagnostics::{finding::Finding, object::Object},
     inference::{detection_limit::UnobservableCause, held_out::ChannelGap},
     measurement::quantity::Channel,
     recording::ReferenceSource,
 };
 
 /// Version of the format of `report.json`. It changes when a reader of earlier reports would misread newer ones or the reverse.
-pub(crate) const VERSION: u32 = 1;
+pub(crate) const VERSION: u32 = 2;
 
 /// Verdict on a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -186,6 +186,8 @@ pub struct Report {
     /// Findings that no effect explains.
     #[serde(deserialize_with = "super::json::findings")]
     pub unexplained: Vec<Finding>,
+    /// Things on the carpet, those that stand first. They are ordinary and no part of the verdict.
+    pub objects: Vec<Object>,
     /// Gap on held-out frames.
     pub gap: Gap,
     /// Effects that were not found.
@@ -202,4 +204,13 @@ pub struct Report {
     pub seed: u64,
     /// Dimensions of the recorded field.
     pub field: FieldDimensions,
+}
+
+impl Report {
+    /// Returns the ids of effects that cannot be judged because the recording's files lack what they are compared with. With
+    /// the verdict [`Verdict::None`], nothing is missing among the others.
+    pub fn not_judged(&self) -> impl Iterator<Item = &str> {
+        let missing = self.unobservable.iter().filter(|effect| !effect.cause.is_of_the_recording());
+        missing.map(|effect| effect.id.as_str())
+    }
 }

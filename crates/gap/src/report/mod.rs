@@ -17,6 +17,7 @@ pub use self::{
 };
 pub use crate::{
     diagnostics::finding::{FieldLine, Finding, Movement, NominalValue, OdometryComponent, PatternCell},
+    diagnostics::object::{Object, ObjectMotion},
     inference::detection_limit::{MissingInput, UnobservableCause},
     measurement::quantity::{Channel, ColorChannel},
 };

@@ -12,21 +12,24 @@ pub(crate) struct DiagnosticThresholds {
     /// Carpet is hidden where its residual is more than this many standard deviations. Derived:
     /// [`super::LinearModelThresholds::tukey_sigmas`].
     pub(crate) hidden_sigmas: f64,
-    /// Smallest share of the carpet that is reported as hidden. Chosen; no measurement.
-    pub(crate) least_hidden_share: f64,
     /// Smallest ratio of the geometry's residuals to their noise floor that is reported. Set on draw 0, on which 1.7 and 1.6
     /// were used before. Halving it changes a report, see `docs/figures/gap_thresholds.md`.
     pub(crate) least_scatter_ratio: f64,
-    pub(crate) dynamic_objects: DynamicObjectThresholds,
+    pub(crate) objects: ObjectThresholds,
+    pub(crate) obstruction: ObstructionThresholds,
     pub(crate) flicker: FlickerThresholds,
     pub(crate) missing_lines: MissingLineThresholds,
     pub(crate) odometry: OdometryThresholds,
     pub(crate) patterns: PatternThresholds,
 }
 
-/// When something that stood on the carpet has left its place.
+/// What counts as a thing on the carpet, and when it has left its place.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct DynamicObjectThresholds {
+pub(crate) struct ObjectThresholds {
+    /// Smallest share of the carpet in view that a thing hides which is listed. Chosen: a block or two of a picture.
+    pub(crate) least_share: f64,
+    /// Smallest part of the pictures that show it. Chosen: two of forty pictures, a single one may be a mistake.
+    pub(crate) least_pictures: f64,
     /// Radius of the place that an object's foot and the carpet around it take, and half the width of the object, metres.
     /// Chosen: half a person's width. With 2 cm, a test of a thing on two legs has a walker.
     pub(crate) near_m: f64,
@@ -44,13 +47,28 @@ pub(crate) struct DynamicObjectThresholds {
     /// pictures, standing robots beside a line, which hides their place from most pictures, were called walkers in seven of
     /// them. Halving it changes a report, see `docs/figures/gap_thresholds.md`.
     pub(crate) least_seen: f64,
-    /// Smallest part of those in which it is plain carpet. Set on draws 0 and 1, together with [`Self::least_share`]; 70 %
-    /// before.
+    /// Smallest part of those in which it is plain carpet. Set on draws 0 and 1, together with
+    /// [`Self::least_moving_pictures`]; 70 % before.
     pub(crate) least_clear: f64,
-    /// Smallest part of all pictures with such an object that is reported: a single one may be a mistake. Set on draws 0 to
-    /// 2. With 20 %, and a place that is plain in 70 %, three of six recordings with people were silent, and 3 of 220 with
+    /// Smallest part of all pictures with something that moves which is listed: a single one may be a mistake. Set on draws 0
+    /// to 2. With 20 %, and a place that is plain in 70 %, three of six recordings with people were silent, and 3 of 220 with
     /// nothing hidden had a walker; with 8 % and 95 %, none of nine and 2 of 220. Measured on draw 3: one of six, and 1 of
     /// 220.
+    pub(crate) least_moving_pictures: f64,
+}
+
+/// When a part of every picture is hidden.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ObstructionThresholds {
+    /// Smallest part of the pictures of a block in which it is hidden. Chosen: nearly all; things beyond the field's far end
+    /// hide the same rows in many pictures.
+    pub(crate) least_hidden: f64,
+    /// Fewest pictures in which it is hidden. Chosen: as [`PatternThresholds::least_frames`].
+    pub(crate) least_pictures: usize,
+    /// Smallest extent of the places where it is hidden, along the field or across it, metres. Chosen: wider than a person or
+    /// a robot, and than the shift of its foot with the direction of view.
+    pub(crate) least_extent_m: f64,
+    /// Smallest share of the carpet in view that is reported. Chosen: three blocks of 600.
     pub(crate) least_share: f64,
 }
 
@@ -162,9 +180,10 @@ impl DiagnosticThresholds {
     pub(super) const DEFAULT: Self = Self {
         significance: 0.02,
         hidden_sigmas: LinearModelThresholds::DEFAULT.tukey_sigmas,
-        least_hidden_share: 0.04,
         least_scatter_ratio: 1.8,
-        dynamic_objects: DynamicObjectThresholds {
+        objects: ObjectThresholds {
+            least_share: 0.002,
+            least_pictures: 0.05,
             near_m: 0.25,
             there_m: 0.1,
             same_m: 0.01,
@@ -172,7 +191,13 @@ impl DiagnosticThresholds {
             later_s: 1.0,
             least_seen: 0.2,
             least_clear: 0.95,
-            least_share: 0.09,
+            least_moving_pictures: 0.09,
+        },
+        obstruction: ObstructionThresholds {
+            least_hidden: 0.9,
+            least_pictures: 6,
+            least_extent_m: 1.0,
+            least_share: 0.005,
         },
         flicker: FlickerThresholds { bands: 12, least_blocks: 5, material: 0.03 },
         missing_lines: MissingLineThresholds {

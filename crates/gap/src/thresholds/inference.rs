@@ -84,8 +84,14 @@ pub(crate) struct InferenceThresholds {
     /// A gap has changed where it differs by more than this part of what it was. Chosen: measuring the lines anew changes it
     /// by less.
     pub(crate) least_gap_change: f64,
+    /// An effect claims the channels that it changes by more than this part of what it changes the first one by, each in its
+    /// noise floors. Chosen: what is left of the others is a tenth of the variance.
+    pub(crate) claimed_share: f64,
     /// Part of recordings in which an effect at its detection limit is found. Chosen: it defines the limit.
     pub(crate) power: f64,
+    /// Recordings that are simulated to see how often an effect of a certain size is found. Derived: a share of 90 % is then known
+    /// to 5 %, and the limit, from which the share rises with about its logarithm, to 6 %.
+    pub(crate) limit_draws: u64,
     /// Part of what a model explains that its residuals may be off by: discs are no Gaussians, clipped colours no gains. Set
     /// on draw 0. Not [`Self::compared_model_error`], which is of log-likelihoods and decides ties.
     pub(crate) model_error: f64,
@@ -121,7 +127,9 @@ impl InferenceThresholds {
         picture_rows: 3000.0,
         odometry_rows: 60.0,
         least_gap_change: 0.02,
+        claimed_share: 0.3,
         power: 0.9,
+        limit_draws: 40,
         model_error: 0.04,
         outlying_sigmas: LinearModelThresholds::DEFAULT.tukey_sigmas,
     };

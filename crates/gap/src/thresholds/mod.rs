@@ -27,8 +27,8 @@ mod workflow;
 
 pub(crate) use self::{
     diagnostics::{
-        DiagnosticThresholds, DynamicObjectThresholds, FlickerThresholds, MissingLineThresholds,
-        OdometryThresholds, PatternThresholds,
+        DiagnosticThresholds, FlickerThresholds, MissingLineThresholds, ObjectThresholds,
+        ObstructionThresholds, OdometryThresholds, PatternThresholds,
     },
     inference::InferenceThresholds,
     linear_model::{LinearModelThresholds, NuisanceThresholds, PoseErrorThresholds},

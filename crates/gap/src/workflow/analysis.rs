@@ -3,19 +3,24 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DVector;
+use rayon::prelude::*;
 use reality_sim_sensor::{EffectIndex, Model};
 
 use crate::{
     diagnostics::DETECTORS,
     diagnostics::detector::{FitResiduals, FrameResiduals},
     diagnostics::finding::Finding,
+    diagnostics::objects::objects,
     frame_index::FrameIndex,
+    inference::confirmation::without,
     inference::detection_limit::{NotFound, limit},
     inference::effect_fit::EffectFits,
     inference::effect_test::{EffectTest, EffectTests},
     inference::gain::Gain,
-    inference::held_out::{ChannelGap, HeldOutResiduals, gaps},
+    inference::held_out::{ChannelGap, HeldOutResiduals},
     inference::model_error::ModelError,
+    inference::power::PowerAnalysis,
+    inference::recording_source::{FittedRecording, Linearize},
     inference::selected_model::SelectedModel,
     linear_model::column::ColumnIndex,
     linear_model::fitted_residuals::FittedResiduals,
@@ -50,17 +55,18 @@ pub fn analyse(
     let tests = found.effect_tests();
     let before = HeldOutResiduals::new(recording, &found, model)?;
     let after = HeldOutResiduals::new(recording, &found, &found.linearized.model)?;
-    let channels = gaps(&found, &before, &after);
-    let mut effects = effect_reports(recording, &tests, &found, (&found.named, model), &after)?;
+    let channels = compared(recording, &found, model)?;
+    let mut effects = effect_reports(recording, &tests, &found, (&found.named, model))?;
     effects.sort_by(|a, b| b.held_out_gain.value.total_cmp(&a.held_out_gain.value));
-    let in_model = effect_reports(recording, &tests, &found, (&found.given, model), &after)?;
-    let unexplained = if tests.fits.evidence.views() < LEAST_VIEWS {
-        // A pattern in a single view may be due to that place.
-        Vec::new()
-    } else {
-        findings(recording, &found, &channels, &ModelError::new(&found, &before, &after))
-    };
-    let (not_found, unobservable) = others(recording, &tests, &found.all());
+    let in_model = effect_reports(recording, &tests, &found, (&found.given, model))?;
+    let delta = nuisance_fit(&found);
+    let model_error = ModelError::new(&found, &before, &after);
+    let fit = fit_residuals(recording, &found, &delta, (&channels, &model_error));
+    // A pattern in a single view may be due to that place.
+    let has_views = tests.fits.evidence.views() >= LEAST_VIEWS;
+    let unexplained = if has_views { findings(&fit) } else { Vec::new() };
+    let objects = objects(&fit);
+    let (not_found, unobservable) = others(recording, &found, &tests);
     let report = Report {
         recording: recording.sequence.name.clone(),
         frames: recording.frames.len(),
@@ -70,6 +76,7 @@ pub fn analyse(
         effects,
         in_model,
         unexplained,
+        objects,
         gap: whole_gap(channels),
         not_found,
         unobservable,
@@ -90,16 +97,17 @@ pub fn analyse(
 /// Returns the same errors as [`analyse`].
 pub fn gap_of(recording: &Recording<'_>, model: &Model, options: &Options) -> Result<Gap, MeasureError> {
     let found = as_given(recording, model, options)?;
-    let residuals = HeldOutResiduals::new(recording, &found, model)?;
-    Ok(whole_gap(gaps(&found, &residuals, &residuals)))
+    Ok(whole_gap(compared(recording, &found, model)?))
 }
 
-/// Returns a model without one effect.
-fn without(model: &Model, effect: EffectIndex) -> Model {
-    let id = effect.effect().id();
-    let mut model = model.clone();
-    model.effects.retain(|used| used.effect.id() != id);
-    model
+/// Returns the gaps of a model and of the extended one on held-out frames.
+fn compared(
+    recording: &Recording<'_>,
+    found: &SelectedModel,
+    model: &Model,
+) -> Result<BTreeMap<Channel, ChannelGap>, MeasureError> {
+    let source = FittedRecording { recording, columns: &found.columns, split: &found.split };
+    Ok(source.compare(model, &found.linearized)?.gaps())
 }
 
 /// Returns the fraction of each channel's distance to the noise floor that is closed, for channels with a distance worth
@@ -107,7 +115,7 @@ fn without(model: &Model, effect: EffectIndex) -> Model {
 fn closed(gaps: &BTreeMap<Channel, ChannelGap>) -> BTreeMap<Channel, f64> {
     let part = |gap: &ChannelGap| {
         let open = gap.before - gap.floor;
-        (open > THRESHOLDS.least_open_gap * gap.floor).then(|| (gap.before - gap.after) / open)
+        (open > THRESHOLDS.least_open_gap * gap.floor).then(|| ((gap.before - gap.after) / open).min(1.0))
     };
     let parts = gaps.iter().filter_map(|(channel, gap)| Some((*channel, part(gap)?)));
     parts.filter(|(_, part)| *part > THRESHOLDS.least_closed_part).collect()
@@ -136,14 +144,13 @@ fn effect_reports(
     tests: &EffectTests<'_>,
     found: &SelectedModel,
     (effects, given): (&[EffectIndex], &Model),
-    after: &HeldOutResiduals,
 ) -> Result<Vec<EffectReport>, MeasureError> {
     let all = found.all();
     let tested = tests.fits.effects().len();
     let made = effects.iter().filter_map(|&effect| tests.test(effect, &all, tested));
     let report = |test: EffectTest| {
         let others = without(&found.linearized.model, test.effect);
-        let closes = closed(&gaps(found, &HeldOutResiduals::new(recording, found, &others)?, after));
+        let closes = closed(&compared(recording, found, &others)?);
         Ok(effect_report(&tests.fits, &test, found, given, closes))
     };
     made.map(report).collect()
@@ -209,16 +216,21 @@ fn correlations(fits: &EffectFits<'_>, test: &EffectTest) -> BTreeMap<String, BT
 /// Reports the effects outside the model: those with a detection limit, and those that are unobservable.
 fn others(
     recording: &Recording<'_>,
+    found: &SelectedModel,
     tests: &EffectTests<'_>,
-    all: &[EffectIndex],
 ) -> (Vec<NotFoundReport>, Vec<Unobservable>) {
+    let (all, effects) = (found.all(), tests.fits.effects());
+    let views = recording.views();
+    let power = PowerAnalysis::new(&tests.fits, found.split.training().map(|frame| views[frame]).collect());
+    let outside: Vec<EffectIndex> = effects.iter().copied().filter(|effect| !all.contains(effect)).collect();
+    let limits: Vec<NotFound> =
+        outside.par_iter().map(|&effect| limit(recording, &power, effect, &all)).collect();
     let (mut not_found, mut unobservable) = (Vec::new(), Vec::new());
-    let effects = tests.fits.effects();
-    for &index in effects.iter().filter(|effect| !all.contains(effect)) {
+    for (index, limit) in outside.into_iter().zip(limits) {
         let id = index.effect().id().to_owned();
-        match limit(recording, &tests.fits, index, all) {
+        match limit {
             NotFound::Limit { value, unit, parameter } => {
-                let test = tests.test(index, all, effects.len());
+                let test = tests.test(index, &all, effects.len());
                 not_found.push(NotFoundReport {
                     id,
                     parameter: parameter.to_owned(),
@@ -233,19 +245,18 @@ fn others(
     (not_found, unobservable)
 }
 
-/// Returns what no effect explains in the training frames, with only poses and nuisance parameters fitted.
-fn findings(
-    recording: &Recording<'_>,
-    found: &SelectedModel,
-    gaps: &BTreeMap<Channel, ChannelGap>,
-    model_error: &ModelError,
-) -> Vec<Finding> {
-    let delta = nuisance_fit(found);
+/// Returns the residuals of the training frames with only poses and nuisance parameters fitted; `delta` is that fit.
+fn fit_residuals<'a>(
+    recording: &'a Recording<'a>,
+    found: &'a SelectedModel,
+    delta: &'a DVector<f64>,
+    (gaps, model_error): (&'a BTreeMap<Channel, ChannelGap>, &'a ModelError),
+) -> FitResiduals<'a> {
     let linearized = &found.linearized;
-    let fit = FitResiduals {
+    FitResiduals {
         recording,
         start_s: recording.start_s(),
-        frames: frame_residuals(recording, found, &delta),
+        frames: frame_residuals(recording, found, delta),
         steps: found.split.training().map(|frame| &recording.frames[frame]).collect(),
         measurements: found.split.training().map(|frame| &linearized.measurements[frame]).collect(),
         sigmas: &linearized.system.sigmas,
@@ -253,8 +264,12 @@ fn findings(
         nuisance_values: &delta.as_slice()[found.columns.len()..],
         model_error,
         gaps,
-    };
-    DETECTORS.iter().flat_map(|detector| detector.detect(&fit)).collect()
+    }
+}
+
+/// Returns what no effect explains.
+fn findings(fit: &FitResiduals<'_>) -> Vec<Finding> {
+    DETECTORS.iter().flat_map(|detector| detector.detect(fit)).collect()
 }
 
 /// Returns the change of all columns that fits the nuisance parameters. The effects' fit has converged, so they keep their

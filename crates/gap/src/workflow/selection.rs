@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use reality_sim_sensor::{EffectIndex, Model};
 
 use crate::{
-    inference::linearized_recording::{FittedRecording, LinearizedRecording},
+    inference::linearized_recording::LinearizedRecording,
     inference::model_search::ModelSearch,
+    inference::recording_source::FittedRecording,
     inference::selected_model::SelectedModel,
     inference::split::HeldOutSplit,
     linear_model::linearization::{MeasureError, check},
@@ -76,6 +77,7 @@ pub(crate) fn find(
         p_values.extend(new.filter_map(|effect| Some((effect, search.p_value(&tests, &named, effect)?))));
         (named, linearized) = (set, converged);
     }
+    (named, linearized) = search.confirmed(model, (named, linearized))?;
     if named.is_empty() && linearized.model != as_given {
         linearized = LinearizedRecording::new(recording, as_given, &columns, &split, SEARCH_AGAIN)?;
     }

@@ -33,7 +33,7 @@ mod tests {
         testing::effect_report,
     };
 
-    const HIDDEN: Finding = Finding::Occluders { share: 0.2 };
+    const LEFT: Finding = Finding::Flicker { size: 0.1, p_value: 1e-4 };
 
     fn sure() -> EffectReport {
         effect_report("vignetting", 0.4)
@@ -50,7 +50,7 @@ mod tests {
     #[test]
     fn an_unexplained_finding_makes_the_verdict_unknown_whatever_was_named() {
         for effects in [vec![], vec![sure()], vec![confusable()]] {
-            assert_eq!(verdict(&effects, &[HIDDEN], &[]), Verdict::Unknown);
+            assert_eq!(verdict(&effects, &[LEFT], &[]), Verdict::Unknown);
         }
     }
 
@@ -76,6 +76,7 @@ mod tests {
         for cause in causes {
             assert_eq!(verdict(&[], &[], &[unseen(cause)]), Verdict::Inconclusive, "{cause:?}");
         }
+        // What only the files lack is listed beside the verdict: `Report::not_judged`.
         let missing = UnobservableCause::MissingInput { input: MissingInput::Noise };
         assert_eq!(verdict(&[], &[], &[unseen(missing)]), Verdict::None);
         assert_eq!(verdict(&[], &[], &[unseen(missing), unseen(causes[0])]), Verdict::Inconclusive);

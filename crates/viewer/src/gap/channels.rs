@@ -5,7 +5,7 @@ use reality_sim_gap::{
     Channel, ChannelGap,
     report::{
         Gap,
-        text::{amount, channel_meaning, channel_title},
+        text::{amount, channel_meaning, channel_title, percent},
     },
 };
 
@@ -40,10 +40,16 @@ pub fn ui(ui: &mut Ui, gap: &Gap, chosen: &mut Option<Channel>) {
 
 /// Draws the bar before above the bar after, and the noise floor as a line across both.
 fn bars_ui(ui: &mut Ui, channel: Channel, gap: &ChannelGap) {
-    let ChannelGap { before, after, floor } = gap;
+    let ChannelGap { before, after, floor, left_out } = gap;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
     let size = |size| amount(channel, size, channel.unit(), 3);
-    let text = format!("before {}, after {}, noise alone {}", size(*before), size(*after), size(*floor));
+    let text = format!(
+        "before {}, after {}, noise alone {}; {} of the measurements left out",
+        size(*before),
+        size(*after),
+        size(*floor),
+        percent(*left_out)
+    );
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
     let longest = before.max(*after).max(*floor).max(f64::MIN_POSITIVE);
     let width = |size: f64| rect.width() * (size / longest).clamp(0.0, 1.0) as f32;

@@ -1,13 +1,14 @@
-//! The evidence from top to bottom: effects found, the gap, what remains, effects not found, and unobservable effects.
+//! The evidence from top to bottom: effects found, the gap, what remains, things on the carpet, effects not found, and
+//! unobservable effects.
 
 use eframe::egui::{Label, RichText, Ui};
 use reality_sim_gap::{
     Channel,
     report::{
-        Finding, NotFoundReport, Report, Unobservable,
+        Finding, NotFoundReport, Object, Report, Unobservable,
         text::{
-            channel_title, estimate, finding_place, finding_size, library_name, limit, plain_probability,
-            unobservable_reason, unobservable_remedy,
+            channel_title, estimate, finding_place, finding_size, hidden_carpet, library_name, limit,
+            object_place, percent, plain_probability, unobservable_reason, unobservable_remedy,
         },
     },
 };
@@ -32,6 +33,10 @@ pub fn ui(ui: &mut Ui, report: &Report, channel: &mut Option<Channel>, effect: &
     channels::ui(ui, &report.gap, channel);
     title(ui, "Unexplained");
     unexplained_ui(ui, &report.unexplained);
+    if !report.objects.is_empty() {
+        title(ui, "Things on the carpet");
+        objects_ui(ui, &report.objects);
+    }
     title(ui, "Not found");
     not_found_ui(ui, &report.not_found);
     if !report.unobservable.is_empty() {
@@ -52,6 +57,14 @@ fn unexplained_ui(ui: &mut Ui, unexplained: &[Finding]) {
         let p_value = finding.p_value().map_or_else(String::new, plain_probability);
         let channel = channel_title(finding.channel());
         table.texts_ui(ui, &[channel, &finding_place(finding), &finding_size(finding), &p_value]);
+    }
+}
+
+fn objects_ui(ui: &mut Ui, objects: &[Object]) {
+    let table = Table(&[("where", 0.55), ("carpet hidden", 0.25), ("in pictures", 0.2)]);
+    table.heads_ui(ui);
+    for object in objects {
+        table.texts_ui(ui, &[&object_place(object), &hidden_carpet(object), &percent(object.pictures)]);
     }
 }
 

@@ -11,8 +11,8 @@ use reality_sim_core::field::FieldDimensions;
 use reality_sim_gap::{
     Channel, ChannelGap, ReferenceSource,
     report::{
-        Course, EffectReport, Estimate, Finding, Gap, Limit, Map, Maps, NotFoundReport, PatternCell,
-        PosesReport, Report, Unobservable, UnobservableCause, Verdict,
+        Course, EffectReport, Estimate, Finding, Gap, Limit, Map, Maps, NotFoundReport, Object, ObjectMotion,
+        PatternCell, PosesReport, Report, Unobservable, UnobservableCause, Verdict,
     },
 };
 use tempfile::TempDir;
@@ -56,7 +56,7 @@ fn maps() -> Maps {
 
 /// Returns a report with content in every part.
 pub fn report() -> Report {
-    let channel = ChannelGap { before: 0.2, after: 0.05, floor: 0.04 };
+    let channel = ChannelGap { before: 0.2, after: 0.05, floor: 0.04, left_out: 0.1 };
     let confusable = EffectReport {
         confusable_with: vec!["black_level".to_owned()],
         ..effect("tone_curve", "gamma_change")
@@ -72,6 +72,12 @@ pub fn report() -> Report {
         effects: vec![effect("vignetting", "strength"), confusable],
         in_model: vec![effect("defocus", "sigma_px")],
         unexplained: vec![Finding::Pattern { channel: Channel::Noise, strongest, size: 0.3, p_value: 1e-5 }],
+        objects: vec![Object {
+            motion: ObjectMotion::Standing,
+            share: 0.031,
+            pictures: 0.4,
+            place_m: Some([1.2, -0.5]),
+        }],
         gap: Gap {
             before: 3.1,
             after: 1.2,

@@ -238,11 +238,12 @@ fn the_chosen_effect_shows_all_that_is_known_of_it() {
 #[test]
 fn what_is_left_what_was_not_found_and_what_cannot_be_seen_are_listed() {
     let (window, _folder) = opened();
-    let Report { unexplained, not_found, unobservable, gap, .. } = report();
+    let Report { unexplained, objects, not_found, unobservable, gap, .. } = report();
     let remedy = text::unobservable_remedy(&unobservable[0]);
     let texts = [
         text::finding_place(&unexplained[0]),
         text::finding_size(&unexplained[0]),
+        text::object_place(&objects[0]),
         text::limit(&not_found[0]),
         text::library_name(&not_found[0].id).to_owned(),
         text::unobservable_reason(&unobservable[0].cause).to_owned(),

@@ -13,7 +13,7 @@ use reality_sim_core::statistics::median;
 use crate::{
     diagnostics::detector::FrameResiduals,
     inference::gain::{Gain, sum_of},
-    inference::hypothesis_test::two_sided,
+    inference::hypothesis_test::series_p_value,
     inference::split::stretch,
     measurement::quantity::{Channel, Quantity},
     thresholds::{PatternThresholds, Thresholds},
@@ -23,12 +23,18 @@ const THRESHOLDS: PatternThresholds = Thresholds::DEFAULT.diagnostics.patterns;
 
 /// Sums of a bin: information and score of its mean. The mean offset of lines in the picture is a vector; every other mean is
 /// a number, in the first component.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 struct Bin {
     information: DMat2,
     score: DVec2,
     /// Number of measurements.
     count: f64,
+}
+
+impl Default for Bin {
+    fn default() -> Self {
+        Self { information: DMat2::ZERO, score: DVec2::ZERO, count: 0.0 }
+    }
 }
 
 impl Bin {
@@ -145,25 +151,27 @@ fn merged<'a>(frames: impl Iterator<Item = &'a BTreeMap<Cell, Bin>>) -> BTreeMap
     all
 }
 
-/// Returns the p-value of a cell's mean by its scatter from frame to frame; of a vector, the smaller one of its components'.
-/// None for a cell that is seen too rarely.
+/// Returns the p-value of a cell's mean by its scatter from frame to frame; of a vector, the smaller one of its components',
+/// corrected for their number. None for a cell that is seen too rarely.
 fn p_value(frames: &[BTreeMap<Cell, Bin>], cell: Cell) -> Option<f64> {
     let bins: Vec<&Bin> = frames.iter().filter_map(|frame| frame.get(&cell)).collect();
     if bins.len() < THRESHOLDS.least_frames {
         return None;
     }
-    let total = bins.iter().fold(Bin::default(), |mut total, bin| {
-        total += **bin;
-        total
-    });
+    let mut total = Bin::default();
+    bins.iter().for_each(|bin| total += **bin);
     let mean = total.mean(1e-6);
-    let component = |pick: fn(DVec2) -> f64| {
-        let scores: Vec<f64> = bins.iter().map(|bin| pick(bin.score - bin.information * mean)).collect();
-        let scatter = sum_of(&scores).sigma;
-        two_sided(pick(total.score) / scatter.max(1e-9), bins.len() as f64 - 1.0)
-    };
-    let smaller = component(|v| v.x).min(component(|v| v.y));
-    smaller.is_finite().then_some(smaller)
+    let components: [fn(DVec2) -> f64; 2] = [|v| v.x, |v| v.y];
+    let seen = components.iter().filter(|pick| pick(total.information.diagonal()) > 0.0);
+    let p_values: Vec<f64> = seen
+        .map(|pick| {
+            let deviations: Vec<f64> =
+                bins.iter().map(|bin| pick(bin.score - bin.information * mean)).collect();
+            series_p_value(pick(total.score), &deviations)
+        })
+        .collect();
+    let smallest = p_values.iter().copied().fold(1.0, f64::min);
+    smallest.is_finite().then_some((p_values.len() as f64 * smallest).min(1.0))
 }
 
 /// Returns the bins of a frame.
@@ -210,4 +218,47 @@ fn bins(
         bins.insert(cell, Bin::of_blocks(&mut values));
     }
     bins
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Noise;
+
+    #[test]
+    fn means_of_noise_along_two_axes_are_as_rarely_significant_as_their_p_value_says() {
+        const DRAWS: usize = 60_000;
+        const CELL: Cell = (0, 0);
+        for frames in [6, 12, 45] {
+            let mut noise = Noise(frames as u64);
+            let mut bin = || Bin {
+                information: DMat2::IDENTITY,
+                score: DVec2::new(noise.next(), noise.next()),
+                count: 1.0,
+            };
+            let p_values: Vec<f64> = (0..DRAWS)
+                .map(|_| {
+                    let bins: Vec<BTreeMap<Cell, Bin>> =
+                        (0..frames).map(|_| BTreeMap::from([(CELL, bin())])).collect();
+                    p_value(&bins, CELL).unwrap()
+                })
+                .collect();
+            for level in [1e-2, 1e-3] {
+                let ratio = p_values.iter().filter(|p| **p < level).count() as f64 / (DRAWS as f64 * level);
+                assert!((1.0 / 1.5..1.5).contains(&ratio), "{frames} frames, {level}: {ratio}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_axis_that_no_line_shows_is_not_tested() {
+        let scores = [0.9, 1.1, 1.0, 0.8, 1.2, 1.0, 1.1, 0.9];
+        let bins = |information: DMat2| -> Vec<BTreeMap<Cell, Bin>> {
+            let bin = |score: f64| Bin { information, score: DVec2::new(score, 0.0), count: 1.0 };
+            scores.iter().map(|score| BTreeMap::from([((0, 0), bin(*score))])).collect()
+        };
+        let one = p_value(&bins(DMat2::from_diagonal(DVec2::X)), (0, 0)).unwrap();
+        let two = p_value(&bins(DMat2::IDENTITY), (0, 0)).unwrap();
+        assert!((two / one - 2.0).abs() < 1e-3, "{one} {two}");
+    }
 }

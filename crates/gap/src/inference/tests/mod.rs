@@ -34,6 +34,8 @@ struct World {
     signatures: Vec<Signature>,
     /// True size of each column.
     truth: Vec<f64>,
+    /// Factor of the true sizes, by frame and column.
+    course: fn(usize, usize) -> f64,
     seed: u64,
 }
 
@@ -56,6 +58,7 @@ impl World {
             columns: effects.iter().map(|(id, ..)| column(id)).collect(),
             signatures: effects.iter().map(|(_, signature, _)| *signature).collect(),
             truth: effects.iter().map(|(.., truth)| *truth).collect(),
+            course: |_, _| 1.0,
             seed: 1,
         }
     }
@@ -72,12 +75,10 @@ impl World {
     fn frames(&self, model: &Model) -> PerFrame<LinearizedFrame> {
         let mut noise = Noise(self.seed);
         let units: Vec<f64> = (0..self.columns.len()).map(|column| self.coordinate(column, 1.0)).collect();
-        let left: Vec<f64> = (0..self.columns.len())
-            .map(|column| {
-                let truth = self.coordinate(column, self.truth[column]);
-                truth - self.columns[column].coordinate_in(model)
-            })
-            .collect();
+        let left = |frame: usize, column: usize| {
+            let truth = (self.course)(frame, column) * self.coordinate(column, self.truth[column]);
+            truth - self.columns[column].coordinate_in(model)
+        };
         (0..FRAMES)
             .map(|frame| {
                 let mut made = LinearizedFrame {
@@ -94,7 +95,8 @@ impl World {
                         .zip(&units)
                         .map(|(signature, unit)| signature(frame, &numbers) / unit)
                         .collect();
-                    let explained: f64 = changes.iter().zip(&left).map(|(change, left)| change * left).sum();
+                    let explained: f64 =
+                        (0..).zip(&changes).map(|(column, change)| change * left(frame, column)).sum();
                     let ground = DVec2::new(0.5 * frame as f64, 0.5 * row as f64);
                     made.measurements.push(Measurement { ground, ..measurement(Quantity::LineBlur) });
                     made.residuals.push(explained + noise.next());

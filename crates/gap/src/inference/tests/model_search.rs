@@ -4,11 +4,10 @@ use reality_sim_sensor::{Effect, EffectIndex, Model};
 
 use super::{FRAMES, Signature, World, effect};
 use crate::{
-    frame_index::PerFrame,
+    frame_index::{FrameIndex, PerFrame},
     inference::{
-        linearized_recording::{Linearize, LinearizedRecording},
-        model_search::ModelSearch,
-        split::HeldOutSplit,
+        held_out::Comparison, linearized_recording::LinearizedRecording, model_search::ModelSearch,
+        recording_source::Linearize, split::HeldOutSplit,
     },
     linear_model::{linearization::MeasureError, linearized_frame::LinearizedFrame},
 };
@@ -25,6 +24,10 @@ impl Linearize for World {
             frames,
             system,
         })
+    }
+
+    fn compare(&self, model: &Model, with: &LinearizedRecording) -> Result<Comparison, MeasureError> {
+        Ok(Comparison::new([&self.frames(model), &self.frames(&with.model)], |_| 0.0, with, &split()))
     }
 
     fn starting_values(&self, effect: &'static dyn Effect) -> Vec<f64> {
@@ -167,4 +170,50 @@ fn a_given_parameter_that_the_frames_do_not_constrain_keeps_its_value() {
     let converged = search.converge(world.linearize(model).unwrap(), &[pitch, roll]).unwrap();
     assert_eq!(converged.model.values(PITCH), Some(&[0.05][..]));
     assert!(converged.model.values(ROLL).unwrap()[0] > 0.0);
+}
+
+/// Whether a frame is held out by [`split`].
+fn is_held_out(frame: usize) -> bool {
+    split().held_out().any(|held_out| FrameIndex::first(FRAMES).nth(frame) == Some(held_out))
+}
+
+/// Returns what is left of these named effects once held-out frames have been asked.
+fn confirmed(world: &World, named: &[EffectIndex]) -> (Vec<EffectIndex>, Model) {
+    with_search(world, &[], named, |search, linearized| {
+        let (named, linearized) =
+            search.confirmed(&Model::default(), (named.to_vec(), linearized.clone())).unwrap();
+        (named, linearized.model)
+    })
+}
+
+#[test]
+fn held_out_frames_confirm_effects_that_are_there() {
+    let world = World::new(&[(PITCH, FIRST, 3.0), (ROLL, SECOND, -4.0)]);
+    let both = [PITCH, ROLL].map(effect);
+    assert_eq!(confirmed(&world, &both).0, both);
+}
+
+#[test]
+fn an_effect_that_held_out_frames_contradict_is_dropped_and_the_others_are_fitted_without_it() {
+    // What is seen of the second effect in the training frames is the opposite in the others.
+    let mut world = World::new(&[(PITCH, FIRST, 3.0), (ROLL, SECOND, 2.0)]);
+    world.course = |frame, column| if column == 1 && is_held_out(frame) { -1.0 } else { 1.0 };
+    let [pitch, roll] = [PITCH, ROLL].map(effect);
+    let (named, model) = confirmed(&world, &[pitch, roll]);
+    assert_eq!(named, [pitch]);
+    assert!(model.values(ROLL).is_none());
+    let alone = with_search(&world, &[], &[pitch], |_, linearized| linearized.model.clone());
+    let size = |model: &Model| model.values(PITCH).unwrap()[0];
+    assert!((size(&model) / size(&alone) - 1.0).abs() < 0.01, "{} {}", size(&model), size(&alone));
+}
+
+#[test]
+fn chance_is_seldom_confirmed() {
+    let kept = (0..40).filter(|&seed| {
+        let mut world = World::new(&[(PITCH, FIRST, 0.0)]);
+        world.seed = seed;
+        !confirmed(&world, &[effect(PITCH)]).0.is_empty()
+    });
+    let kept = kept.count();
+    assert!(kept < 20, "{kept} of 40");
 }

@@ -4,12 +4,12 @@ use reality_sim_sensor::effect as library_effect;
 
 use super::text::{capital, cell, effect_cell, escape, number, table};
 use crate::{
-    diagnostics::finding::Finding,
+    diagnostics::{finding::Finding, object::Object},
     report::data::{EffectReport, Estimate, Limit, NotFoundReport, Report, Unobservable},
     report::text::{
         channel_title, deciding_recordings, digits, effect_because, effect_name, effect_size, estimate,
-        finding_place, finding_size, library_name, limit, percent, probability, unobservable_reason,
-        unobservable_remedy, with_sigma,
+        finding_place, finding_size, hidden_carpet, library_name, limit, object_place, percent, probability,
+        unobservable_reason, unobservable_remedy, with_sigma,
     },
 };
 
@@ -155,4 +155,25 @@ pub(super) fn unexplained(findings: &[Finding]) -> String {
     };
     let rows: Vec<String> = findings.iter().map(row).collect();
     format!("<h2>Unexplained</h2>\n{}", table(&["Channel", "Where", ">Size", ">p"], &rows))
+}
+
+/// Returns the table of things on the carpet; empty if there are none.
+pub(super) fn objects(objects: &[Object]) -> String {
+    if objects.is_empty() {
+        return String::new();
+    }
+    let row = |object: &Object| {
+        format!(
+            "<tr>{}{}{}</tr>",
+            cell(&capital(&object_place(object))),
+            number(&hidden_carpet(object)),
+            number(&percent(object.pictures))
+        )
+    };
+    let rows: Vec<String> = objects.iter().map(row).collect();
+    format!(
+        "<h2>Things on the carpet</h2>\n{}<p class=\"quiet\">Robots, balls, people, goals and their shadows are ordinary: \
+         what they hide counts for nothing.</p>\n",
+        table(&["", ">Carpet hidden", ">In pictures"], &rows)
+    )
 }

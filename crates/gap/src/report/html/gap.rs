@@ -12,30 +12,33 @@ const BAR: [f64; 2] = [160.0, 12.0];
 
 pub(super) fn section(gap: &Gap) -> String {
     let rows = gap.channels.iter().map(|(channel, part)| {
-        row("", channel_title(*channel), [part.before, part.after, part.floor], channel_scale(*channel))
+        let sizes = [part.before, part.after, part.floor];
+        row("", channel_title(*channel), sizes, channel_scale(*channel), &percent(part.left_out))
     });
-    let total = row("total", "All channels", [gap.before, gap.after, gap.floor], (1.0, GAP_UNIT));
+    let total = row("total", "All channels", [gap.before, gap.after, gap.floor], (1.0, GAP_UNIT), "");
     let rows: Vec<String> = rows.chain([total]).collect();
     format!(
         "<h2>The gap</h2>\n{}<p class=\"quiet\">Root mean squares on frames that no fit has seen. In the bars, grey is \
          the noise floor, orange what is left of the gap, green what was closed. Nominal values within their tolerance, patches of carpet and worn lines lie above \
          the floor as well: only what is listed under Unexplained is more than that.</p>\n",
-        table(&["Channel", ">Before", ">After", ">Noise floor", "Unit", ">Closed", ""], &rows)
+        table(&["Channel", ">Before", ">After", ">Noise floor", "Unit", ">Closed", ">Left out", ""], &rows)
     )
 }
 
-/// Returns a row of the table: sizes before and after and the noise floor, multiplied by a factor and in a unit.
-fn row(class: &str, title: &str, sizes: [f64; 3], (factor, unit): (f64, &str)) -> String {
+/// Returns a row of the table: sizes before and after and the noise floor, multiplied by a factor and in a unit, and the share
+/// of the measurements that is left out.
+fn row(class: &str, title: &str, sizes: [f64; 3], (factor, unit): (f64, &str), left_out: &str) -> String {
     let [before, after, floor] = sizes;
     let part = closed(before, after, floor)
         .filter(|_| has_moved(before, after))
         .map_or_else(|| "–".to_owned(), |part| percent(part).replace("−0", "0"));
     let numbers: String = sizes.iter().map(|size| number(&digits(factor * size, 3))).collect();
     format!(
-        "<tr class=\"{class}\">{}{numbers}{}{}<td>{}</td></tr>",
+        "<tr class=\"{class}\">{}{numbers}{}{}{}<td>{}</td></tr>",
         cell(title),
         cell(unit),
         number(&part),
+        number(left_out),
         bar(before, after, floor)
     )
 }

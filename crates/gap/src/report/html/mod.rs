@@ -29,6 +29,7 @@ pub fn page(report: &Report, pictures: &Pictures) -> String {
         gap::section(&report.gap),
         effects::section(report),
         effects::unexplained(&report.unexplained),
+        effects::objects(&report.objects),
         notes::section(report),
     ];
     format!(

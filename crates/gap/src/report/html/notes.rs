@@ -15,9 +15,12 @@ standard deviation. Below 0, what some frames suggest fails on others.</li>\
 its size is sure to be one that matters.</li>\
 <li><b>Would have been found from</b>: the size at which an effect that is there is found in nine recordings of ten like \
 this one.</li>\
-<li><b>Gap</b>: measured minus simulated, on held-out frames, which no fit has seen. The noise floor is what \
-neighbouring measurements in one picture scatter by, with what errors of the reference poses make; where less is left, it is \
-what is left. That of the odometry is what neighbouring steps scatter by; metres and radians are taken together.</li>\
+<li><b>Gap</b>: measured minus simulated, on held-out frames, which no fit has seen; they only confirm that it does not grow \
+by what is named. The noise floor is what neighbouring measurements in one picture scatter by, with what errors of the reference \
+poses make; less than that may be left by chance. That of the odometry is what neighbouring steps scatter by; metres and radians \
+are taken together.</li>\
+<li><b>Left out</b>: measurements that neither the model before nor the one after explains, as of other things, and lines that \
+neither finds. All others count before and after alike, also those that only one of the two finds.</li>\
 <li>Photometry and noise are in percent: 100 times a difference of natural logarithms.</li></ul>\n";
 
 pub(super) fn section(report: &Report) -> String {

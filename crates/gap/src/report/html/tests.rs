@@ -17,7 +17,7 @@ use crate::{
 const HOSTILE: &str = "<script>alert(\"walk\")</script> & 'more'";
 
 fn channel([before, after, floor]: [f64; 3]) -> ChannelGap {
-    ChannelGap { before, after, floor }
+    ChannelGap { before, after, floor, left_out: 0.12 }
 }
 
 fn found(id: &str) -> EffectReport {

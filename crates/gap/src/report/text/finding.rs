@@ -18,15 +18,10 @@ pub fn finding_place(finding: &Finding) -> String {
         Finding::Flicker { .. } => {
             "bands along the rows that differ from picture to picture, as of lamps that flicker".to_owned()
         }
-        Finding::Occluders { share } => {
-            format!(
-                "{} of the carpet in view is hidden by things that the model does not have",
-                percent(*share)
-            )
-        }
-        Finding::DynamicObjects { share } => format!(
-            "things that move: in {} of the pictures something stands on the carpet where others show it plain",
-            percent(*share)
+        Finding::Obstruction { share, column, row, grid } => format!(
+            "{} of the carpet in view is hidden {} of nearly every picture, wherever the camera looks",
+            percent(*share),
+            picture_place([*column, *row], *grid)
         ),
         Finding::MissingLine { line, found_share, usual_share } => format!(
             "{}: found in {} of the places where it should be, other lines as wide in {}",
@@ -54,10 +49,7 @@ pub fn finding_size(finding: &Finding) -> String {
 
 /// Whether the words of [`finding_place`] already state the finding's size.
 pub(super) fn place_has_size(finding: &Finding) -> bool {
-    matches!(
-        finding,
-        Finding::Occluders { .. } | Finding::DynamicObjects { .. } | Finding::MissingLine { .. }
-    )
+    matches!(finding, Finding::Obstruction { .. } | Finding::MissingLine { .. })
 }
 
 /// Returns where a pattern is strongest.
@@ -178,14 +170,10 @@ mod tests {
                 "7.4 %",
             ),
             (
-                Finding::Occluders { share: 0.124 },
-                "12 % of the carpet in view is hidden by things that the model does not have",
+                Finding::Obstruction { share: 0.124, column: 0, row: 4, grid: [8, 6] },
+                "12 % of the carpet in view is hidden at the left edge, in the lower part of nearly every picture, wherever \
+                 the camera looks",
                 "12 %",
-            ),
-            (
-                Finding::DynamicObjects { share: 0.5 },
-                "things that move: in 50 % of the pictures something stands on the carpet where others show it plain",
-                "50 %",
             ),
             (
                 Finding::MissingLine { line, found_share: 0.1, usual_share: 0.8 },

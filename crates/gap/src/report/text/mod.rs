@@ -4,6 +4,7 @@ mod channel;
 mod effect;
 mod finding;
 mod number;
+mod object;
 mod place;
 mod poses;
 mod summary;
@@ -19,6 +20,7 @@ pub use self::{
     effect::{deciding_recordings, effect_because, effect_name, effect_size, estimate, library_name, limit},
     finding::{finding_place, finding_size},
     number::{amount, plain_probability, probability},
+    object::{hidden_carpet, object_place, object_share},
     poses::{absorbed, reference_source},
     summary::summary,
     unobservable::{unobservable_reason, unobservable_remedy},

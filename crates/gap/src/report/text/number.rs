@@ -47,10 +47,11 @@ fn superscript(digit: char) -> char {
     }
 }
 
-/// Returns the fraction of the distance to the noise floor that is closed. None if there was nothing to close.
+/// Returns the fraction of the distance to the noise floor that is closed, at most all of it: what is left may be below the
+/// floor by chance. None if there was nothing to close.
 pub(crate) fn closed(before: f64, after: f64, floor: f64) -> Option<f64> {
     let part = (before - after) / (before - floor);
-    (before > floor && part.is_finite()).then_some(part)
+    (before > floor && part.is_finite()).then_some(part.min(1.0))
 }
 
 /// Returns a channel's size as text with this many significant digits: "0.13 px²", "7.4 %". `unit` is the unit of `size`.
@@ -84,5 +85,6 @@ mod tests {
         assert_eq!(closed(1.0, 1.0, 1.0), None);
         assert_eq!(closed(f64::NAN, 1.0, 1.0), None);
         assert_eq!(closed(3.0, 1.5, 1.0), Some(0.75));
+        assert_eq!(closed(3.0, 0.9, 1.0), Some(1.0), "less than the floor is left, by chance");
     }
 }

@@ -140,7 +140,7 @@ fn said(finding: &Finding) -> String {
     format!("{}: {}{size}", noun(finding.channel()), finding_place(finding))
 }
 
-/// Returns which effects are not missing, from which sizes on, and how many effects cannot be judged.
+/// Returns which effects are not missing, from which sizes on. Effects that cannot be judged are stated first.
 fn nothing(report: &Report) -> String {
     let subject = match &report.in_model[..] {
         [] => "Nothing is missing".to_owned(),
@@ -149,23 +149,34 @@ fn nothing(report: &Report) -> String {
             format!("Nothing further is missing beside {} of the model", enumerated(&known))
         }
     };
-    let shown = match shown_from(&report.not_found) {
-        Some(limits) => format!("{subject}: these frames would have shown {limits}."),
-        None => format!("{subject} that these frames would show."),
-    };
-    std::iter::once(shown).chain(not_judged(report)).collect::<Vec<String>>().join(" ")
+    match (not_judged(report), shown_from(&report.not_found)) {
+        (None, None) => format!("{subject} that these frames would show."),
+        (None, Some(limits)) => format!("{subject}: these frames would have shown {limits}."),
+        (Some(others), None) => format!("{subject} among what can be judged; {others}."),
+        (Some(others), Some(limits)) => {
+            format!("{subject} among what can be judged; {others}. These frames would have shown {limits}.")
+        }
+    }
 }
 
-/// Returns "9 of 22 effects cannot be judged, most of them because …".
+/// Returns "9 of 22 effects could not be judged: …, most of them because …".
 fn not_judged(report: &Report) -> Option<String> {
-    let causes = || report.unobservable.iter().map(|effect| &effect.cause);
-    let count = causes().count();
+    let causes = || {
+        let missing = report.unobservable.iter().filter(|effect| !effect.cause.is_of_the_recording());
+        missing.map(|effect| &effect.cause)
+    };
+    let ids: Vec<&str> = report.not_judged().collect();
     let known = [report.effects.len(), report.in_model.len(), report.not_found.len()];
-    let all = count + known.iter().sum::<usize>();
+    let all = report.unobservable.len() + known.iter().sum::<usize>();
     let times = |cause| causes().filter(|other| *other == cause).count();
     let usual = causes().max_by_key(|cause| times(*cause))?;
-    let most = if times(usual) < count { ", most of them" } else { "" };
-    Some(format!("{count} of {all} effects cannot be judged{most} because {}.", unobservable_reason(usual)))
+    let most = if times(usual) < ids.len() { ", most of them" } else { "" };
+    Some(format!(
+        "{} of {all} effects could not be judged: {}{most} because {}",
+        ids.len(),
+        enumerated(&ids),
+        unobservable_reason(usual)
+    ))
 }
 
 /// Returns "a loss of light at the corners from 3.0 % on and …".
@@ -233,8 +244,8 @@ mod tests {
     /// Returns a report with these effects and findings.
     fn of(verdict: Verdict, effects: &[EffectReport], unexplained: &[Finding]) -> Report {
         let channels = [
-            (Channel::Photometry, ChannelGap { before: 0.3, after: 0.06, floor: 0.04 }),
-            (Channel::Geometry, ChannelGap { before: 0.5, after: 0.42, floor: 0.4 }),
+            (Channel::Photometry, ChannelGap { before: 0.3, after: 0.06, floor: 0.04, left_out: 0.1 }),
+            (Channel::Geometry, ChannelGap { before: 0.5, after: 0.42, floor: 0.4, left_out: 0.1 }),
         ];
         let gap = Gap { before: 7.0, after: 1.5, floor: 1.0, channels: channels.into() };
         Report { verdict, effects: effects.to_vec(), unexplained: unexplained.to_vec(), gap, ..report() }
@@ -304,9 +315,9 @@ mod tests {
 
     #[test]
     fn a_size_in_the_words_for_the_place_is_not_repeated_and_further_findings_are_counted() {
-        let hidden = Finding::Occluders { share: 0.124 };
+        let hidden = Finding::Obstruction { share: 0.124, column: 0, row: 4, grid: [8, 6] };
         let text = summary(&of(Verdict::Unknown, &[], &[hidden; 4]));
-        assert!(text.contains("by things that the model does not have. "), "{text}");
+        assert!(text.contains("wherever the camera looks. "), "{text}");
         assert!(text.ends_with("There are 2 more patterns like these."), "{text}");
     }
 
@@ -338,14 +349,21 @@ mod tests {
             further.starts_with("Nothing further is missing beside vignetting of the model: "),
             "{further}"
         );
-        let unseen = |cause| Unobservable { id: "black_level".to_owned(), cause };
-        let dark = UnobservableCause::MissingInput { input: MissingInput::Reflectance };
-        let unobservable = [dark, dark, UnobservableCause::CameraAtRest].map(unseen).to_vec();
+        let unseen = |id: &str, input| Unobservable {
+            id: id.to_owned(),
+            cause: UnobservableCause::MissingInput { input },
+        };
+        let unobservable = vec![
+            unseen("black_level", MissingInput::Reflectance),
+            unseen("tone_curve", MissingInput::Reflectance),
+            unseen("defocus", MissingInput::Sharpness),
+        ];
         let partly = summary(&Report { unobservable, ..limited });
         assert!(
-            partly.ends_with(
-                "3 of 7 effects cannot be judged, most of them because nothing in camera.toml says how bright lines and \
-                 carpet are."
+            partly.starts_with(
+                "Nothing is missing among what can be judged; 3 of 7 effects could not be judged: black_level, tone_curve \
+                 and defocus, most of them because nothing in camera.toml says how bright lines and carpet are. These frames \
+                 would have shown a loss of light"
             ),
             "{partly}"
         );

@@ -16,7 +16,7 @@ pub fn verdict_word(verdict: Verdict) -> &'static str {
 /// Returns what the verdict means.
 pub fn verdict_meaning(verdict: Verdict) -> &'static str {
     match verdict {
-        Verdict::None => "Nothing is missing that these frames would show",
+        Verdict::None => "Nothing is missing that these frames would show, among what can be judged",
         Verdict::Named => "Effects were named, and nothing significant is left",
         Verdict::Confusable => "An effect was found that these frames cannot tell from others",
         Verdict::Unknown => "Something significant is left that is in no effect's shape",
