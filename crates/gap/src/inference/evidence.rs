@@ -1,13 +1,13 @@
 //! Fits of sets of columns to a linear system, with their covariances and tests.
 
 use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::{
     inference::cluster_covariance::{self, LAG},
     inference::hypothesis_test::hotelling_p_value,
     linear_model::column::ColumnIndex,
-    linear_model::normal_equations::NormalEquations,
-    linear_model::reduced_equations::{Fit, MOST_PRIOR_SHARE, ReducedEquations},
+    linear_model::reduced_equations::{Fit, MOST_PRIOR_SHARE, ProjectedEquations, ReducedEquations},
     linear_model::{normal_equations::PRIOR, system::LinearSystem},
     thresholds::Thresholds,
 };
@@ -20,14 +20,22 @@ pub(crate) struct Evidence<'a> {
     pub(crate) base: DVector<f64>,
     /// Equations of all training frames.
     total: ReducedEquations,
+    /// Evidence of the levels of one surface alone, beside everything else.
+    of_one_surface: Vec<Self>,
+    /// Equations by view and by cell of the field.
+    views: Vec<ProjectedEquations>,
+    cells: Vec<ProjectedEquations>,
 }
 
 impl<'a> Evidence<'a> {
     /// Creates the evidence of a system. `base` is the present model in the coordinates of the fitted parameters' columns;
     /// the columns of the nuisance parameters follow behind them.
     pub(crate) fn new(system: &'a LinearSystem, base: DVector<f64>) -> Self {
-        let total = ReducedEquations::new(system.frames.iter(), system.size, base.len());
-        Self { system, base, total }
+        let total = ReducedEquations::new(system.frames.iter(), &system.columns);
+        let alone = |system: &'a LinearSystem| Self::new(system, base.clone());
+        let of_one_surface = system.of_one_surface.iter().map(alone).collect();
+        let (views, cells) = (total.projected(&system.views), total.projected(&system.cells));
+        Self { system, base, total, of_one_surface, views, cells }
     }
 
     /// Number of different views.
@@ -61,16 +69,15 @@ impl<'a> Evidence<'a> {
     /// Returns two cluster-robust covariances of the free columns: one from the scatter of scores between views, one from
     /// their scatter between cells of the field.
     pub(crate) fn covariances(&self, fit: &Fit) -> [DMatrix<f64>; 2] {
-        let scores = |sums: &'a [NormalEquations]| -> Vec<DVector<f64>> {
-            let score = |sums: &NormalEquations| self.total.projected(&sums.score(&fit.delta), &fit.free);
-            sums.iter().map(score).collect()
+        let scores = |clusters: &[ProjectedEquations]| -> Vec<DVector<f64>> {
+            clusters.iter().map(|cluster| cluster.score(fit)).collect()
         };
         let nuisances = self.total.nuisance_scatter(&fit.free);
         let sandwich = |scatter: DMatrix<f64>| &fit.inverse * (scatter + &nuisances) * &fit.inverse;
         let size = fit.free.len();
         [
-            sandwich(cluster_covariance::of_neighbours(&scores(&self.system.views), size)),
-            sandwich(cluster_covariance::of_independent(&scores(&self.system.cells), size)),
+            sandwich(cluster_covariance::of_neighbours(&scores(&self.views), size)),
+            sandwich(cluster_covariance::of_independent(&scores(&self.cells), size)),
         ]
     }
 
@@ -95,6 +102,25 @@ impl<'a> Evidence<'a> {
         };
         let with_counts = covariances.iter().zip(counts).filter(|(covariance, _)| seen(covariance));
         with_counts.map(|(covariance, count)| self.p_of(fit, tested, covariance, count)).fold(0.0, f64::max)
+    }
+
+    /// P-value of Wald's test by the fit's own covariance, which holds the priors of nuisance parameters and reflectance: they
+    /// are the same in all frames, so that no scatter between frames shows them.
+    pub(crate) fn p_value_by_priors(&self, fit: &Fit, tested: &[ColumnIndex]) -> f64 {
+        let places: Vec<usize> = tested.iter().filter_map(|&column| fit.position(column)).collect();
+        let number = places.len();
+        let part = DMatrix::from_fn(number, number, |i, j| fit.inverse[(places[i], places[j])]);
+        let value = DVector::from_fn(number, |i, _| self.base[tested[i].0] + fit.delta[tested[i].0]);
+        let Some(solved) = part.cholesky().map(|factor| factor.solve(&value)) else { return 1.0 };
+        ChiSquared::new(number.max(1) as f64).map_or(1.0, |distribution| distribution.sf(value.dot(&solved)))
+    }
+
+    /// Largest p-value of Wald's test by the levels of lines and by those of carpet, each without the other's. Light acts on
+    /// both alike; the reflectance of paint and that of carpet have nothing to do with each other (intersection-union test:
+    /// Berger 1982).
+    pub(crate) fn p_value_of_both_surfaces(&self, free: &[ColumnIndex], tested: &[ColumnIndex]) -> f64 {
+        let p_value = |alone: &Self| alone.fit(free).map_or(1.0, |fit| alone.p_value(&fit, tested));
+        self.of_one_surface.iter().map(p_value).fold(0.0, f64::max)
     }
 
     /// P-value of the tested columns by one covariance, which was estimated from `count` clusters.

@@ -8,6 +8,7 @@ use reality_sim_sensor::Model;
 use crate::{
     frame_index::{FrameIndex, PerFrame},
     inference::selected_model::SelectedModel,
+    linear_model::column::Columns,
     linear_model::linearization::{MeasureError, linearise},
     linear_model::{
         fitted_residuals::FittedResiduals, linearized_frame::LinearizedFrame, robust_weights::weigh,
@@ -57,12 +58,13 @@ impl HeldOutResiduals {
         model: &Model,
     ) -> Result<Self, MeasureError> {
         let linearized = &found.linearized;
-        let frames = linearise(recording, &linearized.measurements, model, &[], &linearized.nuisances)?;
-        let nowhere = DVector::zeros(linearized.nuisances.len());
+        let frames = linearise(recording, &linearized.measurements, model, &[], linearized.others())?;
+        let columns = Columns { parameters: 0, ..linearized.system.columns.clone() };
+        let nowhere = DVector::zeros(columns.len());
         let sigmas = &linearized.system.pose_sigmas;
         let residual = |frame: &LinearizedFrame, pose_sigmas: &[f64; 6]| {
             let weights = weigh(frame, &frame.residuals, &linearized.system.sigmas);
-            FittedResiduals::new(frame, &weights, &nowhere, pose_sigmas).residuals
+            FittedResiduals::new(frame, &weights, &nowhere, &columns, pose_sigmas).residuals
         };
         Ok(Self {
             residuals: frames.iter().map(|frame| residual(frame, &[1e-12; 6])).collect(),

@@ -291,7 +291,6 @@ mod tests {
         let values = [
             NominalValue::LineLevel(ColorChannel::Red),
             NominalValue::CarpetLevel(ColorChannel::Blue),
-            NominalValue::Sheen,
             NominalValue::Blur,
             NominalValue::BlurByWidth,
             NominalValue::BlurShape,
