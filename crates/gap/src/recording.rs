@@ -79,13 +79,6 @@ pub(crate) enum ReferenceKind {
     Attitude,
 }
 
-/// Linear RGB values of the field's surfaces as the nominal camera records them; 1 is full scale.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct NominalReflectance {
-    pub(crate) line_linear_rgb: [f64; 3],
-    pub(crate) carpet_linear_rgb: [f64; 3],
-}
-
 /// Odometry between a frame and the next one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OdometryStep {
@@ -111,8 +104,6 @@ pub struct Recording<'a> {
     pub(crate) trajectory: Trajectory,
     pub(crate) frames: PerFrame<Frame>,
     pub(crate) source: ReferenceSource,
-    /// Reflectance of lines and carpet, if the camera's file gives it.
-    pub(crate) reflectance: Option<NominalReflectance>,
     /// Picture files that are broken or missing; their frames are left out.
     pub(crate) left_out: Vec<PathBuf>,
 }
@@ -156,7 +147,7 @@ impl<'a> Recording<'a> {
             step: step(sequence, index_in_sequence),
         };
         let frames = posed.iter().step_by(every).map(frame).collect();
-        Ok(Self { sequence, trajectory, frames, source, reflectance: reflectance(sequence), left_out })
+        Ok(Self { sequence, trajectory, frames, source, left_out })
     }
 
     /// Returns the view of each frame. Successive frames belong to one view while their poses differ so little that they may
@@ -249,15 +240,6 @@ fn is_same_view(a: &CameraPose, b: CameraPose) -> bool {
     let turned_rad =
         (0.5 * (turned.x_axis.x + turned.y_axis.y + turned.z_axis.z - 1.0)).clamp(-1.0, 1.0).acos();
     moved_m < THRESHOLDS.same_view_m && turned_rad < THRESHOLDS.same_view_rad
-}
-
-/// Returns the reflectance of lines and carpet in the camera's file, if it gives both.
-fn reflectance(sequence: &Sequence) -> Option<NominalReflectance> {
-    let photometry = sequence.setup.photometry?;
-    Some(NominalReflectance {
-        line_linear_rgb: photometry.line_linear_rgb?,
-        carpet_linear_rgb: photometry.carpet_linear_rgb?,
-    })
 }
 
 /// Returns the odometry between a frame and the next one. None for the last frame, without odometry, or if the next frame

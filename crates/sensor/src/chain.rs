@@ -17,6 +17,11 @@ use crate::{
     trajectory::Trajectory,
 };
 
+/// Tolerance of an inverted tone curve, encoded.
+const INVERSION_TOLERANCE: f64 = 1e-7;
+/// Largest number of steps of an inversion; a few suffice.
+const MOST_INVERSION_STEPS: usize = 60;
+
 /// Gamma of a camera without photometric calibration.
 const DEFAULT_GAMMA: f64 = 2.2;
 
@@ -219,6 +224,32 @@ impl Chain {
     /// Returns the pixel value, 0 to 1, for the sensor's linear output.
     pub fn encode(&self, linear: f64) -> f64 {
         self.tone.encode(linear)
+    }
+
+    /// Returns the linear value of light, before the sensor's response, that is encoded as this pixel value, 0 to 1. Values
+    /// that no light has are clipped to those of the darkest and the brightest.
+    pub fn linear_of(&self, encoded: f64) -> f64 {
+        let excess = |linear: f64| self.encode(self.respond(linear)) - encoded;
+        let (mut low, mut high) = ((0.0, excess(0.0)), (1.0, excess(1.0)));
+        if low.1 >= 0.0 || high.1 <= 0.0 {
+            return if low.1 >= 0.0 { 0.0 } else { 1.0 };
+        }
+        // Nearly right where the chain is a power law; bounds close in from both sides (Illinois algorithm, Dowell and
+        // Jarratt 1971).
+        let mut next = encoded.powf(self.tone.gamma);
+        for _ in 0..MOST_INVERSION_STEPS {
+            let found = (next, excess(next));
+            if found.1.abs() < INVERSION_TOLERANCE {
+                break;
+            }
+            if found.1 > 0.0 {
+                (high, low.1) = (found, 0.5 * low.1);
+            } else {
+                (low, high.1) = (found, 0.5 * high.1);
+            }
+            next = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        }
+        next
     }
 
     /// Returns the motion that the odometry reports for a true motion of the camera that took `duration_s` seconds. The

@@ -168,8 +168,8 @@ fn a_drift_is_stated_from_the_darkest_moment_to_the_brightest() {
 
 #[test]
 fn uneven_light_has_a_brightest_and_a_darkest_place() {
-    let names = ["x", "y", "xx", "xy", "yy", "xxx", "xxy", "xyy", "yyy"];
-    let factors = [0.3, 0.0, 0.0, 0.0, -0.2, 0.0, 0.0, 0.0, 0.0];
+    let names = ["x", "y", "xx", "xy", "yy"];
+    let factors = [0.3, 0.0, 0.0, 0.0, -0.2];
     let values: Vec<_> = names.into_iter().zip(factors).map(|(name, value)| (name, value, 0.01)).collect();
     let text =
         "the light is brightest at the end at +x and darkest in the corner at −x and −y, by a factor of 2.2";

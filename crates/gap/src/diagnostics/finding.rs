@@ -159,8 +159,6 @@ pub enum NominalValue {
     LineLevel(ColorChannel),
     /// Level of carpet in one colour.
     CarpetLevel(ColorChannel),
-    /// Level of carpet seen at a grazing angle.
-    Sheen,
     /// Variance of the blur.
     Blur,
     /// Difference of the blur's variance between broad and thin lines.
@@ -230,7 +228,7 @@ impl NominalValue {
     /// Returns the channel whose residuals depend on the value.
     pub fn channel(self) -> Channel {
         match self {
-            Self::LineLevel(_) | Self::CarpetLevel(_) | Self::Sheen => Channel::Photometry,
+            Self::LineLevel(_) | Self::CarpetLevel(_) => Channel::Photometry,
             Self::Blur | Self::BlurByWidth | Self::BlurShape => Channel::Sharpness,
             Self::NoiseVariance => Channel::Noise,
         }

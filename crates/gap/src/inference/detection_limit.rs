@@ -173,7 +173,9 @@ fn provides(recording: &Recording<'_>, need: Need) -> bool {
     let photometry = recording.sequence.setup.photometry;
     match need {
         Need::Odometry => recording.sequence.frames.iter().any(|frame| frame.odometry.is_some()),
-        Need::NominalReflectance => recording.reflectance.is_some(),
+        Need::NominalReflectance => {
+            photometry.is_some_and(|p| p.line_linear_rgb.is_some() || p.carpet_linear_rgb.is_some())
+        }
         Need::NominalNoise => photometry.is_some_and(|p| p.noise_shot.is_some() || p.noise_read.is_some()),
         Need::NominalSharpness => photometry.is_some_and(|p| p.psf_sigma_px.is_some()),
     }

@@ -74,8 +74,15 @@ impl<'a> EffectTests<'a> {
             // An effect that is fixed to the field is predicted as well by the reflectance of carpet patches, which are
             // fixed too.
             let keeps_place = effect.effect().covariates().contains(&Covariate::FieldPosition);
-            let predicted = (!keeps_place).then(|| self.predicted_p_value(held_out.score_over(&others)));
-            best_of([together, self.single_size_p_value(&without, &sizes), predicted])
+            let predicted = (!keeps_place).then(|| {
+                let by_priors = self.fits.evidence.p_value_by_priors(&fit, &sizes);
+                self.predicted_p_value(held_out.score_over(&others)).max(by_priors)
+            });
+            let best = best_of([together, self.single_size_p_value(&without, &sizes), predicted]);
+            let is_confirmed = !is_light(effect)
+                || self.fits.evidence.p_value_of_both_surfaces(&free, &sizes)
+                    < THRESHOLDS.surface_significance;
+            if is_confirmed { best } else { 1.0 }
         } else {
             1.0
         };
@@ -177,6 +184,12 @@ impl<'a> EffectTests<'a> {
 fn best_of(tests: [Option<f64>; 3]) -> f64 {
     let made = tests.iter().flatten();
     made.clone().count() as f64 * made.fold(1.0, |least: f64, p_value| least.min(*p_value))
+}
+
+/// Whether an effect changes the light on the field, which lines and carpet reflect alike.
+pub(crate) fn is_light(effect: EffectIndex) -> bool {
+    let covariates = effect.effect().covariates();
+    covariates.contains(&Covariate::FieldPosition) && covariates.contains(&Covariate::Intensity)
 }
 
 /// Whether one of these effects varies over time.

@@ -1,6 +1,6 @@
 //! Recording measured and linearised at a model, with the normal equations of the training frames.
 
-use reality_sim_sensor::Model;
+use reality_sim_sensor::{Chain, Model};
 
 use crate::{
     frame_index::{PerFrame, ViewIndex},
@@ -8,9 +8,12 @@ use crate::{
     inference::effect_test::EffectTests,
     inference::evidence::Evidence,
     inference::split::HeldOutSplit,
-    linear_model::linearization::{MeasureError, linearise, measure_frames},
+    linear_model::column::Columns,
+    linear_model::linearization::{MeasureError, Others, linearise, measure_frames, measured_patches},
+    linear_model::mean_reflectance::MeanReflectance,
     linear_model::nuisance::{Nuisance, nuisances},
     linear_model::parameters::FittedParameter,
+    linear_model::reflectance::ReflectanceField,
     linear_model::{linearized_frame::LinearizedFrame, system::LinearSystem},
     measurement::frame::FrameMeasurements,
     measurement::quantity::Channel,
@@ -42,8 +45,15 @@ impl LinearizedRecording {
         search: f64,
     ) -> Result<Self, MeasureError> {
         let measurements = measure_frames(recording, &model, search_px(recording, search))?;
-        let nuisances = nuisances(measurements.as_slice());
-        let mut frames = linearise(recording, &measurements, &model, columns, &nuisances)?;
+        let setup = &recording.sequence.setup;
+        let chain = Chain::new(setup, &recording.sequence.field, &model)?;
+        let nuisances = nuisances(
+            &MeanReflectance::new(recording, &measurements, &chain),
+            setup.photometry.and_then(|photometry| photometry.psf_sigma_px),
+        );
+        let patches = measured_patches(&measurements);
+        let others = Others { nuisances: &nuisances, patches: &patches };
+        let mut frames = linearise(recording, &measurements, &model, columns, others)?;
         // An odometry step that ends at a held-out frame is not fitted.
         for frame in split.training().filter(|frame| split.is_held_out(frame.next())) {
             frames[frame].leave_out(Channel::Motion);
@@ -51,9 +61,18 @@ impl LinearizedRecording {
         let training: Vec<&LinearizedFrame> = split.training().map(|frame| &frames[frame]).collect();
         let views = recording.views();
         let views: Vec<ViewIndex> = split.training().map(|frame| views[frame]).collect();
-        let size = columns.len() + nuisances.len();
-        let system = LinearSystem::new(&training, size, recording.reference(), &views);
+        let columns = Columns {
+            parameters: columns.len(),
+            nuisances: nuisances.len(),
+            field: ReflectanceField::new(patches),
+        };
+        let system = LinearSystem::new(&training, columns, recording.reference(), &views);
         Ok(Self { model, measurements, nuisances, frames, system })
+    }
+
+    /// Returns the parameters beside those of effects.
+    pub(crate) fn others(&self) -> Others<'_> {
+        Others { nuisances: &self.nuisances, patches: &self.system.columns.field.tree }
     }
 
     /// Returns the fits of effects at the present model.

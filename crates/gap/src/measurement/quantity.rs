@@ -48,6 +48,20 @@ impl Channel {
     }
 }
 
+/// Surface with a reflectance of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) enum Surface {
+    /// Painted line.
+    Line,
+    /// Carpet.
+    Carpet,
+}
+
+impl Surface {
+    /// Both surfaces.
+    pub(crate) const ALL: [Self; 2] = [Self::Line, Self::Carpet];
+}
+
 /// Colour channel of a picture, in the order in which pixels store them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -85,6 +99,11 @@ pub(crate) enum Quantity {
     OdometryLeft,
     /// Turn to the left in one step of the odometry, radians.
     OdometryTurn,
+}
+
+impl ColorChannel {
+    /// All colour channels.
+    pub(crate) const ALL: [Self; 3] = [Self::Red, Self::Green, Self::Blue];
 }
 
 impl Quantity {
@@ -126,9 +145,18 @@ impl Quantity {
         self.channel() == Channel::Motion
     }
 
-    /// Whether it is the level of a block of carpet in some colour.
-    pub(crate) fn is_carpet_level(self) -> bool {
-        matches!(self, Self::CarpetLevel(_))
+    /// Returns the surface whose level it is.
+    pub(crate) fn surface(self) -> Option<Surface> {
+        match self {
+            Self::LineLevel(_) => Some(Surface::Line),
+            Self::CarpetLevel(_) => Some(Surface::Carpet),
+            _ => None,
+        }
+    }
+
+    /// Whether it is a level of lines or of carpet.
+    pub(crate) fn is_level(self) -> bool {
+        self.surface().is_some()
     }
 }
 

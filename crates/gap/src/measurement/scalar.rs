@@ -37,6 +37,12 @@ pub(crate) struct Measurement {
     pub(crate) half_width_px: f64,
     /// Cosine of the angle of incidence at which the ground is seen; 1 from straight above.
     pub(crate) cos_incidence: f64,
+    /// Horizontal part of the unit vector from the camera to the point on the ground, world axes.
+    pub(crate) view_direction: DVec2,
+    /// Derivative of encoded luma (0–1) by the logarithm of the light, by the nominal encoding.
+    pub(crate) luma_slope: f64,
+    /// Natural logarithm of the linear value of luma, by the nominal encoding.
+    pub(crate) log_brightness: f64,
 }
 
 impl Measurement {
@@ -58,6 +64,9 @@ impl Measurement {
             speed_px_s: 0.0,
             half_width_px: 0.0,
             cos_incidence: 1.0,
+            view_direction: DVec2::ZERO,
+            luma_slope: 0.0,
+            log_brightness: 0.0,
         }
     }
 

@@ -4,7 +4,13 @@
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LinearModelThresholds {
     pub(crate) nuisance: NuisanceThresholds,
+    pub(crate) reflectance: ReflectanceThresholds,
     pub(crate) pose_error: PoseErrorThresholds,
+    /// Distance up to which carpet tells of the light on it, metres. Chosen: farther off, a block covers more than the light
+    /// is alike on, and what stands behind it shines through the blur.
+    pub(crate) light_range_m: f64,
+    /// Part of the pictures that must show a place for it to bound where the light was measured. Chosen; no measurement.
+    pub(crate) light_seen_share: f64,
     /// Rounds of reweighted least squares, each of which finds weights, standard deviations of the residuals and of the
     /// poses' errors in turn. Chosen; no measurement.
     pub(crate) reweighting_rounds: usize,
@@ -18,7 +24,7 @@ pub(crate) struct LinearModelThresholds {
     /// measurement.
     pub(crate) most_prior_share: f64,
     /// Side of the cells of the field that are clusters of the covariance, metres. Chosen: a patch of carpet,
-    /// [`NuisanceThresholds::patch_m`].
+    /// twice the smallest patch of carpet.
     pub(crate) cluster_cell_m: f64,
     /// Fewest and most steps of the odometry between a step and those that stand for its movement: they share no pose with
     /// it, and so none of the reference's errors (instrumental variables). Derived: two is the least distance. The most is
@@ -29,19 +35,34 @@ pub(crate) struct LinearModelThresholds {
 /// Standard deviations of the nuisance parameters.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NuisanceThresholds {
-    /// Brightness of a line, natural logarithm. Chosen: worn and dusty lines differ by a few percent. Halving it changes a
-    /// report, see `docs/figures/gap_thresholds.md`.
-    pub(crate) line_level: f64,
-    /// Brightness of the carpet, natural logarithm. Chosen: rolls and dirt.
-    pub(crate) carpet_level: f64,
-    /// Brightness of a patch of carpet against the rest, natural logarithm. Chosen; no measurement.
-    pub(crate) patch_level: f64,
-    /// Side of such a patch, metres. Chosen; no measurement.
-    pub(crate) patch_m: f64,
+    /// Nominal brightness of lines, and each colour's against the others, natural logarithm. Chosen: a person reads it off a
+    /// few pictures of worn lines; wear changes their colour less than their brightness.
+    pub(crate) line_level: [f64; 2],
+    /// The same of the carpet. Chosen: as of lines; rolls and dirt differ more.
+    pub(crate) carpet_level: [f64; 2],
+    /// Gain common to all nominal levels, natural logarithm. Chosen: an exposure that is known to a twentieth of an EV.
+    pub(crate) gain: f64,
+    /// Level of a surface of which no nominal value is given, natural logarithm. Derived: as good as free.
+    pub(crate) free_level: f64,
+    /// Blur where none is given, pixels squared. Derived: as good as free.
+    pub(crate) free_blur_px2: f64,
+    /// Brightness of the carpet seen along its pile against that seen across it, natural logarithm, at grazing incidence.
+    /// Chosen; no measurement.
+    pub(crate) pile: f64,
+    /// Level of a line whose half width is one pixel, natural logarithm. Chosen: a tenth at three pixels, the thinnest whose
+    /// level is measured.
+    pub(crate) thin_line_level: f64,
+    /// Contrast of the carpet's fine texture at one resolution of the ground, standard deviation of the natural logarithm of
+    /// its brightness. Chosen: pile that is seen from near.
+    pub(crate) texture: f64,
+    /// Factor between the resolutions at which the texture's contrast is free. Chosen; no measurement.
+    pub(crate) texture_octave: f64,
     /// Sheen of the carpet at grazing incidence, as a part of full scale in linear light. Chosen; no measurement.
     pub(crate) sheen: f64,
     /// Variance of the nominal blur, pixels squared. Chosen: 0.03 px more or less of a blur of 0.5 px.
     pub(crate) blur_px2: f64,
+    /// The same as a part of the nominal variance. Chosen: a width that is known to 15 %.
+    pub(crate) blur_share: f64,
     /// Change of that variance for each factor of e in a line's width, pixels squared. Chosen; no measurement.
     pub(crate) blur_by_width_px2: f64,
     /// Part by which the fitted variance of a disc's or a bar's blur is off. Measured: 10 % on broad lines, up to 28 % on the
@@ -53,6 +74,25 @@ pub(crate) struct NuisanceThresholds {
     pub(crate) thin_blur_shape: f64,
     /// Variance of the nominal noise, natural logarithm: the carpet's fine texture looks the same. Chosen; no measurement.
     pub(crate) noise_variance: f64,
+    /// Exponent of the variance of the noise in brightness. Chosen; no measurement.
+    pub(crate) noise_exponent: f64,
+}
+
+/// Random field of the reflectance, see [`crate::linear_model::reflectance`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ReflectanceThresholds {
+    /// Side of the smallest patches of carpet, metres. Chosen: blocks of carpet cover a few centimetres where they are near
+    /// and as much as this where they are far.
+    pub(crate) smallest_carpet_patch_m: f64,
+    /// Side of the smallest patches of lines, metres. Chosen: wear differs from one hand's breadth to the next.
+    pub(crate) smallest_line_patch_m: f64,
+    /// Increment from a patch to the patches within it that is assumed before anything was seen, natural logarithm. Chosen:
+    /// five such scales make 7 %.
+    pub(crate) usual_increment: f64,
+    /// Number of increments that this assumption counts as. Chosen: as many as the four patches within one.
+    pub(crate) prior_increments: f64,
+    /// Smallest increment that is believed, natural logarithm. Chosen: far below what a picture shows.
+    pub(crate) least_increment: f64,
 }
 
 /// Standard deviations of the reference poses' errors. Pairs are of rotations (radians) and of positions (metres).
@@ -76,16 +116,30 @@ pub(crate) struct PoseErrorThresholds {
 impl LinearModelThresholds {
     pub(super) const DEFAULT: Self = Self {
         nuisance: NuisanceThresholds {
-            line_level: 0.02,
-            carpet_level: 0.07,
-            patch_level: 0.05,
-            patch_m: 0.5,
-            sheen: 0.01,
+            line_level: [0.05, 0.015],
+            carpet_level: [0.07, 0.04],
+            gain: 0.05,
+            free_level: 1.0,
+            free_blur_px2: 2.0,
+            pile: 0.05,
+            thin_line_level: 0.3,
+            texture: 0.08,
+            texture_octave: 2.0,
+            sheen: 0.05,
             blur_px2: 0.03,
+            blur_share: 0.3,
             blur_by_width_px2: 0.02,
             blur_shape: 0.12,
             thin_blur_shape: 0.2,
             noise_variance: 0.2,
+            noise_exponent: 0.2,
+        },
+        reflectance: ReflectanceThresholds {
+            smallest_carpet_patch_m: 0.25,
+            smallest_line_patch_m: 0.125,
+            usual_increment: 0.03,
+            prior_increments: 4.0,
+            least_increment: 0.002,
         },
         pose_error: PoseErrorThresholds {
             initial: [0.01, 0.02],
@@ -94,6 +148,8 @@ impl LinearModelThresholds {
             least: [2e-4, 5e-4],
             free: [0.1, 0.3, 0.3],
         },
+        light_range_m: 4.0,
+        light_seen_share: 0.05,
         reweighting_rounds: 4,
         tukey_sigmas: 5.0,
         independent_share: 0.15,

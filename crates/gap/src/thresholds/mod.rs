@@ -31,7 +31,7 @@ pub(crate) use self::{
         ObstructionThresholds, OdometryThresholds, PatternThresholds,
     },
     inference::InferenceThresholds,
-    linear_model::{LinearModelThresholds, NuisanceThresholds, PoseErrorThresholds},
+    linear_model::{LinearModelThresholds, NuisanceThresholds, PoseErrorThresholds, ReflectanceThresholds},
     measurement::{
         CarpetThresholds, LineThresholds, MeasurementThresholds, ProfileThresholds, VisibilityThresholds,
     },

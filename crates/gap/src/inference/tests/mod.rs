@@ -15,7 +15,7 @@ use crate::{
     },
     measurement::{quantity::Quantity, scalar::Measurement},
     recording::ReferenceKind,
-    testing::{Noise, measurement},
+    testing::{Noise, measurement, parameters},
 };
 
 /// Number of frames of a simulated recording; each frame is a view of its own.
@@ -85,6 +85,7 @@ impl World {
                     measurements: Vec::new(),
                     residuals: Vec::new(),
                     jacobian: Vec::new(),
+                    patches: vec![None; ROWS],
                     pose_gradients: vec![Vector6::zeros(); ROWS],
                 };
                 for row in 0..ROWS {
@@ -115,7 +116,7 @@ impl World {
 
     fn system(&self, frames: &[&LinearizedFrame]) -> LinearSystem {
         let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
-        LinearSystem::new(frames, self.columns.len(), ReferenceKind::Whole, &views)
+        LinearSystem::new(frames, parameters(self.columns.len()), ReferenceKind::Whole, &views)
     }
 
     /// Returns a model in the columns' coordinates.

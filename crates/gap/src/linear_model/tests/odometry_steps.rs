@@ -43,14 +43,7 @@ fn walk<'a>(sequence: &'a Sequence, steps_m: &[f64], gaps: &[usize]) -> Recordin
         })
         .collect();
     let trajectory = Trajectory::new(&poses).unwrap();
-    Recording {
-        sequence,
-        trajectory,
-        frames,
-        source: ReferenceSource::Measured,
-        reflectance: None,
-        left_out: Vec::new(),
-    }
+    Recording { sequence, trajectory, frames, source: ReferenceSource::Measured, left_out: Vec::new() }
 }
 
 fn forward_m(steps_m: &[f64], gaps: &[usize]) -> Vec<Option<f64>> {

@@ -11,9 +11,10 @@ use crate::{
     frame_index::PerFrame,
     linear_model::{
         initial_values::starting_values,
-        linearization::{linearise, measure_frames},
+        linearization::{Others, linearise, measure_frames},
         linearized_frame::LinearizedFrame,
         parameters::{FittedParameter, fitted_parameters},
+        reflectance::Tree,
     },
     measurement::{
         frame::FrameMeasurements,
@@ -81,7 +82,8 @@ impl Compared {
             let mut values = values.to_vec();
             values[column.parameter] = value;
             let model = Model::default().with(column.effect(), values);
-            linearise(recording, measurements, &model, columns, &[]).unwrap()
+            let others = Others { nuisances: &[], patches: &Tree::default() };
+            linearise(recording, measurements, &model, columns, others).unwrap()
         };
         let [minus, plus] = [value - half, value + half].map(|value| linearised(value, &[]));
         let width = column.coordinate(value + half) - column.coordinate(value - half);

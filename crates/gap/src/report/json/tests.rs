@@ -27,7 +27,6 @@ fn all_findings() -> Vec<Finding> {
     let values = [
         NominalValue::LineLevel(ColorChannel::Red),
         NominalValue::CarpetLevel(ColorChannel::Blue),
-        NominalValue::Sheen,
         NominalValue::Blur,
         NominalValue::BlurByWidth,
         NominalValue::BlurShape,

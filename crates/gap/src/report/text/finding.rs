@@ -100,7 +100,6 @@ fn nominal_value(value: NominalValue) -> String {
     match value {
         NominalValue::LineLevel(color) => format!("{} of lines", color_name(color)),
         NominalValue::CarpetLevel(color) => format!("{} of carpet", color_name(color)),
-        NominalValue::Sheen => "carpet seen at a grazing angle".to_owned(),
         NominalValue::Blur => "the blur".to_owned(),
         NominalValue::BlurByWidth => "the blur of broad lines against thin ones".to_owned(),
         NominalValue::BlurShape => "the shape of the blur".to_owned(),

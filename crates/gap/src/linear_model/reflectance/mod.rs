@@ -1,0 +1,58 @@
+//! Reflectance of carpet and paint, which differs from place to place, as a spatially correlated random field.
+//!
+//! The natural logarithm of a surface's reflectance relative to its mean is constant within the smallest patches of the field.
+//! The value of a patch is that of the patch twice as large that contains it, plus a normal increment whose variance depends on
+//! the surface and on the size of the patch (multiscale model on a quadtree: Chou, Willsky and Benveniste, IEEE Transactions on
+//! Automatic Control 39, 1994). Two places are therefore the more alike the smaller the patch is that contains both. The
+//! variances are estimated from the recording: where most of the variance is, there is the length over which the
+//! reflectance is alike.
+//!
+//! Values are eliminated from the smallest patches up, in a time that grows linearly with their number.
+
+mod elimination;
+mod increments;
+mod tree;
+
+pub(crate) use self::{
+    elimination::{Eliminated, PatchEquations},
+    increments::IncrementVariances,
+    tree::{PatchIndex, Tree},
+};
+
+/// Random field of the reflectance: its patches with the variances of their increments.
+#[derive(Debug, Clone)]
+pub(crate) struct ReflectanceField {
+    pub(crate) tree: Tree,
+    pub(crate) variances: IncrementVariances,
+}
+
+impl ReflectanceField {
+    /// Creates the field of these patches with the usual variances.
+    pub(crate) fn new(tree: Tree) -> Self {
+        Self { tree, variances: IncrementVariances::usual() }
+    }
+
+    /// Returns the prior precision of a patch's increment.
+    pub(crate) fn precision(&self, patch: PatchIndex) -> f64 {
+        self.variances.of(self.tree.scale(patch)).recip()
+    }
+
+    /// Returns the increments of all patches for these values.
+    fn increments<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = (PatchIndex, f64)> + 'a {
+        self.tree.patches().map(|patch| {
+            let parent = self.tree.parent(patch).map_or(0.0, |parent| values[parent.0]);
+            (patch, values[patch.0] - parent)
+        })
+    }
+
+    /// Returns minus the logarithm of the prior density of these values, up to a constant.
+    pub(crate) fn energy(&self, values: &[f64]) -> f64 {
+        0.5 * self.prior_product(values, values)
+    }
+
+    /// Returns `aᵀ Q b` with the prior precision matrix `Q` of all values.
+    pub(crate) fn prior_product(&self, a: &[f64], b: &[f64]) -> f64 {
+        let pairs = self.increments(a).zip(self.increments(b));
+        pairs.map(|((patch, a), (_, b))| self.precision(patch) * a * b).sum()
+    }
+}
