@@ -119,6 +119,7 @@ mod tests {
         linear_model::{
             mean_reflectance::{MeanReflectance, SurfaceReflectance},
             nuisance::nuisances,
+            texture::CarpetTexture,
         },
         measurement::quantity::ColorChannel,
     };
@@ -127,7 +128,8 @@ mod tests {
     /// deviation.
     fn findings(value: f64, model_error: &ModelError, picked: impl Fn(&Nominal) -> bool) -> Vec<Finding> {
         let given = SurfaceReflectance { linear_rgb: [0.5; 3], sigma: 0.05, color_sigma: 0.02 };
-        let nuisances = nuisances(&MeanReflectance { line: given, carpet: given }, Some(0.5));
+        let mean = MeanReflectance { line: given, carpet: given };
+        let nuisances = nuisances(&mean, &CarpetTexture::default(), Some(0.5));
         let off = |nuisance| if Nominal::of(nuisance).is_some_and(|n| picked(&n)) { value } else { 0.5 };
         inconsistent(&nuisances, &nuisances.iter().map(off).collect::<Vec<_>>(), model_error)
     }

@@ -79,9 +79,7 @@ impl<'a> EffectTests<'a> {
                 self.predicted_p_value(held_out.score_over(&others)).max(by_priors)
             });
             let best = best_of([together, self.single_size_p_value(&without, &sizes), predicted]);
-            let is_confirmed = !is_light(effect)
-                || self.fits.evidence.p_value_of_both_surfaces(&free, &sizes)
-                    < THRESHOLDS.surface_significance;
+            let is_confirmed = !is_light(effect) || self.is_seen_on_both_surfaces(&without, &sizes);
             if is_confirmed { best } else { 1.0 }
         } else {
             1.0
@@ -98,6 +96,22 @@ impl<'a> EffectTests<'a> {
     /// Tests each of these effects beside others.
     pub(crate) fn tests_of(&self, effects: &[EffectIndex], beside: &[EffectIndex]) -> Vec<EffectTest> {
         effects.par_iter().filter_map(|&effect| self.test(effect, beside, effects.len())).collect()
+    }
+
+    pub(crate) fn is_seen_on_both(&self, effect: EffectIndex, beside: &[EffectIndex]) -> Vec<f64> {
+        let without: Vec<EffectIndex> = beside.iter().copied().filter(|other| *other != effect).collect();
+        let sizes = self.fits.sizes_of(effect);
+        let mut free = self.fits.columns_of(&without);
+        free.extend(sizes.iter());
+        self.fits.evidence.of_one_surface().iter().map(|alone| alone.fit(&free).map_or(1.0, |fit| alone.p_value(&fit, &sizes))).collect()
+    }
+
+    /// Whether lines and carpet, each without the other, show the sizes of an effect of light. Its shape is neutral: there are
+    /// few lines.
+    fn is_seen_on_both_surfaces(&self, beside: &[EffectIndex], sizes: &[ColumnIndex]) -> bool {
+        let mut free = self.fits.columns_of(beside);
+        free.extend(sizes);
+        self.fits.evidence.p_value_of_both_surfaces(&free, sizes) < THRESHOLDS.surface_significance
     }
 
     /// P-value of a gain on held-out frames that is `score` standard deviations above zero. Predictions are more informative

@@ -14,6 +14,7 @@ use crate::{
     linear_model::nuisance::{Nuisance, nuisances},
     linear_model::parameters::FittedParameter,
     linear_model::reflectance::ReflectanceField,
+    linear_model::texture::CarpetTexture,
     linear_model::{linearized_frame::LinearizedFrame, system::LinearSystem},
     measurement::frame::FrameMeasurements,
     measurement::quantity::Channel,
@@ -49,11 +50,19 @@ impl LinearizedRecording {
         let chain = Chain::new(setup, &recording.sequence.field, &model)?;
         let nuisances = nuisances(
             &MeanReflectance::new(recording, &measurements, &chain),
+            &CarpetTexture::new(&measurements, &chain, recording.gamma()),
             setup.photometry.and_then(|photometry| photometry.psf_sigma_px),
         );
         let patches = measured_patches(&measurements);
         let others = Others { nuisances: &nuisances, patches: &patches };
         let mut frames = linearise(recording, &measurements, &model, columns, others)?;
+        if std::env::var("DUMP").is_ok() && (model.effects.is_empty() && std::env::var("DUMP").unwrap()=="0" || model.effects.len()==1 && std::env::var("DUMP").unwrap()=="1") { println!("DUMPSTART");
+            for (fi, frame) in frames.iter().enumerate() {
+                for (m, r) in frame.measurements.iter().zip(&frame.residuals) {
+                    if m.quantity.is_level() || m.quantity == crate::measurement::quantity::Quantity::NoiseVariance { println!("DUMP,{:?},{},{},{},{},{},{},{},{},{}", m.quantity, fi, m.ground.x, m.ground.y, m.pixel.x, m.pixel.y, m.measured, r, m.log_brightness, m.cos_incidence); }
+                }
+            }
+        }
         // An odometry step that ends at a held-out frame is not fitted.
         for frame in split.training().filter(|frame| split.is_held_out(frame.next())) {
             frames[frame].leave_out(Channel::Motion);

@@ -50,13 +50,23 @@ fn seen_part(recording: &Recording<'_>) -> [DVec2; 2] {
         let point_in_camera = pose.camera_from_world(ground.extend(0.0));
         point_in_camera.length() < THRESHOLDS.light_range_m && lens.project(point_in_camera).is_ok()
     };
-    let often = |share: &DVec2| {
-        let count = poses.iter().filter(|pose| sees(pose, *share * unit)).count();
-        count as f64 >= THRESHOLDS.light_seen_share * poses.len() as f64
+    // Each place counts as often as it was seen.
+    let views = |share: &DVec2| poses.iter().filter(|pose| sees(pose, *share * unit)).count();
+    let seen: Vec<(DVec2, usize)> = all().map(|share| (share, views(&share))).collect();
+    let sum: usize = seen.iter().map(|(_, count)| count).sum();
+    let least = THRESHOLDS.light_seen_share * sum as f64;
+    // Returns the edges beyond which this part of all views lies.
+    let edges = |coordinate: fn(DVec2) -> f64| {
+        let beyond = |edge: &f64, sign: f64| {
+            let outside = seen.iter().filter(|(share, _)| sign * coordinate(*share) <= sign * edge);
+            outside.map(|(_, count)| *count as f64).sum::<f64>() > least
+        };
+        let places = || (0..=PLACES).map(place);
+        let from = places().find(|edge| beyond(edge, 1.0));
+        [from, places().rev().find(|edge| beyond(edge, -1.0))].map(Option::unwrap_or_default)
     };
-    let seen: Vec<DVec2> = all().filter(often).collect();
-    let corner = |best: fn(DVec2, DVec2) -> DVec2| seen.iter().copied().reduce(best).unwrap_or_default();
-    [corner(DVec2::min), corner(DVec2::max)]
+    let ([from_x, to_x], [from_y, to_y]) = (edges(|place| place.x), edges(|place| place.y));
+    [DVec2::new(from_x, from_y), DVec2::new(to_x, to_y)]
 }
 
 /// Returns the model with these values of a parameter's effect, in which that of the parameter is replaced.

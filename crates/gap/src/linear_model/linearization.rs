@@ -23,7 +23,7 @@ use crate::{
     measurement::{
         camera::FrameCamera,
         frame::{FrameMeasurements, MeasurementConfig, measure_frame},
-        quantity::{Quantity, Surface},
+        quantity::{ColorChannel, Quantity},
         scalar::{Measurement, component},
     },
     recording::{Frame, Recording},
@@ -115,9 +115,14 @@ pub(crate) struct Others<'a> {
 pub(crate) fn measured_patches(measurements: &PerFrame<FrameMeasurements>) -> Tree {
     let of_frame = |frame: &FrameMeasurements| {
         let lines = frame.lines.iter().filter(|line| line.profile.level.is_some());
-        let lines = lines.map(|line| (Surface::Line, line.ground));
-        let blocks = frame.blocks.iter().map(|block| (Surface::Carpet, block.ground));
-        lines.chain(blocks).collect::<Vec<_>>()
+        let lines = lines.map(|line| (Quantity::LineLevel as fn(ColorChannel) -> Quantity, line.ground));
+        let carpet = Quantity::CarpetLevel as fn(ColorChannel) -> Quantity;
+        let blocks = frame.blocks.iter().map(|block| (carpet, block.ground));
+        let places: Vec<_> = lines.chain(blocks).collect();
+        places
+            .into_iter()
+            .flat_map(|(level, ground)| ColorChannel::ALL.map(|color| (level(color), ground)))
+            .collect::<Vec<_>>()
     };
     Tree::new(measurements.iter().flat_map(of_frame))
 }
@@ -227,8 +232,9 @@ impl Linearization<'_> {
 
     /// Returns the patch of the field in which a level was measured, with the derivative by the logarithm of its reflectance.
     fn patch(&self, measurement: &Measurement, by_brightness: f64) -> Option<(PatchIndex, f64)> {
-        let surface = measurement.quantity.surface().filter(|_| by_brightness.is_finite())?;
-        Some((self.others.patches.smallest_at(surface, measurement.ground)?, by_brightness))
+        let is_known = measurement.quantity.is_level() && by_brightness.is_finite();
+        let patch = is_known.then(|| self.others.patches.smallest_at(measurement.quantity, measurement.ground));
+        Some((patch??, by_brightness))
     }
 
     /// Returns the derivatives of all measurements by a parameter of the odometry, at this motion of the robot.

@@ -193,7 +193,7 @@ mod tests {
     use super::*;
     use crate::{
         linear_model::reflectance::{ReflectanceField, Tree},
-        measurement::quantity::Surface,
+        measurement::quantity::{ColorChannel, Quantity},
         testing::Noise,
     };
 
@@ -201,7 +201,8 @@ mod tests {
 
     /// Returns columns of which the last ones are those of a few patches.
     fn columns() -> Columns {
-        let places = [[0.1, 0.1], [0.4, 0.1], [2.2, 0.3]].map(|place| (Surface::Carpet, DVec2::from(place)));
+        let level = Quantity::CarpetLevel(ColorChannel::Green);
+        let places = [[0.1, 0.1], [0.4, 0.1], [2.2, 0.3]].map(|place| (level, DVec2::from(place)));
         let field = ReflectanceField::new(Tree::new(places.into_iter()));
         Columns { parameters: DENSE, nuisances: 0, field }
     }

@@ -2,6 +2,7 @@
 
 use crate::{
     linear_model::mean_reflectance::MeanReflectance,
+    linear_model::texture::{self, CarpetTexture},
     measurement::{
         luma::LUMA,
         quantity::{ColorChannel, Quantity, Surface},
@@ -38,12 +39,14 @@ pub(crate) enum Nuisance {
         /// Standard deviation.
         sigma: f64,
     },
-    /// Specular reflection of the carpet at grazing angles: a linear value `s (1 − cos θ)^power` added to all colours alike,
-    /// where θ is the angle of incidence and `s` the parameter.
+    /// Specular reflection of the carpet at grazing angles: a reflectance `s (1 − cos θ)^power` added to that of all colours
+    /// alike, where θ is the angle of incidence and `s` the parameter.
     Sheen {
         power: i32,
         /// Standard deviation, linear, at grazing incidence.
         sigma: f64,
+        /// Reflectance of the carpet in each colour without it.
+        carpet: [f64; 3],
     },
     /// Brightness of the carpet by the direction in which its pile is seen: proportional to a component of the direction of
     /// view on the ground, sin θ long.
@@ -56,9 +59,11 @@ pub(crate) enum Nuisance {
     /// Fine texture of the carpet, which looks like noise: its contrast at one resolution of the ground.
     Texture {
         /// Resolution in powers of [`NuisanceThresholds::texture_octave`] below that straight down.
-        octave: u32,
+        octave: usize,
         /// Standard deviation of the logarithm of the carpet's brightness.
         contrast: f64,
+        /// Texture that the recording shows.
+        seen: CarpetTexture,
     },
     /// Dependence of the blur on the width of a line, because the profile that is fitted is not exactly that of a line.
     Width {
@@ -80,25 +85,24 @@ pub(crate) enum Nuisance {
 
 const THRESHOLDS: NuisanceThresholds = Thresholds::DEFAULT.linear_model.nuisance;
 
-/// Number of resolutions at which the contrast of the carpet's texture is free.
-const TEXTURE_OCTAVES: u32 = 5;
-
 /// Nuisance parameters of every recording beside those of [`nuisances`].
-const COMMON: [Nuisance; 9] = [
+const COMMON: [Nuisance; 7] = [
     Nuisance::Gain { surface: None, sigma: THRESHOLDS.gain },
     Nuisance::ThinLine { sigma: THRESHOLDS.thin_line_level },
     Nuisance::Width { sigma: THRESHOLDS.blur_by_width_px2 },
     Nuisance::Kernel { sigma: THRESHOLDS.blur_shape },
     Nuisance::ThinKernel { sigma: THRESHOLDS.thin_blur_shape },
-    Nuisance::Sheen { power: 1, sigma: THRESHOLDS.sheen },
-    Nuisance::Sheen { power: 2, sigma: THRESHOLDS.sheen },
     Nuisance::Pile { axis: 0, sigma: THRESHOLDS.pile },
     Nuisance::Pile { axis: 1, sigma: THRESHOLDS.pile },
 ];
 
 /// Returns the nuisance parameters of a recording, whose nominal values are trusted as far as `mean` says. `psf_sigma_px` is the
 /// nominal width of the point spread function.
-pub(crate) fn nuisances(mean: &MeanReflectance, psf_sigma_px: Option<f64>) -> Vec<Nuisance> {
+pub(crate) fn nuisances(
+    mean: &MeanReflectance,
+    texture: &CarpetTexture,
+    psf_sigma_px: Option<f64>,
+) -> Vec<Nuisance> {
     let offset = |quantity: Quantity, sigma: f64| Nuisance::Offset { quantity, sigma };
     let lines = ColorChannel::ALL.map(|color| offset(Quantity::LineLevel(color), mean.line.color_sigma));
     let carpet = ColorChannel::ALL.map(|color| offset(Quantity::CarpetLevel(color), mean.carpet.color_sigma));
@@ -113,9 +117,14 @@ pub(crate) fn nuisances(mean: &MeanReflectance, psf_sigma_px: Option<f64>) -> Ve
         offset(Quantity::NoiseVariance, THRESHOLDS.noise_variance),
         Nuisance::NoiseExponent { log_reference: luma.max(1e-6).ln(), sigma: THRESHOLDS.noise_exponent },
     ];
-    let textures =
-        (0..TEXTURE_OCTAVES).map(|octave| Nuisance::Texture { octave, contrast: THRESHOLDS.texture });
-    lines.into_iter().chain(carpet).chain(gains).chain(others).chain(COMMON).chain(textures).collect()
+    let textures = (0..texture::OCTAVES).map(|octave| Nuisance::Texture {
+        octave,
+        contrast: THRESHOLDS.texture,
+        seen: *texture,
+    });
+    let carpet_rgb = mean.carpet.linear_rgb.map(|linear| linear.max(THRESHOLDS.least_reflectance));
+    let sheen = [1, 2].map(|power| Nuisance::Sheen { power, sigma: THRESHOLDS.sheen, carpet: carpet_rgb });
+    lines.into_iter().chain(carpet).chain(sheen).chain(gains).chain(others).chain(COMMON).chain(textures).collect()
 }
 
 impl Nuisance {
@@ -150,30 +159,21 @@ impl Nuisance {
             Self::ThinKernel { sigma } if is_blur(measurement, predicted) => {
                 sigma * predicted * (-measurement.half_width_px / predicted.sqrt()).exp()
             }
-            Self::Sheen { power, sigma } if is_carpet(measurement) => {
-                // Levels are logarithms of linear values: d ln(v) = dv / v.
-                let derivative = sigma * (1.0 - measurement.cos_incidence).powi(power) * (-predicted).exp();
-                if derivative.is_finite() { derivative } else { 0.0 }
+            Self::Sheen { power, sigma, carpet } => {
+                let Quantity::CarpetLevel(color) = measurement.quantity else { return 0.0 };
+                // Levels grow with the logarithm of the reflectance: d ln(v) = dv / v.
+                let share = (1.0 - measurement.cos_incidence).powi(power) / carpet[color as usize];
+                sigma * by_brightness * share
             }
             Self::Pile { axis, sigma } if is_carpet(measurement) => {
                 sigma * by_brightness * measurement.view_direction[axis]
             }
-            Self::Texture { octave, contrast } if measurement.quantity == Quantity::NoiseVariance => {
-                texture_derivative(octave, contrast, measurement, predicted)
+            Self::Texture { octave, contrast, seen } if measurement.quantity == Quantity::NoiseVariance => {
+                seen.derivative(octave, contrast, measurement, predicted)
             }
             _ => 0.0,
         }
     }
-}
-
-/// Returns the derivative of the logarithm of the noise's variance by a variance of the texture's contrast. Seen from the
-/// same height, the resolution of the ground is as cos^1.5 of the angle of incidence: that along the view times that across.
-fn texture_derivative(octave: u32, contrast: f64, measurement: &Measurement, predicted: f64) -> f64 {
-    let below = -1.5 * measurement.cos_incidence.max(1e-3).ln() / THRESHOLDS.texture_octave.ln();
-    let position = below.min(f64::from(TEXTURE_OCTAVES - 1));
-    let part = (1.0 - (position - f64::from(octave)).abs()).max(0.0);
-    let variance = (255.0 * contrast * measurement.luma_slope).powi(2) * (-predicted).exp();
-    if variance.is_finite() { part * variance } else { 0.0 }
 }
 
 fn is_blur(measurement: &Measurement, predicted: f64) -> bool {
@@ -228,24 +228,14 @@ mod tests {
 
     #[test]
     fn sheen_vanishes_from_straight_above_and_is_stronger_on_dark_colours() {
-        let at = |cos_incidence: f64| Measurement {
+        let at = |cos_incidence: f64, color| Measurement {
             cos_incidence,
-            ..measurement(Quantity::CarpetLevel(ColorChannel::Red))
+            ..measurement(Quantity::CarpetLevel(color))
         };
-        let sheen = Nuisance::Sheen { power: 1, sigma: THRESHOLDS.sheen };
-        assert_eq!(sheen.derivative(&at(1.0), -3.0, 1.0), 0.0);
-        assert!(sheen.derivative(&at(0.2), -3.0, 1.0) > sheen.derivative(&at(0.2), -2.0, 1.0));
-        assert!(sheen.derivative(&at(0.2), -3.0, 1.0) > sheen.derivative(&at(0.6), -3.0, 1.0));
-    }
-
-    #[test]
-    fn texture_of_one_contrast_at_all_resolutions_adds_the_same_variance_everywhere() {
-        for cos_incidence in [1.0, 0.7, 0.4, 0.15, 0.03] {
-            let block =
-                Measurement { cos_incidence, luma_slope: 0.2, ..measurement(Quantity::NoiseVariance) };
-            let octave = |octave| Nuisance::Texture { octave, contrast: 0.01 }.derivative(&block, 0.0, 1.0);
-            let sum: f64 = (0..TEXTURE_OCTAVES).map(octave).sum();
-            assert!((sum - (255.0 * 0.01 * 0.2_f64).powi(2)).abs() < 1e-12, "{cos_incidence}: {sum}");
-        }
+        let sheen = Nuisance::Sheen { power: 1, sigma: THRESHOLDS.sheen, carpet: [0.04, 0.14, 0.05] };
+        let of = |cos_incidence, color| sheen.derivative(&at(cos_incidence, color), -3.0, 1.0);
+        assert_eq!(of(1.0, ColorChannel::Red), 0.0);
+        assert!(of(0.2, ColorChannel::Red) > of(0.2, ColorChannel::Green));
+        assert!(of(0.2, ColorChannel::Red) > of(0.6, ColorChannel::Red));
     }
 }

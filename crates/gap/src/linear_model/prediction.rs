@@ -105,7 +105,7 @@ impl Predictor<'_> {
                 self.log_level(Surface::Carpet, color, known, block.pixel, block.ground)
             }
             (Subject::Carpet(index), Quantity::NoiseVariance) if self.nominal.noise => {
-                self.log_noise(&self.frame.blocks[index])
+                log_noise(self.camera.chain, self.rounding, &self.frame.blocks[index])
             }
             (Subject::OdometryStep, quantity) => {
                 let step = *known.step.get_or_insert_with(|| self.step());
@@ -164,18 +164,6 @@ impl Predictor<'_> {
         })
     }
 
-    /// Predicts the logarithm of the mean square of a coefficient of luma on a block of carpet, grey levels squared, for the
-    /// light that its measured levels tell.
-    fn log_noise(&self, block: &CarpetBlock) -> f64 {
-        let chain = self.camera.chain;
-        let of_color = |(&level, weight): (&f64, f64)| {
-            let sigma = noise_sigma(chain, chain.linear_of(level));
-            (weight * sigma).powi(2)
-        };
-        let variance: f64 = block.level.iter().zip(LUMA).map(of_color).sum();
-        self.rounding.mean_square(variance.sqrt()).ln()
-    }
-
     /// Predicts the odometry's report of the motion to the next frame, from the reference trajectory.
     fn step(&self) -> Option<Motion2> {
         let until_s = self.step_until_s?;
@@ -228,6 +216,17 @@ fn mean_encoded(chain: &Chain, linear: f64) -> f64 {
     let sigma = chain.noise().variance(linear).sqrt();
     let nodes: &[(f64, f64)] = if sigma < 0.2 * linear { &FEW_NODES } else { &MANY_NODES };
     nodes.iter().map(|(node, weight)| weight * chain.encode(chain.respond(linear + node * sigma))).sum()
+}
+
+/// Predicts the logarithm of the mean square of a coefficient of luma on a block of carpet, grey levels squared, for the light
+/// that its measured levels tell.
+pub(crate) fn log_noise(chain: &Chain, rounding: &Rounding, block: &CarpetBlock) -> f64 {
+    let of_color = |(&level, weight): (&f64, f64)| {
+        let sigma = noise_sigma(chain, chain.linear_of(level));
+        (weight * sigma).powi(2)
+    };
+    let variance: f64 = block.level.iter().zip(LUMA).map(of_color).sum();
+    rounding.mean_square(variance.sqrt()).ln()
 }
 
 /// Returns the standard deviation of encoded values in grey levels: half the difference between the encoded values one

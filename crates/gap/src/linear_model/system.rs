@@ -64,6 +64,7 @@ impl LinearSystem {
         for _ in 0..ITERATIONS {
             (estimate, columns.field.variances) = estimate.improved(frames, &columns, reference);
         }
+        columns.field = columns.field.of_shared_brightness();
         let mut system = Self::assembled(frames, &estimate, &columns, views);
         let alone = |without| {
             let weights = estimate.without_levels_of(frames, without);

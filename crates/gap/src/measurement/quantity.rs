@@ -154,6 +154,11 @@ impl Quantity {
         }
     }
 
+    /// Iterates over the levels of lines and of carpet.
+    pub(crate) fn levels() -> impl Iterator<Item = Self> {
+        ColorChannel::ALL.into_iter().flat_map(|color| [Self::LineLevel(color), Self::CarpetLevel(color)])
+    }
+
     /// Whether it is a level of lines or of carpet.
     pub(crate) fn is_level(self) -> bool {
         self.surface().is_some()

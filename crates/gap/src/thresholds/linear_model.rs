@@ -9,7 +9,8 @@ pub(crate) struct LinearModelThresholds {
     /// Distance up to which carpet tells of the light on it, metres. Chosen: farther off, a block covers more than the light
     /// is alike on, and what stands behind it shines through the blur.
     pub(crate) light_range_m: f64,
-    /// Part of the pictures that must show a place for it to bound where the light was measured. Chosen; no measurement.
+    /// Part of all views of places beyond each edge of the rectangle in which the light was measured. Chosen: a few views of
+    /// a far end must not stretch it.
     pub(crate) light_seen_share: f64,
     /// Rounds of reweighted least squares, each of which finds weights, standard deviations of the residuals and of the
     /// poses' errors in turn. Chosen; no measurement.
@@ -57,8 +58,10 @@ pub(crate) struct NuisanceThresholds {
     pub(crate) texture: f64,
     /// Factor between the resolutions at which the texture's contrast is free. Chosen; no measurement.
     pub(crate) texture_octave: f64,
-    /// Sheen of the carpet at grazing incidence, as a part of full scale in linear light. Chosen; no measurement.
+    /// Sheen of the carpet at grazing incidence, as a reflectance like the nominal ones. Chosen; no measurement.
     pub(crate) sheen: f64,
+    /// Smallest reflectance of a carpet's colour. Chosen: black paint has as much.
+    pub(crate) least_reflectance: f64,
     /// Variance of the nominal blur, pixels squared. Chosen: 0.03 px more or less of a blur of 0.5 px.
     pub(crate) blur_px2: f64,
     /// The same as a part of the nominal variance. Chosen: a width that is known to 15 %.
@@ -126,6 +129,7 @@ impl LinearModelThresholds {
             texture: 0.08,
             texture_octave: 2.0,
             sheen: 0.05,
+            least_reflectance: 0.01,
             blur_px2: 0.03,
             blur_share: 0.3,
             blur_by_width_px2: 0.02,
@@ -149,7 +153,7 @@ impl LinearModelThresholds {
             free: [0.1, 0.3, 0.3],
         },
         light_range_m: 4.0,
-        light_seen_share: 0.05,
+        light_seen_share: 0.02,
         reweighting_rounds: 4,
         tukey_sigmas: 5.0,
         independent_share: 0.15,

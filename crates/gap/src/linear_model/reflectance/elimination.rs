@@ -111,14 +111,15 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::{linear_model::reflectance::Tree, measurement::quantity::Surface, testing::Noise};
+    use crate::{linear_model::reflectance::Tree, measurement::quantity::{ColorChannel, Quantity}, testing::Noise};
 
     const OTHERS: usize = 3;
 
     fn field() -> ReflectanceField {
         let places = [[0.1, 0.1], [0.4, 0.1], [2.2, 0.3], [-1.0, 0.4]].map(DVec2::from);
+        let levels = [Quantity::LineLevel(ColorChannel::Red), Quantity::CarpetLevel(ColorChannel::Red)];
         ReflectanceField::new(Tree::new(
-            places.into_iter().flat_map(|place| Surface::ALL.map(|surface| (surface, place))),
+            places.into_iter().flat_map(|place| levels.map(|level| (level, place))),
         ))
     }
 

@@ -32,6 +32,12 @@ impl ReflectanceField {
         Self { tree, variances: IncrementVariances::usual() }
     }
 
+    /// Returns the field with which the colours together tell no more than one of them: that a place is bright, all three show,
+    /// although each colour has values of its own.
+    pub(crate) fn of_shared_brightness(self) -> Self {
+        Self { variances: self.variances.of_shared_brightness(), ..self }
+    }
+
     /// Returns the prior precision of a patch's increment.
     pub(crate) fn precision(&self, patch: PatchIndex) -> f64 {
         self.variances.of(self.tree.scale(patch)).recip()

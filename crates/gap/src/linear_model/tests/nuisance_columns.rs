@@ -8,6 +8,7 @@ use crate::{
         linearization::{Others, linearise, measure_frames, measured_patches},
         mean_reflectance::MeanReflectance,
         nuisance::{Nuisance, nuisances},
+        texture::CarpetTexture,
     },
     measurement::{
         quantity::{Quantity, Surface},
@@ -52,9 +53,11 @@ fn predicted(
             nominal * (1.0 + deviations * sigma / widths.exp())
         }
         // Levels are logarithms of linear values.
-        Nuisance::Sheen { power, sigma } if surface == Some(Surface::Carpet) => {
+        Nuisance::Sheen { power, sigma, carpet } if surface == Some(Surface::Carpet) => {
+            let Quantity::CarpetLevel(color) = measurement.quantity else { return nominal };
+            let own = carpet[color as usize];
             let reflected = sigma * (1.0 - measurement.cos_incidence).powi(power);
-            (nominal.exp() + deviations * reflected).ln()
+            nominal + by_brightness * ((own + deviations * reflected) / own).ln()
         }
         Nuisance::Pile { axis, sigma } if surface == Some(Surface::Carpet) => {
             let incidence = measurement.cos_incidence.acos();
@@ -65,10 +68,10 @@ fn predicted(
             let brightness = (measurement.log_brightness - log_reference).exp();
             (nominal.exp() * brightness.powf(deviations * sigma)).ln()
         }
-        Nuisance::Texture { octave, contrast } if is_noise => {
+        Nuisance::Texture { octave, contrast, .. } if is_noise => {
             // Half as many pixels on a length along the view, and a half power of that across, for each octave.
             let octaves = measurement.cos_incidence.powf(-1.5).log2().min(4.0);
-            let part = (1.0 - (octaves - f64::from(octave)).abs()).max(0.0);
+            let part = (1.0 - (octaves - octave as f64).abs()).max(0.0);
             let grey = 255.0 * contrast * measurement.luma_slope;
             (nominal.exp() + deviations * part * grey * grey).ln()
         }
@@ -83,7 +86,11 @@ fn every_nuisance_column_is_the_derivative_of_the_prediction() {
     let model = Model::default();
     let measurements = measure_frames(&recording, &model, 20.0).unwrap();
     let chain = Chain::new(&sequence.setup, &sequence.field, &model).unwrap();
-    let nuisances = nuisances(&MeanReflectance::new(&recording, &measurements, &chain), Some(0.5));
+    let nuisances = nuisances(
+        &MeanReflectance::new(&recording, &measurements, &chain),
+        &CarpetTexture::default(),
+        Some(0.5),
+    );
     let patches = measured_patches(&measurements);
     let others = Others { nuisances: &nuisances, patches: &patches };
     let frames = linearise(&recording, &measurements, &model, &[], others).unwrap();
@@ -125,8 +132,8 @@ fn a_level_grows_with_the_reflectance_of_the_patch_that_it_was_measured_in() {
     let frames = linearise(&recording, &measurements, &model, &[], others).unwrap();
     for (row, patch) in frames.iter().flat_map(|frame| frame.measurements.iter().zip(&frame.patches)) {
         match (row.quantity.surface(), patch) {
-            (Some(surface), Some((patch, derivative))) => {
-                assert_eq!(patches.smallest_at(surface, row.ground), Some(*patch));
+            (Some(_), Some((patch, derivative))) => {
+                assert_eq!(patches.smallest_at(row.quantity, row.ground), Some(*patch));
                 // The mean over noise bends the encoding a little at dark levels.
                 assert!((derivative - 1.0).abs() < 0.05, "{derivative}");
             }
