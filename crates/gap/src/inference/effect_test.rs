@@ -98,14 +98,6 @@ impl<'a> EffectTests<'a> {
         effects.par_iter().filter_map(|&effect| self.test(effect, beside, effects.len())).collect()
     }
 
-    pub(crate) fn is_seen_on_both(&self, effect: EffectIndex, beside: &[EffectIndex]) -> Vec<f64> {
-        let without: Vec<EffectIndex> = beside.iter().copied().filter(|other| *other != effect).collect();
-        let sizes = self.fits.sizes_of(effect);
-        let mut free = self.fits.columns_of(&without);
-        free.extend(sizes.iter());
-        self.fits.evidence.of_one_surface().iter().map(|alone| alone.fit(&free).map_or(1.0, |fit| alone.p_value(&fit, &sizes))).collect()
-    }
-
     /// Whether lines and carpet, each without the other, show the sizes of an effect of light. Its shape is neutral: there are
     /// few lines.
     fn is_seen_on_both_surfaces(&self, beside: &[EffectIndex], sizes: &[ColumnIndex]) -> bool {

@@ -56,13 +56,6 @@ impl LinearizedRecording {
         let patches = measured_patches(&measurements);
         let others = Others { nuisances: &nuisances, patches: &patches };
         let mut frames = linearise(recording, &measurements, &model, columns, others)?;
-        if std::env::var("DUMP").is_ok() && (model.effects.is_empty() && std::env::var("DUMP").unwrap()=="0" || model.effects.len()==1 && std::env::var("DUMP").unwrap()=="1") { println!("DUMPSTART");
-            for (fi, frame) in frames.iter().enumerate() {
-                for (m, r) in frame.measurements.iter().zip(&frame.residuals) {
-                    if m.quantity.is_level() || m.quantity == crate::measurement::quantity::Quantity::NoiseVariance { println!("DUMP,{:?},{},{},{},{},{},{},{},{},{}", m.quantity, fi, m.ground.x, m.ground.y, m.pixel.x, m.pixel.y, m.measured, r, m.log_brightness, m.cos_incidence); }
-                }
-            }
-        }
         // An odometry step that ends at a held-out frame is not fitted.
         for frame in split.training().filter(|frame| split.is_held_out(frame.next())) {
             frames[frame].leave_out(Channel::Motion);

@@ -56,10 +56,6 @@ impl ModelSearch<'_> {
         let is_supported = |tests: &EffectTests<'_>, effect: EffectIndex, beside: &[EffectIndex]| {
             tests.test(effect, beside, tested).as_ref().is_some_and(EffectTest::is_supported)
         };
-        if std::env::var("TRACE").is_ok() {
-            eprintln!("TRACE named {:?} model {:?}", named.iter().map(|e| e.effect().id()).collect::<Vec<_>>(), linearized.model.effects.iter().map(|u| (u.effect.id(), u.values.clone())).collect::<Vec<_>>());
-            for effect in named { let t = tests.test(*effect, &all, tested); if let Some(t)=t { eprintln!("   {} p {:e} gain {:?} material {} surfaces {:?}", effect.effect().id(), t.p_value, t.gain, t.material, tests.is_seen_on_both(*effect, &all)); } }
-        }
         // A value at the end of its range is no measurement, however much it explains.
         if let Some(&effect) = named.iter().find(|effect| tests.fits.is_at_end_of_range(**effect)) {
             let others: Vec<EffectIndex> = named.iter().copied().filter(|other| *other != effect).collect();

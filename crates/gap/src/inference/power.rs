@@ -16,11 +16,8 @@ use crate::{
         evidence::{Evidence, ReducedRecording},
     },
     linear_model::{
-        column::ColumnIndex,
-        normal_equations::NormalEquations,
-        parameters::FittedParameter,
-        reduced_equations::ProjectedEquations,
-        system::LinearSystem,
+        column::ColumnIndex, normal_equations::NormalEquations, parameters::FittedParameter,
+        reduced_equations::ProjectedEquations, system::LinearSystem,
     },
     thresholds::Thresholds,
 };

@@ -233,7 +233,8 @@ impl Linearization<'_> {
     /// Returns the patch of the field in which a level was measured, with the derivative by the logarithm of its reflectance.
     fn patch(&self, measurement: &Measurement, by_brightness: f64) -> Option<(PatchIndex, f64)> {
         let is_known = measurement.quantity.is_level() && by_brightness.is_finite();
-        let patch = is_known.then(|| self.others.patches.smallest_at(measurement.quantity, measurement.ground));
+        let patch =
+            is_known.then(|| self.others.patches.smallest_at(measurement.quantity, measurement.ground));
         Some((patch??, by_brightness))
     }
 

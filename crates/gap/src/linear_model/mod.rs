@@ -21,6 +21,6 @@ pub(crate) mod reflectance;
 pub(crate) mod robust_weights;
 mod rounding;
 pub(crate) mod system;
-pub(crate) mod texture;
 #[cfg(test)]
 mod tests;
+pub(crate) mod texture;

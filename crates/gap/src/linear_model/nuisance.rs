@@ -124,7 +124,15 @@ pub(crate) fn nuisances(
     });
     let carpet_rgb = mean.carpet.linear_rgb.map(|linear| linear.max(THRESHOLDS.least_reflectance));
     let sheen = [1, 2].map(|power| Nuisance::Sheen { power, sigma: THRESHOLDS.sheen, carpet: carpet_rgb });
-    lines.into_iter().chain(carpet).chain(sheen).chain(gains).chain(others).chain(COMMON).chain(textures).collect()
+    lines
+        .into_iter()
+        .chain(carpet)
+        .chain(sheen)
+        .chain(gains)
+        .chain(others)
+        .chain(COMMON)
+        .chain(textures)
+        .collect()
 }
 
 impl Nuisance {

@@ -174,7 +174,8 @@ impl ReducedEquations {
     /// Returns the contribution of the priors of nuisance parameters and reflectance to the scatter of scores, which no frame
     /// shows.
     pub(crate) fn nuisance_scatter(&self, free: &[ColumnIndex]) -> DMatrix<f64> {
-        let product = |a: ColumnIndex, b: ColumnIndex| self.prior_product(self.of_column(a), self.of_column(b));
+        let product =
+            |a: ColumnIndex, b: ColumnIndex| self.prior_product(self.of_column(a), self.of_column(b));
         DMatrix::from_fn(free.len(), free.len(), |i, j| product(free[i.min(j)], free[i.max(j)]))
     }
 

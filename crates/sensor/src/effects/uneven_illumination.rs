@@ -64,7 +64,8 @@ impl Effect for UnevenIllumination {
         let value = |parameter: &Parameter| Some(estimates.get(parameter.name)?.value);
         let factors: Vec<f64> = coefficients.map(value).collect::<Option<_>>()?;
         let factors = &factors;
-        let edges = ["from_x", "to_x", "from_y", "to_y"].map(|name| estimates.get(name).map_or(0.0, |edge| edge.value));
+        let edges = ["from_x", "to_x", "from_y", "to_y"]
+            .map(|name| estimates.get(name).map_or(0.0, |edge| edge.value));
         let seen = Seen::new(edges);
         let steps = |[from, to]: [f64; 2]| {
             let [from, to] = [from.clamp(-1.0, 1.0), to.clamp(-1.0, 1.0)];
@@ -107,9 +108,8 @@ impl Seen {
 
     /// Returns the nearest place of the rectangle, whose edges are at −1 and 1.
     fn place(&self, place: DVec2) -> DVec2 {
-        let of = |value: f64, [from, to]: [f64; 2]| {
-            (2.0 * (value - from) / (to - from) - 1.0).clamp(-1.0, 1.0)
-        };
+        let of =
+            |value: f64, [from, to]: [f64; 2]| (2.0 * (value - from) / (to - from) - 1.0).clamp(-1.0, 1.0);
         DVec2::new(of(place.x, self.x), of(place.y, self.y))
     }
 }

@@ -111,7 +111,11 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::{linear_model::reflectance::Tree, measurement::quantity::{ColorChannel, Quantity}, testing::Noise};
+    use crate::{
+        linear_model::reflectance::Tree,
+        measurement::quantity::{ColorChannel, Quantity},
+        testing::Noise,
+    };
 
     const OTHERS: usize = 3;
 
