@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec2, DVec3};
 use reality_sim_core::{
     pose::{CameraPose, Pose2},
-    sequence::FrameRecord,
+    sequence::{FrameRecord, StampedPose},
 };
 
 use crate::{
@@ -24,6 +24,8 @@ const IMU_RAD: f64 = 0.17_f64.to_radians();
 /// Noise of one step of the odometry while walking; standing has a tenth of it.
 const ODOMETRY_M: f64 = 0.003;
 const ODOMETRY_RAD: f64 = 0.3_f64.to_radians();
+/// Time for which motion capture goes on before the first picture and after the last, seconds.
+const LEAD_S: f64 = 0.5;
 /// Precision of the files: values are multiples of 1 / `PER_UNIT`.
 const PER_UNIT: f64 = 1e5;
 
@@ -92,6 +94,25 @@ impl Odometry {
 pub fn references(seed: u64, count: usize, trajectory: &Trajectory) -> Vec<CameraPose> {
     let random = &mut Random::stream(seed, "capture", 0);
     (0..count).map(|frame| reference(random, trajectory, timestamp_s(frame))).collect()
+}
+
+/// Returns the poses that motion capture measured between the frames, from half a second before the first to half a second
+/// after the last. None of them is at a frame's time.
+pub fn references_between(
+    seed: u64,
+    count: usize,
+    rate_hz: f64,
+    trajectory: &Trajectory,
+) -> Vec<StampedPose> {
+    let random = &mut Random::stream(seed, "capture", 1);
+    let (from_s, to_s) = (timestamp_s(0) - LEAD_S, timestamp_s(count - 1) + LEAD_S);
+    let poses = 0..((to_s - from_s) * rate_hz) as usize;
+    poses
+        .map(|pose| {
+            let timestamp_s = from_s + (pose as f64 + 0.5) / rate_hz;
+            StampedPose { timestamp_s, pose: reference(random, trajectory, timestamp_s) }
+        })
+        .collect()
 }
 
 fn reference(random: &mut Random, trajectory: &Trajectory, time_s: f64) -> CameraPose {

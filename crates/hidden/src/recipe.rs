@@ -41,12 +41,22 @@ pub struct Recipe {
     pub effects: Vec<Hidden>,
     /// Motion of the robot.
     pub walk: Walk,
+    /// Rate at which motion capture measures poses between the pictures, hertz; without it, only those at the pictures'
+    /// times are in the files.
+    pub capture_rate_hz: Option<f64>,
 }
 
 impl Recipe {
     /// Makes a recipe for 60 pictures of 640 × 480 pixels on a walk, with nothing hidden.
     pub fn new(seed: u64) -> Self {
-        Self { seed, frames: 60, size: [640, 480], effects: Vec::new(), walk: Walk::Walking }
+        Self {
+            seed,
+            frames: 60,
+            size: [640, 480],
+            effects: Vec::new(),
+            walk: Walk::Walking,
+            capture_rate_hz: None,
+        }
     }
 
     /// Writes a complete sequence folder, creating it if it is missing, and returns its content: `sequence.toml`,
@@ -67,6 +77,9 @@ impl Recipe {
             name: format!("hidden-{}", self.seed),
             setup: nominal.setup()?,
             frames,
+            poses_between_frames: self.capture_rate_hz.map_or_else(Vec::new, |rate_hz| {
+                log::references_between(self.seed, self.frames, rate_hz, &trajectory)
+            }),
             start: Some(log::start(&trajectory)),
             field: nominal.field,
         };

@@ -37,7 +37,7 @@ const ALLOWED: [&str; 7] = [
     "field::FieldDimensions",
     "pose::{CameraPose, Pose2}",
     "sequence::{CameraSetup, Photometry}",
-    "sequence::FrameRecord",
+    "sequence::{FrameRecord, StampedPose}",
     "sequence::SequenceError",
     "sequence::Sequence",
 ];

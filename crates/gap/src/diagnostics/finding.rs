@@ -2,13 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::measurement::quantity::{Channel, ColorChannel};
+use crate::{
+    diagnostics::input_mistake::InputMistake,
+    measurement::quantity::{Channel, ColorChannel},
+};
 
 /// Significant deviation that no effect of the library explains.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Finding {
+    /// File of the recording that seems to be meant in another way than it is read.
+    InputMistake {
+        /// The mistake.
+        mistake: InputMistake,
+    },
     /// Residuals with the same mean in every part of the recording.
     Pattern {
         /// Channel of the residuals.
@@ -177,7 +185,7 @@ impl Finding {
             Self::Flicker { .. } | Self::Occluders { .. } | Self::DynamicObjects { .. } => {
                 Channel::Photometry
             }
-            Self::MissingLine { .. } => Channel::Geometry,
+            Self::MissingLine { .. } | Self::InputMistake { .. } => Channel::Geometry,
             Self::Odometry { .. } => Channel::Motion,
             Self::NominalValue { value, .. } => value.channel(),
         }
@@ -193,6 +201,7 @@ impl Finding {
             Self::Occluders { share } | Self::DynamicObjects { share } => *share,
             Self::MissingLine { found_share, usual_share, .. } => 1.0 - found_share / usual_share,
             Self::NominalValue { off_by, .. } => *off_by,
+            Self::InputMistake { .. } => 1.0,
         }
     }
 
@@ -203,7 +212,8 @@ impl Finding {
             Self::Flicker { .. }
             | Self::Occluders { .. }
             | Self::DynamicObjects { .. }
-            | Self::MissingLine { .. } => "1",
+            | Self::MissingLine { .. }
+            | Self::InputMistake { .. } => "1",
             Self::Odometry { component, .. } => component.unit(),
             Self::NominalValue { value, .. } => value.unit(),
         }

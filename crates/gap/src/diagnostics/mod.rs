@@ -5,6 +5,7 @@ pub(crate) mod detector;
 mod dynamic_objects;
 pub(crate) mod finding;
 mod flicker;
+pub(crate) mod input_mistake;
 mod missing_lines;
 mod nominal_consistency;
 mod occluders;

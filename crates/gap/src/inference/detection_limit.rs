@@ -7,7 +7,7 @@ use crate::{
     inference::effect_fit::EffectFits,
     inference::hypothesis_test::student_quantile,
     linear_model::column::ColumnIndex,
-    recording::{LEAST_VIEWS, Recording},
+    recording::{LEAST_VIEWS, Recording, ReferenceSource},
     thresholds::{InferenceThresholds, Thresholds},
 };
 
@@ -60,6 +60,8 @@ pub enum UnobservableCause {
 pub enum MissingInput {
     /// Odometry of the frames.
     Odometry,
+    /// Reference poses that something other than the pictures measured.
+    MeasuredPoses,
     /// Nominal reflectance of lines and carpet.
     Reflectance,
     /// Nominal noise of the sensor.
@@ -125,6 +127,7 @@ fn missing_input(recording: &Recording<'_>, effect: &dyn Effect) -> Option<Missi
     let missing = effect.about().needs.iter().find(|need| !provides(recording, **need))?;
     Some(match missing {
         Need::Odometry => MissingInput::Odometry,
+        Need::MeasuredPoses => MissingInput::MeasuredPoses,
         Need::NominalReflectance => MissingInput::Reflectance,
         Need::NominalNoise => MissingInput::Noise,
         Need::NominalSharpness => MissingInput::Sharpness,
@@ -136,6 +139,7 @@ fn provides(recording: &Recording<'_>, need: Need) -> bool {
     let photometry = recording.sequence.setup.photometry;
     match need {
         Need::Odometry => recording.sequence.frames.iter().any(|frame| frame.odometry.is_some()),
+        Need::MeasuredPoses => recording.source == ReferenceSource::Measured,
         Need::NominalReflectance => recording.reflectance.is_some(),
         Need::NominalNoise => photometry.is_some_and(|p| p.noise_shot.is_some() || p.noise_read.is_some()),
         Need::NominalSharpness => photometry.is_some_and(|p| p.psf_sigma_px.is_some()),

@@ -83,7 +83,7 @@ pub(crate) fn gaps(
     for frame in found.split.held_out() {
         let linearized = &found.linearized.frames[frame];
         // Neighbours are measurements in one picture; for the odometry they are successive steps.
-        last.retain(|quantity, _| quantity.is_odometry() && Some(frame) == next);
+        last.retain(|quantity, _| quantity.is_proprioceptive() && Some(frame) == next);
         next = Some(frame.next());
         for (index, measurement) in linearized.measurements.iter().enumerate() {
             let (b, a) = (before.residuals[frame][index], after.residuals[frame][index]);

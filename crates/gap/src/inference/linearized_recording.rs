@@ -12,7 +12,9 @@ use crate::{
     linear_model::linearization::{MeasureError, linearise, measure_frames},
     linear_model::nuisance::{Nuisance, nuisances},
     linear_model::parameters::FittedParameter,
-    linear_model::{linearized_frame::LinearizedFrame, system::LinearSystem},
+    linear_model::{
+        linearized_frame::LinearizedFrame, reference_drift::ReferenceDrift, system::LinearSystem,
+    },
     measurement::frame::FrameMeasurements,
     measurement::quantity::Channel,
     recording::Recording,
@@ -45,17 +47,54 @@ impl LinearizedRecording {
     ) -> Result<Self, MeasureError> {
         let search_px = search * f64::from(recording.sequence.setup.camera.width);
         let measurements = measure_frames(recording, &model, search_px)?;
+        Self::of_measurements(recording, model, measurements, columns, split)
+    }
+
+    /// Linearises the recording again, with the same measurements.
+    pub(crate) fn again(
+        self,
+        recording: &Recording<'_>,
+        columns: &[FittedParameter],
+        split: &HeldOutSplit,
+    ) -> Result<Self, MeasureError> {
+        Self::of_measurements(recording, self.model, self.measurements, columns, split)
+    }
+
+    fn of_measurements(
+        recording: &Recording<'_>,
+        model: Model,
+        measurements: PerFrame<FrameMeasurements>,
+        columns: &[FittedParameter],
+        split: &HeldOutSplit,
+    ) -> Result<Self, MeasureError> {
         let nuisances = nuisances(measurements.as_slice());
         let mut frames = linearise(recording, &measurements, &model, columns, &nuisances)?;
         // An odometry step that ends at a held-out frame is not fitted.
         for frame in split.training().filter(|frame| split.is_held_out(frame.next())) {
             frames[frame].leave_out(Channel::Motion);
         }
-        let training: Vec<&LinearizedFrame> = split.training().map(|frame| &frames[frame]).collect();
         let views = recording.views();
         let views: Vec<ViewIndex> = split.training().map(|frame| views[frame]).collect();
+        let system = |frames: &PerFrame<LinearizedFrame>, size: usize| {
+            let training: Vec<&LinearizedFrame> = split.training().map(|frame| &frames[frame]).collect();
+            LinearSystem::new(&training, size, recording.reference(), &views)
+        };
         let size = columns.len() + nuisances.len();
-        let system = LinearSystem::new(&training, size, recording.reference(), &views);
+        let drift = {
+            let times_s: Vec<f64> = split.training().map(|frame| recording.frames[frame].time_s).collect();
+            let training: Vec<&LinearizedFrame> = split.training().map(|frame| &frames[frame]).collect();
+            ReferenceDrift::new(recording.reference(), &times_s, &training, &system(&frames, size))
+        };
+        for (index, frame) in recording.frames.indexed() {
+            drift.add_to(
+                &mut frames[index],
+                frame.time_s,
+                recording.trajectory.at(frame.time_s).yaw_rad,
+                size,
+            );
+        }
+        let mut system = system(&frames, size + drift.len());
+        system.pose_sigmas = drift.together_with(system.pose_sigmas);
         Ok(Self { model, measurements, nuisances, frames, system })
     }
 

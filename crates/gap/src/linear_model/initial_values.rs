@@ -2,17 +2,20 @@
 
 use reality_sim_sensor::{Effect, Model, Role};
 
-use crate::{linear_model::parameters::FittedParameter, recording::Recording};
+use crate::{
+    linear_model::{fixed_values::fixed_value, parameters::FittedParameter},
+    recording::Recording,
+};
 
 /// Returns the neutral values of an effect's parameters. Fixed parameters, which no fit changes, take the times of the
-/// recording's first and last frame.
+/// recording's first and last frame, or what a search has found.
 pub(crate) fn starting_values(effect: &'static dyn Effect, recording: &Recording<'_>) -> Vec<f64> {
     let frames = recording.frames.as_slice();
     let (first, last) = (frames.first(), frames.last());
     let given = |name: &str| match name {
         "from_s" => first.map_or(0.0, |frame| frame.time_s),
         "to_s" => last.map_or(1.0, |frame| frame.time_s),
-        _ => 0.0,
+        searched => fixed_value(recording, searched),
     };
     let value = |parameter: &reality_sim_sensor::Parameter| match parameter.role {
         Role::Fixed => given(parameter.name),

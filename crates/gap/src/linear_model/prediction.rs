@@ -59,6 +59,7 @@ impl Predictor<'_> {
             Subject::Line(index) => self.line(&self.frame.lines[index]).map(Prediction::Line),
             Subject::Carpet(index) => self.block(&self.frame.blocks[index]).map(Prediction::Carpet),
             Subject::OdometryStep => self.step().map(Prediction::OdometryStep),
+            Subject::Attitude => Some(Prediction::Attitude(self.attitude())),
         }
         .unwrap_or(Prediction::None)
     }
@@ -79,6 +80,8 @@ impl Predictor<'_> {
             }
             (Prediction::Carpet(block), Quantity::NoiseVariance) if self.nominal.noise => block.noise.ln(),
             (Prediction::OdometryStep(step), quantity) => component(*step, quantity),
+            (Prediction::Attitude([pitch_rad, _]), Quantity::StatedPitch) => *pitch_rad,
+            (Prediction::Attitude([_, roll_rad]), Quantity::StatedRoll) => *roll_rad,
             _ => f64::NAN,
         }
     }
@@ -139,8 +142,16 @@ impl Predictor<'_> {
     fn step(&self) -> Option<Motion2> {
         let until_s = self.step_until_s?;
         let FrameCamera { chain, trajectory, time_s, .. } = self.camera;
-        let at = |time_s: f64| trajectory.at(time_s + chain.clock_s()).planar();
+        let delay_s = chain.odometry_delay_s() - chain.clock_s();
+        let at = |time_s: f64| trajectory.at(time_s - delay_s).planar();
         Some(chain.odometry(at(time_s).motion_to(at(until_s)), until_s - time_s))
+    }
+
+    /// Predicts pitch and roll by joints and IMU, from the reference trajectory.
+    fn attitude(&self) -> [f64; 2] {
+        let FrameCamera { chain, trajectory, time_s, .. } = self.camera;
+        let pose = trajectory.at(time_s + chain.clock_s() - chain.attitude_delay_s());
+        [pose.pitch_rad, pose.roll_rad]
     }
 }
 
@@ -149,6 +160,8 @@ enum Prediction {
     Line(LinePrediction),
     Carpet(CarpetPrediction),
     OdometryStep(Motion2),
+    /// Pitch and roll, radians.
+    Attitude([f64; 2]),
     /// Nothing is predicted.
     None,
 }

@@ -40,7 +40,7 @@ pub(crate) struct LinearSystem {
     pub(crate) cells: Vec<NormalEquations>,
     /// Standard deviations of the residuals.
     pub(crate) sigmas: BTreeMap<Quantity, f64>,
-    /// Standard deviations of the pose errors, in the order of
+    /// Standard deviations of the pose errors, slow ones included, in the order of
     /// [`crate::linear_model::pose_gradient::pose_gradient`].
     pub(crate) pose_sigmas: [f64; 6],
     /// Weights of the measurements of each frame; 0 for outliers and missing residuals.
@@ -64,6 +64,22 @@ impl LinearSystem {
         let cells = by_cell(frames, &weights, &projections);
         let views = by_view(&equations, views);
         Self { size, frames: equations, views, cells, sigmas, pose_sigmas, weights }
+    }
+
+    /// Returns the gain in log-likelihood by a fit of these frames' own columns, with the weights of the system.
+    pub(crate) fn gain_of(&self, frames: &[&LinearizedFrame], size: usize) -> f64 {
+        let (equations, _) = by_frame(frames, &self.weights, &self.pose_sigmas);
+        let delta = solve(&equations, size);
+        equations.iter().map(|equations| equations.gain(&delta)).sum()
+    }
+
+    /// Returns the residuals of these frames, from which the equations were assembled, after a fit of all columns.
+    pub(super) fn fitted(&self, frames: &[&LinearizedFrame]) -> Vec<FittedResiduals> {
+        let delta = solve(&self.frames, self.size);
+        let weighted = frames.iter().zip(&self.weights);
+        weighted
+            .map(|(frame, weights)| FittedResiduals::new(frame, weights, &delta, &self.pose_sigmas))
+            .collect()
     }
 }
 

@@ -10,7 +10,7 @@ pub enum Channel {
     Color,
     /// Offset of white lines along their normal, pixels.
     Geometry,
-    /// Increments of the odometry: forward and left in metres, turn in radians.
+    /// Increments of the odometry, forward and left in metres, turn in radians; pitch and roll by joints and IMU, radians.
     Motion,
     /// Natural logarithm of the variance of luma on plain carpet.
     Noise,
@@ -85,15 +85,22 @@ pub(crate) enum Quantity {
     OdometryLeft,
     /// Turn to the left in one step of the odometry, radians.
     OdometryTurn,
+    /// Pitch of the camera by joints and IMU, without its usual difference from that of the reference poses, radians.
+    StatedPitch,
+    /// The same of its roll.
+    StatedRoll,
 }
 
 impl Quantity {
     /// Three quantities of an odometry step.
     pub(crate) const ODOMETRY: [Self; 3] = [Self::OdometryForward, Self::OdometryLeft, Self::OdometryTurn];
 
+    /// Pitch and roll by joints and IMU.
+    pub(crate) const STATED: [Self; 2] = [Self::StatedPitch, Self::StatedRoll];
+
     /// All quantities.
     #[cfg(test)]
-    pub(crate) const ALL: [Self; 14] = [
+    pub(crate) const ALL: [Self; 16] = [
         Self::LineOffset,
         Self::LineLevel(ColorChannel::Red),
         Self::LineLevel(ColorChannel::Green),
@@ -108,6 +115,8 @@ impl Quantity {
         Self::OdometryForward,
         Self::OdometryLeft,
         Self::OdometryTurn,
+        Self::StatedPitch,
+        Self::StatedRoll,
     ];
 
     pub(crate) const fn channel(self) -> Channel {
@@ -117,12 +126,16 @@ impl Quantity {
             Self::LineBlur => Channel::Sharpness,
             Self::RedOffset | Self::BlueOffset => Channel::Color,
             Self::NoiseVariance => Channel::Noise,
-            Self::OdometryForward | Self::OdometryLeft | Self::OdometryTurn => Channel::Motion,
+            Self::OdometryForward
+            | Self::OdometryLeft
+            | Self::OdometryTurn
+            | Self::StatedPitch
+            | Self::StatedRoll => Channel::Motion,
         }
     }
 
-    /// Whether the odometry measures it, not a picture.
-    pub(crate) fn is_odometry(self) -> bool {
+    /// Whether the odometry, joints or IMU measure it, not a picture.
+    pub(crate) fn is_proprioceptive(self) -> bool {
         self.channel() == Channel::Motion
     }
 

@@ -269,7 +269,10 @@ mod tests {
 
     use super::*;
     use crate::{
-        diagnostics::finding::{FieldLine, Movement, NominalValue, OdometryComponent, PatternCell},
+        diagnostics::{
+            finding::{FieldLine, Movement, NominalValue, OdometryComponent, PatternCell},
+            input_mistake::InputMistake,
+        },
         inference::detection_limit::MissingInput,
         measurement::quantity::ColorChannel,
         report::file::{ReportError, ReportFault},
@@ -307,6 +310,8 @@ mod tests {
         let nominal = |value| Finding::NominalValue { value, off_by: 0.3, p_value: 1e-3 };
         let odometry = |component, follows| Finding::Odometry { component, follows, size: 0.012 };
         let mut all = vec![
+            Finding::InputMistake { mistake: InputMistake::PosesCameraFromWorld },
+            Finding::InputMistake { mistake: InputMistake::FieldOfAnotherLeague(2) },
             Finding::Flicker { size: 0.07, p_value: 1e-4 },
             Finding::Occluders { share: 0.12 },
             Finding::DynamicObjects { share: 0.5 },
@@ -321,10 +326,11 @@ mod tests {
         all
     }
 
-    fn all_causes() -> [UnobservableCause; 8] {
+    fn all_causes() -> [UnobservableCause; 9] {
         let missing = |input| UnobservableCause::MissingInput { input };
         [
             missing(MissingInput::Odometry),
+            missing(MissingInput::MeasuredPoses),
             missing(MissingInput::Reflectance),
             missing(MissingInput::Noise),
             missing(MissingInput::Sharpness),

@@ -16,7 +16,10 @@ pub use self::{
     pictures::{Pictures, PicturesError},
 };
 pub use crate::{
-    diagnostics::finding::{FieldLine, Finding, Movement, NominalValue, OdometryComponent, PatternCell},
+    diagnostics::{
+        finding::{FieldLine, Finding, Movement, NominalValue, OdometryComponent, PatternCell},
+        input_mistake::InputMistake,
+    },
     inference::detection_limit::{MissingInput, UnobservableCause},
     measurement::quantity::{Channel, ColorChannel},
 };

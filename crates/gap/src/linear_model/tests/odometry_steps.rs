@@ -39,6 +39,7 @@ fn walk<'a>(sequence: &'a Sequence, steps_m: &[f64], gaps: &[usize]) -> Recordin
                 index_in_sequence: index,
                 time_s: poses[index].0,
                 step: has_step.then_some(OdometryStep { until_s, odometry }),
+                stated_attitude_rad: None,
             }
         })
         .collect();
@@ -50,6 +51,7 @@ fn walk<'a>(sequence: &'a Sequence, steps_m: &[f64], gaps: &[usize]) -> Recordin
         source: ReferenceSource::Measured,
         reflectance: None,
         left_out: Vec::new(),
+        searched: Default::default(),
     }
 }
 
