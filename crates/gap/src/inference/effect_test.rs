@@ -9,6 +9,7 @@ use crate::{
     inference::gain::{Gain, HeldOutGains},
     inference::hypothesis_test::two_sided,
     linear_model::column::ColumnIndex,
+    linear_model::fixed_values::tries,
     linear_model::reduced_equations::Fit,
     thresholds::{InferenceThresholds, Thresholds},
 };
@@ -84,6 +85,8 @@ impl<'a> EffectTests<'a> {
         } else {
             1.0
         };
+        // The fixed parameters are the best of several values.
+        let p_value = (p_value * tries(effect.effect()) as f64).min(1.0);
         Some(EffectTest {
             effect,
             p_value: (p_value * tested as f64).min(1.0),

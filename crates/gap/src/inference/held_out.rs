@@ -124,7 +124,7 @@ impl Comparison {
         let mut next: Option<FrameIndex> = None;
         for frame in split.held_out() {
             // Neighbours are measurements in one picture; for the odometry they are successive steps.
-            last.retain(|quantity, _| quantity.is_odometry() && Some(frame) == next);
+            last.retain(|quantity, _| quantity.is_proprioceptive() && Some(frame) == next);
             next = Some(frame.next());
             let rows = Rows::new(frames.map(|frames| &frames[frame]), linearized);
             rows.add_to(&mut channels, &mut last);

@@ -15,7 +15,9 @@ use crate::{
     linear_model::parameters::FittedParameter,
     linear_model::reflectance::ReflectanceField,
     linear_model::texture::CarpetTexture,
-    linear_model::{linearized_frame::LinearizedFrame, system::LinearSystem},
+    linear_model::{
+        linearized_frame::LinearizedFrame, reference_drift::ReferenceDrift, system::LinearSystem,
+    },
     measurement::frame::FrameMeasurements,
     measurement::quantity::Channel,
     recording::Recording,
@@ -46,6 +48,26 @@ impl LinearizedRecording {
         search: f64,
     ) -> Result<Self, MeasureError> {
         let measurements = measure_frames(recording, &model, search_px(recording, search))?;
+        Self::of_measurements(recording, model, measurements, columns, split)
+    }
+
+    /// Linearises the recording again, with the same measurements.
+    pub(crate) fn again(
+        self,
+        recording: &Recording<'_>,
+        columns: &[FittedParameter],
+        split: &HeldOutSplit,
+    ) -> Result<Self, MeasureError> {
+        Self::of_measurements(recording, self.model, self.measurements, columns, split)
+    }
+
+    fn of_measurements(
+        recording: &Recording<'_>,
+        model: Model,
+        measurements: PerFrame<FrameMeasurements>,
+        columns: &[FittedParameter],
+        split: &HeldOutSplit,
+    ) -> Result<Self, MeasureError> {
         let setup = &recording.sequence.setup;
         let chain = Chain::new(setup, &recording.sequence.field, &model)?;
         let nuisances = nuisances(
@@ -60,15 +82,30 @@ impl LinearizedRecording {
         for frame in split.training().filter(|frame| split.is_held_out(frame.next())) {
             frames[frame].leave_out(Channel::Motion);
         }
-        let training: Vec<&LinearizedFrame> = split.training().map(|frame| &frames[frame]).collect();
         let views = recording.views();
         let views: Vec<ViewIndex> = split.training().map(|frame| views[frame]).collect();
-        let columns = Columns {
+        let all = Columns {
             parameters: columns.len(),
             nuisances: nuisances.len(),
             field: ReflectanceField::new(patches),
         };
-        let system = LinearSystem::new(&training, columns, recording.reference(), &views);
+        let dense = all.dense();
+        let system = |frames: &PerFrame<LinearizedFrame>, columns: Columns| {
+            let training: Vec<&LinearizedFrame> = split.training().map(|frame| &frames[frame]).collect();
+            LinearSystem::new(&training, columns, recording.reference(), &views)
+        };
+        let drift = {
+            let times_s: Vec<f64> = split.training().map(|frame| recording.frames[frame].time_s).collect();
+            let training: Vec<&LinearizedFrame> = split.training().map(|frame| &frames[frame]).collect();
+            ReferenceDrift::new(recording.reference(), &times_s, &training, &system(&frames, all.clone()))
+        };
+        for (index, frame) in recording.frames.indexed() {
+            let yaw_rad = recording.trajectory.at(frame.time_s).yaw_rad;
+            drift.add_to(&mut frames[index], frame.time_s, yaw_rad, dense);
+        }
+        let all = Columns { nuisances: all.nuisances + drift.len(), ..all };
+        let mut system = system(&frames, all);
+        system.pose_sigmas = drift.together_with(system.pose_sigmas);
         Ok(Self { model, measurements, nuisances, frames, system })
     }
 

@@ -54,7 +54,7 @@ pub(crate) fn minus_log_likelihood(
     // Models differ in the number of lines that they find. Hence each quantity counts by its mean, times the number of
     // independent measurements.
     let counted = means.iter().map(|(quantity, (sum, count))| {
-        let independent = if quantity.is_odometry() {
+        let independent = if quantity.is_proprioceptive() {
             THRESHOLDS.odometry_rows
         } else {
             INDEPENDENT * THRESHOLDS.picture_rows

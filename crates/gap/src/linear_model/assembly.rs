@@ -63,7 +63,7 @@ pub(super) fn by_cell(
 fn rows_by_cell(frame: &LinearizedFrame) -> BTreeMap<[i32; 2], Vec<usize>> {
     let mut rows: BTreeMap<[i32; 2], Vec<usize>> = BTreeMap::new();
     for (row, measurement) in frame.measurements.iter().enumerate() {
-        if !measurement.quantity.is_odometry() {
+        if !measurement.quantity.is_proprioceptive() {
             let cell = (measurement.ground / CELL_M).floor();
             rows.entry([cell.x as i32, cell.y as i32]).or_default().push(row);
         }

@@ -1,6 +1,6 @@
 //! Columns of the linearised model.
 
-use super::reflectance::{PatchIndex, ReflectanceField};
+use super::reflectance::{PatchIndex, ReflectanceField, Tree};
 
 /// Index of a column of the Jacobian. Columns of the fitted parameters come first, followed by those of the nuisance
 /// parameters and by those of the reflectance in the patches of the field.
@@ -25,6 +25,11 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
+    /// Creates columns of fitted parameters alone.
+    pub(crate) fn of_parameters(parameters: usize) -> Self {
+        Self { parameters, nuisances: 0, field: ReflectanceField::new(Tree::default()) }
+    }
+
     /// Returns the number of columns before those of the reflectance.
     pub(crate) fn dense(&self) -> usize {
         self.parameters + self.nuisances

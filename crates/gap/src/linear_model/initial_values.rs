@@ -5,7 +5,7 @@ use reality_sim_core::pose::CameraPose;
 use reality_sim_sensor::{Effect, Model, Parameter, Role};
 
 use crate::{
-    linear_model::parameters::FittedParameter,
+    linear_model::{fixed_values::fixed_value, parameters::FittedParameter},
     recording::Recording,
     thresholds::{LinearModelThresholds, Thresholds},
 };
@@ -15,7 +15,7 @@ const THRESHOLDS: LinearModelThresholds = Thresholds::DEFAULT.linear_model;
 const PLACES: i32 = 24;
 
 /// Returns the neutral values of an effect's parameters. Fixed parameters, which no fit changes, are the times of the
-/// recording's first and last frame and the part of the field that it shows.
+/// recording's first and last frame, the part of the field that it shows, or what a search has found.
 pub(crate) fn starting_values(effect: &'static dyn Effect, recording: &Recording<'_>) -> Vec<f64> {
     let is_fixed = |parameter: &&Parameter| parameter.role == Role::Fixed;
     let seen = effect.parameters().iter().find(is_fixed).map(|_| seen_part(recording));
@@ -28,7 +28,7 @@ pub(crate) fn starting_values(effect: &'static dyn Effect, recording: &Recording
         ("to_x", Some([_, to])) => to.x,
         ("from_y", Some([from, _])) => from.y,
         ("to_y", Some([_, to])) => to.y,
-        _ => 0.0,
+        (searched, _) => fixed_value(recording, searched),
     };
     let value = |parameter: &Parameter| match parameter.role {
         Role::Fixed => given(parameter.name),

@@ -175,6 +175,7 @@ impl Linearization<'_> {
     fn frame(&self, frame: &Frame, measured: &FrameMeasurements, motion: Option<Motion2>) -> LinearizedFrame {
         let mut measurements = measured.measurements(self.nominal.gamma);
         measurements.extend(frame.step.into_iter().flat_map(|step| Measurement::of_odometry(step.odometry)));
+        measurements.extend(frame.stated_attitude_rad.into_iter().flat_map(Measurement::of_attitude));
         let rounding = Rounding::new(&measured.noise_steps);
         let predictor = |chain| Predictor {
             camera: frame_camera(chain, self.recording, frame),
@@ -187,7 +188,9 @@ impl Linearization<'_> {
         let by_brightness = self.by_brightness(predictor(&self.chain), &measurements, &predicted);
         let mut jacobian = Jacobian::new(measurements.len());
         for (column, (parameter, perturbed)) in (0..).zip(self.parameters.iter().zip(&self.perturbed)) {
-            let derivatives = if parameter.effect().about().changes == Changes::Odometry {
+            // A shift in time depends on other motions than the step's own, whose errors the residual has.
+            let is_shift = perturbed.chain.odometry_delay_s() != self.chain.odometry_delay_s();
+            let derivatives = if parameter.effect().about().changes == Changes::Odometry && !is_shift {
                 self.odometry_derivatives(perturbed, frame, motion, &measurements)
             } else {
                 let stage = parameter.effect().about().stage;

@@ -3,6 +3,7 @@
 mod assembly;
 pub(crate) mod column;
 pub(crate) mod fitted_residuals;
+pub(crate) mod fixed_values;
 pub(crate) mod initial_values;
 pub(crate) mod linearization;
 pub(crate) mod linearized_frame;
@@ -17,6 +18,7 @@ pub(crate) mod pose_gradient;
 mod pose_projection;
 pub(crate) mod prediction;
 pub(crate) mod reduced_equations;
+pub(crate) mod reference_drift;
 pub(crate) mod reflectance;
 pub(crate) mod robust_weights;
 mod rounding;

@@ -44,6 +44,7 @@ pub(crate) fn changes(stage: Stage, quantity: Quantity) -> bool {
         Quantity::OdometryForward | Quantity::OdometryLeft | Quantity::OdometryTurn => {
             matches!(stage, Stage::Motion | Stage::Odometry)
         }
+        Quantity::StatedPitch | Quantity::StatedRoll => matches!(stage, Stage::Motion | Stage::Odometry),
     }
 }
 
@@ -111,6 +112,8 @@ impl Predictor<'_> {
                 let step = *known.step.get_or_insert_with(|| self.step());
                 step.map_or(f64::NAN, |step| component(step, quantity))
             }
+            (Subject::Attitude, Quantity::StatedPitch) => self.attitude()[0],
+            (Subject::Attitude, Quantity::StatedRoll) => self.attitude()[1],
             _ => f64::NAN,
         }
     }
@@ -168,8 +171,16 @@ impl Predictor<'_> {
     fn step(&self) -> Option<Motion2> {
         let until_s = self.step_until_s?;
         let FrameCamera { chain, trajectory, time_s, .. } = self.camera;
-        let at = |time_s: f64| trajectory.at(time_s + chain.clock_s()).planar();
+        let delay_s = chain.odometry_delay_s() - chain.clock_s();
+        let at = |time_s: f64| trajectory.at(time_s - delay_s).planar();
         Some(chain.odometry(at(time_s).motion_to(at(until_s)), until_s - time_s))
+    }
+
+    /// Predicts pitch and roll by joints and IMU, from the reference trajectory.
+    fn attitude(&self) -> [f64; 2] {
+        let FrameCamera { chain, trajectory, time_s, .. } = self.camera;
+        let pose = trajectory.at(time_s + chain.clock_s() - chain.attitude_delay_s());
+        [pose.pitch_rad, pose.roll_rad]
     }
 }
 

@@ -19,7 +19,7 @@ use crate::{
         normal_equations::NormalEquations,
         pose_error::pose_sigmas,
         reduced_equations::ReducedEquations,
-        reflectance::{IncrementVariances, ReflectanceField, Tree},
+        reflectance::IncrementVariances,
         robust_weights::{first_residuals, sigmas_by_quantity, weigh, with_residuals},
     },
     measurement::quantity::{Quantity, Surface},
@@ -43,7 +43,7 @@ pub(crate) struct LinearSystem {
     pub(crate) cells: Vec<NormalEquations>,
     /// Standard deviations of the residuals.
     pub(crate) sigmas: BTreeMap<Quantity, f64>,
-    /// Standard deviations of the pose errors, in the order of
+    /// Standard deviations of the pose errors, slow ones included, in the order of
     /// [`crate::linear_model::pose_gradient::pose_gradient`].
     pub(crate) pose_sigmas: [f64; 6],
     /// Weights of the measurements of each frame; 0 for outliers and missing residuals.
@@ -83,7 +83,7 @@ impl LinearSystem {
         views: &[ViewIndex],
     ) -> Self {
         Self {
-            columns: Columns { parameters, nuisances: 0, field: ReflectanceField::new(Tree::default()) },
+            columns: Columns::of_parameters(parameters),
             views: by_view(&frames, views),
             frames,
             cells,
@@ -107,6 +107,25 @@ impl LinearSystem {
         let views = by_view(&equations, views);
         let (columns, of_one_surface) = (columns.clone(), Vec::new());
         Self { columns, frames: equations, views, cells, sigmas, pose_sigmas, weights, of_one_surface }
+    }
+
+    /// Returns the gain in log-likelihood by a fit of these frames' own columns, with the weights of the system.
+    pub(crate) fn gain_of(&self, frames: &[&LinearizedFrame], parameters: usize) -> f64 {
+        let (equations, _) = by_frame(frames, &self.weights, &self.pose_sigmas);
+        let columns = Columns::of_parameters(parameters);
+        let (delta, _) = solve(&equations, &columns);
+        equations.iter().map(|equations| equations.gain(&delta, &columns)).sum()
+    }
+
+    /// Returns the residuals of these frames, from which the equations were assembled, after a fit of all columns.
+    pub(super) fn fitted(&self, frames: &[&LinearizedFrame]) -> Vec<FittedResiduals> {
+        let (delta, _) = solve(&self.frames, &self.columns);
+        let weighted = frames.iter().zip(&self.weights);
+        weighted
+            .map(|(frame, weights)| {
+                FittedResiduals::new(frame, weights, &delta, &self.columns, &self.pose_sigmas)
+            })
+            .collect()
     }
 }
 

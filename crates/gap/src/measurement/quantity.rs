@@ -10,7 +10,7 @@ pub enum Channel {
     Color,
     /// Offset of white lines along their normal, pixels.
     Geometry,
-    /// Increments of the odometry: forward and left in metres, turn in radians.
+    /// Increments of the odometry, forward and left in metres, turn in radians; pitch and roll by joints and IMU, radians.
     Motion,
     /// Natural logarithm of the variance of luma on plain carpet.
     Noise,
@@ -99,6 +99,10 @@ pub(crate) enum Quantity {
     OdometryLeft,
     /// Turn to the left in one step of the odometry, radians.
     OdometryTurn,
+    /// Pitch of the camera by joints and IMU, without its usual difference from that of the reference poses, radians.
+    StatedPitch,
+    /// The same of its roll.
+    StatedRoll,
 }
 
 impl ColorChannel {
@@ -110,9 +114,12 @@ impl Quantity {
     /// Three quantities of an odometry step.
     pub(crate) const ODOMETRY: [Self; 3] = [Self::OdometryForward, Self::OdometryLeft, Self::OdometryTurn];
 
+    /// Pitch and roll by joints and IMU.
+    pub(crate) const STATED: [Self; 2] = [Self::StatedPitch, Self::StatedRoll];
+
     /// All quantities.
     #[cfg(test)]
-    pub(crate) const ALL: [Self; 14] = [
+    pub(crate) const ALL: [Self; 16] = [
         Self::LineOffset,
         Self::LineLevel(ColorChannel::Red),
         Self::LineLevel(ColorChannel::Green),
@@ -127,6 +134,8 @@ impl Quantity {
         Self::OdometryForward,
         Self::OdometryLeft,
         Self::OdometryTurn,
+        Self::StatedPitch,
+        Self::StatedRoll,
     ];
 
     pub(crate) const fn channel(self) -> Channel {
@@ -136,12 +145,16 @@ impl Quantity {
             Self::LineBlur => Channel::Sharpness,
             Self::RedOffset | Self::BlueOffset => Channel::Color,
             Self::NoiseVariance => Channel::Noise,
-            Self::OdometryForward | Self::OdometryLeft | Self::OdometryTurn => Channel::Motion,
+            Self::OdometryForward
+            | Self::OdometryLeft
+            | Self::OdometryTurn
+            | Self::StatedPitch
+            | Self::StatedRoll => Channel::Motion,
         }
     }
 
-    /// Whether the odometry measures it, not a picture.
-    pub(crate) fn is_odometry(self) -> bool {
+    /// Whether the odometry, joints or IMU measure it, not a picture.
+    pub(crate) fn is_proprioceptive(self) -> bool {
         self.channel() == Channel::Motion
     }
 

@@ -14,6 +14,8 @@ pub(crate) enum Subject {
     Carpet(usize),
     /// Odometry step to the next frame.
     OdometryStep,
+    /// Pitch and roll by joints and IMU.
+    Attitude,
 }
 
 /// Scalar measurement.
@@ -68,6 +70,14 @@ impl Measurement {
             luma_slope: 0.0,
             log_brightness: 0.0,
         }
+    }
+
+    /// Returns the two measurements of pitch and roll by joints and IMU, radians.
+    pub(crate) fn of_attitude([pitch_rad, roll_rad]: [f64; 2]) -> [Self; 2] {
+        let [pitch, roll] = Quantity::STATED;
+        [(pitch, pitch_rad), (roll, roll_rad)].map(|(quantity, angle_rad)| {
+            Self::without_covariates(Subject::Attitude, quantity, angle_rad, 0.0)
+        })
     }
 
     /// Returns the three measurements of an odometry step.

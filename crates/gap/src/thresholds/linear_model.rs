@@ -6,6 +6,7 @@ pub(crate) struct LinearModelThresholds {
     pub(crate) nuisance: NuisanceThresholds,
     pub(crate) reflectance: ReflectanceThresholds,
     pub(crate) pose_error: PoseErrorThresholds,
+    pub(crate) reference_drift: ReferenceDriftThresholds,
     /// Distance up to which carpet tells of the light on it, metres. Chosen: farther off, a block covers more than the light
     /// is alike on, and what stands behind it shines through the blur.
     pub(crate) light_range_m: f64,
@@ -116,6 +117,32 @@ pub(crate) struct PoseErrorThresholds {
     pub(crate) free: [f64; 3],
 }
 
+/// Errors of the reference poses that last for seconds or for good.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ReferenceDriftThresholds {
+    /// Standard deviations of the rotation (radians) and of the position (metres) that the calibration between the markers of
+    /// motion capture and the camera is off by. Chosen: what hand-eye calibrations leave, about a millimetre and a twentieth
+    /// of a degree; not measured on a real system.
+    pub(crate) calibration: [f64; 2],
+    /// Largest slow errors that are believed, radians and metres. Chosen: twice [`PoseErrorThresholds::usual`], about; what is
+    /// off by more is no motion capture, or lines that were taken for others.
+    pub(crate) largest: [f64; 2],
+    /// Time constants that are tried, seconds. Chosen: from a few pictures to a recording's length.
+    pub(crate) time_constants_s: [f64; 5],
+    /// Cosines over the recording. Chosen: with twelve, errors of half a second are seen in a recording of ten seconds; what is
+    /// faster is a frame's own error.
+    pub(crate) half_periods: usize,
+    /// Bins of the variogram. Chosen; no measurement.
+    pub(crate) lags: usize,
+    /// Longest distance in time of the variogram, as a part of the recording. Chosen: beyond, few pairs are left.
+    pub(crate) longest_lag: f64,
+    /// Least part of an error that its estimate in a frame is taken to show. Chosen: errors that the pictures hardly tell of
+    /// are hardly seen in effects either.
+    pub(crate) least_shrinkage: f64,
+    /// Slow errors count from this part of a frame's own on. Chosen: smaller ones are lost in the mean of sixty frames.
+    pub(crate) least_part: f64,
+}
+
 impl LinearModelThresholds {
     pub(super) const DEFAULT: Self = Self {
         nuisance: NuisanceThresholds {
@@ -154,6 +181,16 @@ impl LinearModelThresholds {
         },
         light_range_m: 4.0,
         light_seen_share: 0.02,
+        reference_drift: ReferenceDriftThresholds {
+            calibration: [0.001, 0.0015],
+            largest: [0.006, 0.006],
+            time_constants_s: [0.5, 1.0, 2.0, 4.0, 8.0],
+            half_periods: 12,
+            lags: 12,
+            longest_lag: 0.7,
+            least_shrinkage: 0.3,
+            least_part: 0.1,
+        },
         reweighting_rounds: 4,
         tukey_sigmas: 5.0,
         independent_share: 0.15,

@@ -32,13 +32,15 @@ use crate::{
     report::data::{EffectReport, Estimate, Gap, Limit, NotFoundReport, PosesReport, Report, Unobservable},
     report::maps::maps,
     thresholds::{ReportThresholds, Thresholds},
+    workflow::input_mistakes::input_mistake,
     workflow::selection::{Options, as_given, find},
+    workflow::stopped::stopped,
     workflow::verdict::verdict,
 };
 
 const THRESHOLDS: ReportThresholds = Thresholds::DEFAULT.report;
 
-/// Runs the whole workflow: finds the effects that a model lacks, adds them, and evaluates the result on held-out frames.
+/// Runs the whole workflow, unless the recording's files hold a mistake, which is then all that is reported: finds the effects that a model lacks, adds them, and evaluates the result on held-out frames.
 /// `progress` is called at every stage.
 ///
 /// # Errors
@@ -50,6 +52,9 @@ pub fn analyse(
     options: &Options,
     progress: &dyn Fn(Progress),
 ) -> Result<Analysis, MeasureError> {
+    if let Some(mistake) = input_mistake(recording)? {
+        return Ok(stopped(recording, model, options.seed, mistake));
+    }
     let found = find(recording, model, options, progress)?;
     progress(Progress::Evaluating);
     let tests = found.effect_tests();

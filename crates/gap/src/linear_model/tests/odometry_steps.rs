@@ -39,11 +39,19 @@ fn walk<'a>(sequence: &'a Sequence, steps_m: &[f64], gaps: &[usize]) -> Recordin
                 index_in_sequence: index,
                 time_s: poses[index].0,
                 step: has_step.then_some(OdometryStep { until_s, odometry }),
+                stated_attitude_rad: None,
             }
         })
         .collect();
     let trajectory = Trajectory::new(&poses).unwrap();
-    Recording { sequence, trajectory, frames, source: ReferenceSource::Measured, left_out: Vec::new() }
+    Recording {
+        sequence,
+        trajectory,
+        frames,
+        source: ReferenceSource::Measured,
+        left_out: Vec::new(),
+        searched: Default::default(),
+    }
 }
 
 fn forward_m(steps_m: &[f64], gaps: &[usize]) -> Vec<Option<f64>> {

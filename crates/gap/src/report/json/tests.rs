@@ -6,6 +6,7 @@ use super::*;
 use crate::{
     diagnostics::{
         finding::{FieldLine, Movement, NominalValue, OdometryComponent, PatternCell},
+        input_mistake::InputMistake,
         object::ObjectMotion,
     },
     inference::detection_limit::MissingInput,
@@ -43,6 +44,8 @@ fn all_findings() -> Vec<Finding> {
         odometry(OdometryComponent::Left, Movement::Turn),
         odometry(OdometryComponent::Turn, Movement::Time),
         Finding::Scatter { channel: Channel::Geometry, size: 1.4, floor: 0.5 },
+        Finding::InputMistake { mistake: InputMistake::PosesCameraFromWorld },
+        Finding::InputMistake { mistake: InputMistake::FieldOfAnotherLeague(2) },
     ];
     all.extend(cells.map(pattern));
     all.push(Finding::Obstruction { share: 0.12, column: 1, row: 4, grid: [8, 6] });
@@ -57,10 +60,11 @@ fn all_objects() -> Vec<Object> {
     vec![standing, Object { motion: ObjectMotion::Moving, place_m: None, ..standing }]
 }
 
-fn all_causes() -> [UnobservableCause; 8] {
+fn all_causes() -> [UnobservableCause; 9] {
     let missing = |input| UnobservableCause::MissingInput { input };
     [
         missing(MissingInput::Odometry),
+        missing(MissingInput::MeasuredPoses),
         missing(MissingInput::Reflectance),
         missing(MissingInput::Noise),
         missing(MissingInput::Sharpness),
