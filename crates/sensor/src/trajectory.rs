@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3};
 use reality_sim_core::pose::{CameraPose, wrap_angle};
 
 use self::{
-    smoothing::smoothed,
+    smoothing::{are_dense, smoothed},
     spline::{Coordinates, Spline},
 };
 
@@ -91,6 +91,12 @@ impl Trajectory {
     /// Whether the camera never moves.
     pub fn is_still(&self) -> bool {
         self.is_still
+    }
+
+    /// Whether the poses are as close in time as those of motion capture, at most 0.06 s in the median: then the trajectory shows
+    /// a robot's steps.
+    pub fn is_dense(&self) -> bool {
+        are_dense(self.spline.times_s())
     }
 
     /// Returns the pose at a time, seconds. Before the first pose and after the last one, the camera keeps its velocity for

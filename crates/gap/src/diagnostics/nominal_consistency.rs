@@ -90,6 +90,8 @@ impl Nominal {
             | Nuisance::Sheen { .. }
             | Nuisance::Pile { .. }
             | Nuisance::NoiseExponent { .. }
+            | Nuisance::OdometryClock { .. }
+            | Nuisance::AttitudeClock { .. }
             | Nuisance::Texture { .. } => return None,
         };
         Some(Self { value, sigma, is_offset })

@@ -16,7 +16,9 @@ use crate::{
     linear_model::reflectance::ReflectanceField,
     linear_model::texture::CarpetTexture,
     linear_model::{
-        linearized_frame::LinearizedFrame, reference_drift::ReferenceDrift, system::LinearSystem,
+        linearized_frame::LinearizedFrame,
+        reference_drift::ReferenceDrift,
+        system::{LinearSystem, Weighting},
     },
     measurement::frame::FrameMeasurements,
     measurement::quantity::Channel,
@@ -70,11 +72,14 @@ impl LinearizedRecording {
     ) -> Result<Self, MeasureError> {
         let setup = &recording.sequence.setup;
         let chain = Chain::new(setup, &recording.sequence.field, &model)?;
-        let nuisances = nuisances(
+        let mut nuisances = nuisances(
             &MeanReflectance::new(recording, &measurements, &chain),
             &CarpetTexture::new(&measurements, &chain, recording.gamma()),
             setup.photometry.and_then(|photometry| photometry.psf_sigma_px),
         );
+        let sigma_s = chain.clock_s().abs();
+        let clocks = [Nuisance::OdometryClock { sigma_s }, Nuisance::AttitudeClock { sigma_s }];
+        nuisances.extend(clocks.into_iter().filter(|_| sigma_s > 0.0));
         let patches = measured_patches(&measurements);
         let others = Others { nuisances: &nuisances, patches: &patches };
         let mut frames = linearise(recording, &measurements, &model, columns, others)?;
@@ -89,22 +94,18 @@ impl LinearizedRecording {
             nuisances: nuisances.len(),
             field: ReflectanceField::new(patches),
         };
-        let dense = all.dense();
-        let system = |frames: &PerFrame<LinearizedFrame>, columns: Columns| {
-            let training: Vec<&LinearizedFrame> = split.training().map(|frame| &frames[frame]).collect();
-            LinearSystem::new(&training, columns, recording.reference(), &views)
-        };
-        let drift = {
-            let times_s: Vec<f64> = split.training().map(|frame| recording.frames[frame].time_s).collect();
-            let training: Vec<&LinearizedFrame> = split.training().map(|frame| &frames[frame]).collect();
-            ReferenceDrift::new(recording.reference(), &times_s, &training, &system(&frames, all.clone()))
-        };
+        let times_s: Vec<f64> = split.training().map(|frame| recording.frames[frame].time_s).collect();
+        let reference = recording.reference();
+        let (weighting, fits) = Weighting::estimate(&training(&frames, split), &all, reference);
+        let drift = ReferenceDrift::new(reference, &times_s, &fits, weighting.pose_sigmas);
         for (index, frame) in recording.frames.indexed() {
             let yaw_rad = recording.trajectory.at(frame.time_s).yaw_rad;
-            drift.add_to(&mut frames[index], frame.time_s, yaw_rad, dense);
+            drift.add_to(&mut frames[index], frame.time_s, yaw_rad, all.dense());
         }
         let all = Columns { nuisances: all.nuisances + drift.len(), ..all };
-        let mut system = system(&frames, all);
+        let training = training(&frames, split);
+        let (weighting, _) = weighting.refine(&training, &all, reference);
+        let mut system = LinearSystem::new(&training, all, weighting, &views);
         system.pose_sigmas = drift.together_with(system.pose_sigmas);
         Ok(Self { model, measurements, nuisances, frames, system })
     }
@@ -128,4 +129,9 @@ impl LinearizedRecording {
 /// Returns a part of the picture's width, pixels.
 pub(super) fn search_px(recording: &Recording<'_>, part: f64) -> f64 {
     part * f64::from(recording.sequence.setup.camera.width)
+}
+
+/// Returns the frames that are fitted.
+fn training<'a>(frames: &'a PerFrame<LinearizedFrame>, split: &HeldOutSplit) -> Vec<&'a LinearizedFrame> {
+    split.training().map(|frame| &frames[frame]).collect()
 }

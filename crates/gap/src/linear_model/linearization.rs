@@ -3,7 +3,7 @@
 use nalgebra::Vector6;
 use rayon::prelude::*;
 use reality_sim_core::{pose::Motion2, sequence::SequenceError};
-use reality_sim_sensor::{Chain, Changes, Model, ModelError};
+use reality_sim_sensor::{Chain, Changes, Covariate, Model, ModelError};
 
 use crate::{
     frame_index::{FrameIndex, PerFrame},
@@ -27,10 +27,15 @@ use crate::{
         scalar::{Measurement, component},
     },
     recording::{Frame, Recording},
+    thresholds::Thresholds,
 };
 
 /// Step of the logarithm of the brightness for its forward differences.
 const BRIGHTNESS_STEP: f64 = 0.01;
+/// Step of the robot's own clock for its forward differences, seconds.
+const CLOCK_STEP_S: f64 = 0.005;
+/// Longest time between a picture and its reference pose at which the pose is that of the picture's step, seconds.
+const LONGEST_CLOCK_S: f64 = Thresholds::DEFAULT.linear_model.same_step_s;
 
 /// Reason why a recording cannot be measured.
 #[derive(Debug, thiserror::Error)]
@@ -183,14 +188,18 @@ impl Linearization<'_> {
             rounding: &rounding,
             step_until_s: frame.step.map(|step| step.until_s),
             nominal: self.nominal,
+            own_clock_s: 0.0,
         };
         let predicted = predictor(&self.chain).predict(&measurements);
         let by_brightness = self.by_brightness(predictor(&self.chain), &measurements, &predicted);
+        let by_clock = by_own_clock(predictor(&self.chain), &measurements, &predicted);
         let mut jacobian = Jacobian::new(measurements.len());
         for (column, (parameter, perturbed)) in (0..).zip(self.parameters.iter().zip(&self.perturbed)) {
             // A shift in time depends on other motions than the step's own, whose errors the residual has.
             let is_shift = perturbed.chain.odometry_delay_s() != self.chain.odometry_delay_s();
-            let derivatives = if parameter.effect().about().changes == Changes::Odometry && !is_shift {
+            let derivatives = if self.is_between_poses(parameter) {
+                vec![0.0; measurements.len()]
+            } else if parameter.effect().about().changes == Changes::Odometry && !is_shift {
                 self.odometry_derivatives(perturbed, frame, motion, &measurements)
             } else {
                 let stage = parameter.effect().about().stage;
@@ -201,9 +210,11 @@ impl Linearization<'_> {
             jacobian.push(ColumnIndex(column), derivatives);
         }
         for (column, nuisance) in (self.parameters.len()..).zip(self.others.nuisances) {
-            let rows = measurements.iter().zip(&predicted).zip(&by_brightness);
-            let derivatives = rows.map(|((measurement, value), by_brightness)| {
-                nuisance.derivative(measurement, *value, *by_brightness)
+            let rows = measurements.iter().zip(&predicted).zip(by_brightness.iter().zip(&by_clock));
+            let derivatives = rows.map(|((measurement, value), (by_brightness, by_clock))| {
+                let by_input =
+                    if measurement.quantity.is_proprioceptive() { by_clock } else { by_brightness };
+                nuisance.derivative(measurement, *value, *by_input)
             });
             jacobian.push(ColumnIndex(column), derivatives.collect());
         }
@@ -215,6 +226,13 @@ impl Linearization<'_> {
         let pose_gradients = self.pose_gradients(frame, &measurements);
         let patches = measurements.iter().zip(by_brightness).map(|pair| self.patch(pair.0, pair.1)).collect();
         LinearizedFrame { measurements, residuals, jacobian: jacobian.rows, patches, pose_gradients }
+    }
+
+    /// Whether an effect follows the steps of a robot whose pictures were taken at other times than its reference poses, which
+    /// are too far apart to show the steps in between.
+    fn is_between_poses(&self, parameter: &FittedParameter) -> bool {
+        let follows_steps = parameter.effect().about().covariates.contains(&Covariate::GaitPhase);
+        follows_steps && self.chain.clock_s().abs() > LONGEST_CLOCK_S && !self.recording.trajectory.is_dense()
     }
 
     /// Returns the derivatives of all levels by the logarithm of the light that the surface reflects.
@@ -270,6 +288,13 @@ impl Linearization<'_> {
         };
         measurements.iter().map(gradient).collect()
     }
+}
+
+/// Returns the derivatives of what odometry, joints and IMU say by the time that their clock is ahead, per second.
+fn by_own_clock(mut predictor: Predictor<'_>, measurements: &[Measurement], predicted: &[f64]) -> Vec<f64> {
+    predictor.own_clock_s = CLOCK_STEP_S;
+    let values = predictor.predict_where(measurements, Quantity::is_proprioceptive);
+    values.into_iter().zip(predicted).map(|(value, predicted)| (value - predicted) / CLOCK_STEP_S).collect()
 }
 
 /// Returns the derivatives of all predictions by a parameter, as forward differences.

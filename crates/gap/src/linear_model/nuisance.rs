@@ -6,7 +6,7 @@ use crate::{
     measurement::{
         luma::LUMA,
         quantity::{ColorChannel, Quantity, Surface},
-        scalar::Measurement,
+        scalar::{Measurement, Subject},
     },
     thresholds::{NuisanceThresholds, Thresholds},
 };
@@ -81,6 +81,16 @@ pub(crate) enum Nuisance {
         /// Standard deviation, as a fraction of the variance.
         sigma: f64,
     },
+    /// Clock of the odometry: it may be the pictures' or that of the reference poses.
+    OdometryClock {
+        /// Time between the two, seconds.
+        sigma_s: f64,
+    },
+    /// Clock of joints and IMU, likewise.
+    AttitudeClock {
+        /// Time between the two, seconds.
+        sigma_s: f64,
+    },
 }
 
 const THRESHOLDS: NuisanceThresholds = Thresholds::DEFAULT.linear_model.nuisance;
@@ -137,12 +147,13 @@ pub(crate) fn nuisances(
 
 impl Nuisance {
     /// Returns the derivative of a measurement's prediction by this parameter in units of its standard deviation.
-    /// `by_brightness` is that by the logarithm of the light that the surface reflects.
-    pub(crate) fn derivative(&self, measurement: &Measurement, predicted: f64, by_brightness: f64) -> f64 {
+    /// `by_input` is that of a level by the logarithm of the light that the surface reflects, and that of what odometry, joints
+    /// and IMU say by the time that their clock is ahead.
+    pub(crate) fn derivative(&self, measurement: &Measurement, predicted: f64, by_input: f64) -> f64 {
         match *self {
             Self::Offset { quantity, sigma } if measurement.quantity == quantity => {
                 if quantity.is_level() {
-                    sigma * by_brightness
+                    sigma * by_input
                 } else {
                     sigma
                 }
@@ -150,10 +161,10 @@ impl Nuisance {
             Self::Gain { surface, sigma }
                 if measurement.quantity.surface().is_some_and(|of| surface.is_none_or(|only| only == of)) =>
             {
-                sigma * by_brightness
+                sigma * by_input
             }
             Self::ThinLine { sigma } if measurement.quantity.surface() == Some(Surface::Line) => {
-                sigma * by_brightness / measurement.half_width_px
+                sigma * by_input / measurement.half_width_px
             }
             Self::NoiseExponent { log_reference, sigma }
                 if measurement.quantity == Quantity::NoiseVariance =>
@@ -171,10 +182,14 @@ impl Nuisance {
                 let Quantity::CarpetLevel(color) = measurement.quantity else { return 0.0 };
                 // Levels grow with the logarithm of the reflectance: d ln(v) = dv / v.
                 let share = (1.0 - measurement.cos_incidence).powi(power) / carpet[color as usize];
-                sigma * by_brightness * share
+                sigma * by_input * share
             }
+            Self::OdometryClock { sigma_s } if measurement.subject == Subject::OdometryStep => {
+                sigma_s * by_input
+            }
+            Self::AttitudeClock { sigma_s } if measurement.subject == Subject::Attitude => sigma_s * by_input,
             Self::Pile { axis, sigma } if is_carpet(measurement) => {
-                sigma * by_brightness * measurement.view_direction[axis]
+                sigma * by_input * measurement.view_direction[axis]
             }
             Self::Texture { octave, contrast, seen } if measurement.quantity == Quantity::NoiseVariance => {
                 seen.derivative(octave, contrast, measurement, predicted)

@@ -56,6 +56,8 @@ pub(crate) struct Predictor<'a> {
     /// Time at which the odometry's step ends, where there is one.
     pub(crate) step_until_s: Option<f64>,
     pub(crate) nominal: Nominal,
+    /// Time by which the clock of odometry, joints and IMU is ahead of the pictures', seconds.
+    pub(crate) own_clock_s: f64,
 }
 
 impl Predictor<'_> {
@@ -171,7 +173,7 @@ impl Predictor<'_> {
     fn step(&self) -> Option<Motion2> {
         let until_s = self.step_until_s?;
         let FrameCamera { chain, trajectory, time_s, .. } = self.camera;
-        let delay_s = chain.odometry_delay_s() - chain.clock_s();
+        let delay_s = chain.odometry_delay_s() - chain.clock_s() - self.own_clock_s;
         let at = |time_s: f64| trajectory.at(time_s - delay_s).planar();
         Some(chain.odometry(at(time_s).motion_to(at(until_s)), until_s - time_s))
     }
@@ -179,7 +181,7 @@ impl Predictor<'_> {
     /// Predicts pitch and roll by joints and IMU, from the reference trajectory.
     fn attitude(&self) -> [f64; 2] {
         let FrameCamera { chain, trajectory, time_s, .. } = self.camera;
-        let pose = trajectory.at(time_s + chain.clock_s() - chain.attitude_delay_s());
+        let pose = trajectory.at(time_s + chain.clock_s() + self.own_clock_s - chain.attitude_delay_s());
         [pose.pitch_rad, pose.roll_rad]
     }
 }

@@ -11,7 +11,6 @@ use reality_sim_core::statistics::{median, robust_sigma};
 use crate::{
     linear_model::{
         column::ColumnIndex, fitted_residuals::FittedResiduals, linearized_frame::LinearizedFrame,
-        system::LinearSystem,
     },
     recording::ReferenceKind,
     thresholds::{ReferenceDriftThresholds, Thresholds},
@@ -58,24 +57,24 @@ struct EstimatedError {
 }
 
 impl ReferenceDrift {
-    /// Estimates the slow errors at frames with these times, seconds, in which `system` was fitted without them.
+    /// Estimates the slow errors at frames with these times, seconds, from fits without them. `pose_sigmas` are the standard
+    /// deviations of the frames' own errors in these fits.
     pub(crate) fn new(
         reference: ReferenceKind,
         times_s: &[f64],
-        frames: &[&LinearizedFrame],
-        system: &LinearSystem,
+        fits: &[FittedResiduals],
+        pose_sigmas: [f64; 6],
     ) -> Self {
         let (first_s, last_s) = (times_s.first().copied(), times_s.last().copied());
         let span_s = [first_s.unwrap_or(0.0), last_s.unwrap_or(0.0)];
         let duration_s = span_s[1] - span_s[0];
-        let fits = system.fitted(frames);
         // Places and headings from the pictures have errors that are free in every frame.
         let is_measured = reference == ReferenceKind::Whole;
         let axes = (0..6).filter(|axis| is_measured || ![1, 3, 4].contains(axis));
         let mut terms = Vec::new();
         for axis in axes {
             let calibration = THRESHOLDS.calibration[axis / 3];
-            let process = SlowProcess::estimate(&of_axis(times_s, &fits, axis), system.pose_sigmas[axis]);
+            let process = SlowProcess::estimate(&of_axis(times_s, fits, axis), pose_sigmas[axis]);
             let most = THRESHOLDS.largest[axis / 3].powi(2);
             let process = process.filter(|_| duration_s > 0.0);
             let process =

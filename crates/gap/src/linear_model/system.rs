@@ -19,7 +19,7 @@ use crate::{
         normal_equations::NormalEquations,
         pose_error::pose_sigmas,
         reduced_equations::ReducedEquations,
-        reflectance::IncrementVariances,
+        reflectance::{IncrementVariances, ReflectanceField},
         robust_weights::{first_residuals, sigmas_by_quantity, weigh, with_residuals},
     },
     measurement::quantity::{Quantity, Surface},
@@ -53,23 +53,20 @@ pub(crate) struct LinearSystem {
 }
 
 impl LinearSystem {
-    /// Assembles the normal equations by iteratively reweighted least squares. `views` gives each frame's view.
+    /// Assembles the normal equations with these weights. `views` gives each frame's view.
     pub(crate) fn new(
         frames: &[&LinearizedFrame],
-        mut columns: Columns,
-        reference: ReferenceKind,
+        columns: Columns,
+        weighting: Weighting,
         views: &[ViewIndex],
     ) -> Self {
-        let mut estimate = Weighting::new(frames, &first_residuals(frames), pose_sigmas(None, reference));
-        for _ in 0..ITERATIONS {
-            (estimate, columns.field.variances) = estimate.improved(frames, &columns, reference);
-        }
-        columns.field = columns.field.of_shared_brightness();
-        let mut system = Self::assembled(frames, &estimate, &columns, views);
+        let field = ReflectanceField { variances: weighting.variances.clone(), ..columns.field };
+        let columns = Columns { field: field.of_shared_brightness(), ..columns };
+        let mut system = Self::assembled(frames, &weighting, &columns, views);
         let alone = |without| {
-            let weights = estimate.without_levels_of(frames, without);
-            let estimate = Weighting { weights, ..estimate.clone() };
-            Self { weights: Vec::new(), ..Self::assembled(frames, &estimate, &columns, views) }
+            let weights = weighting.without_levels_of(frames, without);
+            let weighting = Weighting { weights, ..weighting.clone() };
+            Self { weights: Vec::new(), ..Self::assembled(frames, &weighting, &columns, views) }
         };
         system.of_one_surface = Surface::ALL.map(alone).into();
         system
@@ -97,11 +94,11 @@ impl LinearSystem {
     /// Assembles the normal equations with these weights.
     fn assembled(
         frames: &[&LinearizedFrame],
-        estimate: &Weighting,
+        weighting: &Weighting,
         columns: &Columns,
         views: &[ViewIndex],
     ) -> Self {
-        let Weighting { sigmas, weights, pose_sigmas } = estimate.clone();
+        let Weighting { sigmas, weights, pose_sigmas, .. } = weighting.clone();
         let (equations, projections) = by_frame(frames, &weights, &pose_sigmas);
         let cells = by_cell(frames, &weights, &projections);
         let views = by_view(&equations, views);
@@ -116,34 +113,57 @@ impl LinearSystem {
         let (delta, _) = solve(&equations, &columns);
         equations.iter().map(|equations| equations.gain(&delta, &columns)).sum()
     }
-
-    /// Returns the residuals of these frames, from which the equations were assembled, after a fit of all columns.
-    pub(super) fn fitted(&self, frames: &[&LinearizedFrame]) -> Vec<FittedResiduals> {
-        let (delta, _) = solve(&self.frames, &self.columns);
-        let weighted = frames.iter().zip(&self.weights);
-        weighted
-            .map(|(frame, weights)| {
-                FittedResiduals::new(frame, weights, &delta, &self.columns, &self.pose_sigmas)
-            })
-            .collect()
-    }
 }
 
 /// Standard deviations and weights, estimated in turn with the fit that uses them.
-#[derive(Clone)]
-struct Weighting {
+#[derive(Debug, Clone)]
+pub(crate) struct Weighting {
     sigmas: BTreeMap<Quantity, f64>,
     weights: Vec<Vec<f64>>,
-    pose_sigmas: [f64; 6],
+    pub(crate) pose_sigmas: [f64; 6],
+    /// Variances of the reflectance.
+    variances: IncrementVariances,
 }
 
 impl Weighting {
+    /// Estimates them by iteratively reweighted least squares; returns them with the frames' residuals in the last fit.
+    pub(crate) fn estimate(
+        frames: &[&LinearizedFrame],
+        columns: &Columns,
+        reference: ReferenceKind,
+    ) -> (Self, Vec<FittedResiduals>) {
+        let variances = columns.field.variances.clone();
+        let first = Self::new(frames, &first_residuals(frames), pose_sigmas(None, reference), variances);
+        first.refine(frames, columns, reference)
+    }
+
+    /// Estimates them further, with columns that may be others than before.
+    pub(crate) fn refine(
+        mut self,
+        frames: &[&LinearizedFrame],
+        columns: &Columns,
+        reference: ReferenceKind,
+    ) -> (Self, Vec<FittedResiduals>) {
+        let mut columns = columns.clone();
+        let mut fits = Vec::new();
+        for _ in 0..ITERATIONS {
+            columns.field.variances = self.variances.clone();
+            (self, fits) = self.improved(frames, &columns, reference);
+        }
+        (self, fits)
+    }
+
     /// Estimates standard deviations and weights from the residuals of each frame.
-    fn new(frames: &[&LinearizedFrame], residuals: &[Vec<f64>], pose_sigmas: [f64; 6]) -> Self {
+    fn new(
+        frames: &[&LinearizedFrame],
+        residuals: &[Vec<f64>],
+        pose_sigmas: [f64; 6],
+        variances: IncrementVariances,
+    ) -> Self {
         let sigmas = sigmas_by_quantity(with_residuals(frames, residuals.iter()));
         let weights =
             frames.iter().zip(residuals).map(|(frame, residuals)| weigh(frame, residuals, &sigmas)).collect();
-        Self { sigmas, weights, pose_sigmas }
+        Self { sigmas, weights, pose_sigmas, variances }
     }
 
     /// Returns the weights with those of one surface's levels set to 0.
@@ -156,13 +176,13 @@ impl Weighting {
         frames.iter().zip(&self.weights).map(without).collect()
     }
 
-    /// Estimates them anew from the residuals of a fit with these weights, and the variances of the reflectance.
+    /// Estimates them anew from the residuals of a fit with these weights.
     fn improved(
         &self,
         frames: &[&LinearizedFrame],
         columns: &Columns,
         reference: ReferenceKind,
-    ) -> (Self, IncrementVariances) {
+    ) -> (Self, Vec<FittedResiduals>) {
         let (equations, _) = by_frame(frames, &self.weights, &self.pose_sigmas);
         let (delta, variances) = solve(&equations, columns);
         let fits: Vec<FittedResiduals> = frames
@@ -171,8 +191,8 @@ impl Weighting {
             .map(|(frame, weights)| FittedResiduals::new(frame, weights, &delta, columns, &self.pose_sigmas))
             .collect();
         let pose_sigmas = pose_sigmas(Some(&fits), reference);
-        let residuals: Vec<Vec<f64>> = fits.into_iter().map(|fit| fit.residuals).collect();
-        (Self::new(frames, &residuals, pose_sigmas), variances)
+        let residuals: Vec<Vec<f64>> = fits.iter().map(|fit| fit.residuals.clone()).collect();
+        (Self::new(frames, &residuals, pose_sigmas, variances), fits)
     }
 }
 
@@ -229,7 +249,9 @@ mod tests {
 
     fn system(frames: &[LinearizedFrame]) -> LinearSystem {
         let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
-        LinearSystem::new(&frames.iter().collect::<Vec<_>>(), parameters(2), ReferenceKind::Whole, &views)
+        let (frames, columns): (Vec<_>, _) = (frames.iter().collect(), parameters(2));
+        let (weighting, _) = Weighting::estimate(&frames, &columns, ReferenceKind::Whole);
+        LinearSystem::new(&frames, columns, weighting, &views)
     }
 
     /// Returns the dense sum of normal equations.
@@ -285,12 +307,9 @@ mod tests {
             })
             .collect();
         let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
-        let system = LinearSystem::new(
-            &frames.iter().collect::<Vec<_>>(),
-            parameters(1),
-            ReferenceKind::Whole,
-            &views,
-        );
+        let (frames, columns): (Vec<_>, _) = (frames.iter().collect(), parameters(1));
+        let (weighting, _) = Weighting::estimate(&frames, &columns, ReferenceKind::Whole);
+        let system = LinearSystem::new(&frames, columns, weighting, &views);
         let delta = solve(&system.frames, &system.columns).0;
         assert!((delta[0] - truth).abs() < 0.1, "{delta}");
     }

@@ -13,8 +13,11 @@ pub(crate) struct LinearModelThresholds {
     /// Part of all views of places beyond each edge of the rectangle in which the light was measured. Chosen: a few views of
     /// a far end must not stretch it.
     pub(crate) light_seen_share: f64,
+    /// Longest time between a picture and its reference pose at which both show the same moment of a step, seconds. Chosen: a
+    /// hundredth of a step.
+    pub(crate) same_step_s: f64,
     /// Rounds of reweighted least squares, each of which finds weights, standard deviations of the residuals and of the
-    /// poses' errors in turn. Chosen; no measurement.
+    /// poses' errors in turn: so many before slow errors of the poses are known, and so many after. Chosen; no measurement.
     pub(crate) reweighting_rounds: usize,
     /// Cut-off of Tukey's biweight, standard deviations: residuals beyond it have no weight (Huber and Ronchetti 2009,
     /// section 4.8). Chosen: a little above the customary 4.685 of 95 % efficiency; it has 96 %.
@@ -191,7 +194,8 @@ impl LinearModelThresholds {
             least_shrinkage: 0.3,
             least_part: 0.1,
         },
-        reweighting_rounds: 4,
+        same_step_s: 0.005,
+        reweighting_rounds: 3,
         tukey_sigmas: 5.0,
         independent_share: 0.15,
         most_prior_share: 0.1,

@@ -61,6 +61,8 @@ pub enum Covariate {
     Intensity,
     /// Time since the recording's start.
     Time,
+    /// Phase of the robot's steps.
+    GaitPhase,
     /// Red, green or blue.
     Color,
     /// The frame as a whole.

@@ -30,7 +30,7 @@ const ABOUT: About = About {
         Parameter::shape("height_sin_m", "m", [-0.05, 0.05], 0.001),
         Parameter::fixed("gait_hz", "Hz"),
     ],
-    covariates: &[Covariate::Time, Covariate::Frame],
+    covariates: &[Covariate::GaitPhase, Covariate::Frame],
     needs: &[],
     changes: Changes::Pictures,
     varies_over_time: true,

@@ -31,6 +31,11 @@ pub(super) fn smoothed(times_s: &[f64], values: &[Coordinates]) -> Vec<Coordinat
     best
 }
 
+/// Whether values are close enough in time to be smoothed.
+pub(super) fn are_dense(times_s: &[f64]) -> bool {
+    median_step_s(times_s).is_some_and(|step_s| BANDWIDTHS[0] * step_s <= LARGEST_BANDWIDTH_S)
+}
+
 fn median_step_s(times_s: &[f64]) -> Option<f64> {
     let mut steps_s: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps_s.len() / 2;

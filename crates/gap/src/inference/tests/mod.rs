@@ -10,8 +10,10 @@ use reality_sim_sensor::{EffectIndex, Model};
 use crate::{
     frame_index::{PerFrame, ViewIndex},
     linear_model::{
-        column::ColumnIndex, linearized_frame::LinearizedFrame, parameters::FittedParameter,
-        system::LinearSystem,
+        column::ColumnIndex,
+        linearized_frame::LinearizedFrame,
+        parameters::FittedParameter,
+        system::{LinearSystem, Weighting},
     },
     measurement::{quantity::Quantity, scalar::Measurement},
     recording::ReferenceKind,
@@ -116,7 +118,9 @@ impl World {
 
     fn system(&self, frames: &[&LinearizedFrame]) -> LinearSystem {
         let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
-        LinearSystem::new(frames, parameters(self.columns.len()), ReferenceKind::Whole, &views)
+        let columns = parameters(self.columns.len());
+        let (weighting, _) = Weighting::estimate(frames, &columns, ReferenceKind::Whole);
+        LinearSystem::new(frames, columns, weighting, &views)
     }
 
     /// Returns a model in the columns' coordinates.
