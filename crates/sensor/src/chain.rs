@@ -188,6 +188,11 @@ impl Chain {
         time_s + self.clock_s + of_picture_s + delay_s(&self.motion, row)
     }
 
+    /// Whether the camera's pose in a picture depends on those at other times than the picture's.
+    pub fn is_timed(&self) -> bool {
+        self.clock_s != 0.0 || !self.motion.is_empty()
+    }
+
     /// Returns the camera's true pose for a reference pose.
     pub fn mounted(&self, pose: CameraPose) -> CameraPose {
         self.mount.iter().fold(pose, |pose, used| used.effect.mount(&used.values, pose))

@@ -105,6 +105,7 @@ impl Sequence {
         }
         if !mounting.is_as_stated() {
             frames.iter_mut().for_each(|frame| mounting.correct(frame));
+            poses_between_frames.iter_mut().for_each(|stamped| mounting.correct_pose(stamped));
         }
         Ok(Self {
             folder: folder.to_path_buf(),

@@ -12,7 +12,7 @@ use crate::{
     linear_model::{
         column::{ColumnIndex, Columns},
         normal_equations::{NormalEquations, PRIOR},
-        reflectance::{Eliminated, IncrementVariances, PatchEquations},
+        reflectance::{Eliminated, IncrementVariances, PatchEquations, increment_variances},
     },
     thresholds::Thresholds,
 };
@@ -107,7 +107,7 @@ impl ReducedEquations {
     /// Estimates the variances of the reflectance's increments from a fit to these equations.
     pub(crate) fn increment_variances(&self, fit: &Fit) -> IncrementVariances {
         let values = &fit.delta.as_slice()[self.columns.dense()..];
-        IncrementVariances::estimated(&self.columns.field, &self.eliminated, values)
+        increment_variances(&self.columns.field, &self.eliminated, values)
     }
 
     /// Fits the free columns by least squares; the other fitted parameters become neutral. `base` is the present model in the
