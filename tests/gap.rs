@@ -394,6 +394,9 @@ fn broken_pictures_are_left_out_and_named() {
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(report["frames"], 30);
     assert_eq!(report["left_out"].as_array().unwrap().len(), 2);
+    fs::remove_dir_all(folder.path().join("images")).unwrap();
+    let refused = ["gap", text(folder.path()), "--out", text(&out)];
+    assert_refused(&refused, &["0 of the 32 frames", "picture", "000000.jpg"]);
 }
 
 #[test]

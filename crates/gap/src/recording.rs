@@ -38,6 +38,21 @@ pub enum RecordingError {
         /// Number of frames chosen.
         frames: usize,
     },
+    /// There are too few frames whose picture can be read.
+    #[error(
+        "{name}: only {found} of the {frames} frames with a reference pose have a picture that can be read, the comparison needs at least {LEAST_FRAMES}; {} cannot: put it back, or record again",
+        first.display()
+    )]
+    TooFewPictures {
+        /// Name of the recording.
+        name: String,
+        /// Number of frames with a pose and a picture.
+        found: usize,
+        /// Number of frames with a pose.
+        frames: usize,
+        /// First picture file that is missing or broken.
+        first: PathBuf,
+    },
     /// The requested frames are not in the recording.
     #[error("{name} has the frames 0 to {last}: {from}..{to} is no range of them")]
     NoSuchFrames {
@@ -142,9 +157,11 @@ impl<'a> Recording<'a> {
         if posed.len() < LEAST_FRAMES {
             return Err(RecordingError::TooFewFrames { name: name(), found: posed.len(), frames });
         }
+        let frames = posed.len();
         let (posed, left_out) = readable(sequence, posed);
-        if posed.len() < LEAST_FRAMES {
-            return Err(RecordingError::TooFewFrames { name: name(), found: posed.len(), frames });
+        if let (true, Some(first)) = (posed.len() < LEAST_FRAMES, left_out.first()) {
+            let first = sequence.folder.join(first);
+            return Err(RecordingError::TooFewPictures { name: name(), found: posed.len(), frames, first });
         }
         let stamped: Vec<(f64, CameraPose)> = posed.iter().map(|frame| (frame.time_s, frame.pose)).collect();
         let trajectory = Trajectory::new(&stamped)

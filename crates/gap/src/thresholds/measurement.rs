@@ -39,6 +39,11 @@ pub(crate) struct LineThresholds {
 /// Which pixels a line's profile is fitted to, and which fits are kept.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ProfileThresholds {
+    /// Encoded value of a colour from which it may be cut off at white, 0 to 1. Chosen: JPEG's rounding moves white by two grey
+    /// levels.
+    pub(crate) white: f64,
+    /// Largest share of a profile's samples that may be cut off where its blur is measured. Chosen: single pixels are noise.
+    pub(crate) most_white_share: f64,
     /// Half the length of the piece of line, pixels. Chosen: the ends of an arc of 50 px radius depart by 0.06 px from its
     /// tangent there.
     pub(crate) half_length_px: f64,
@@ -151,6 +156,8 @@ impl MeasurementThresholds {
             least_blurred_contrast: 8.0,
         },
         profile: ProfileThresholds {
+            white: 0.99,
+            most_white_share: 0.02,
             half_length_px: 2.5,
             flank_sigmas: 2.5,
             flank_px: 4.0,

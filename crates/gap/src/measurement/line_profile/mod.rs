@@ -16,7 +16,7 @@ pub(crate) use self::samples::LinePiece;
 use self::{
     bar_fit::fit_bar,
     color_offset::{colors, inner_level},
-    samples::samples,
+    samples::{Sample, samples},
 };
 use crate::thresholds::{ProfileThresholds, Thresholds};
 
@@ -29,7 +29,8 @@ pub(crate) struct Profile {
     pub(crate) offset_px: f64,
     /// Standard deviation of the offset by the fit alone, pixels.
     pub(crate) offset_sigma_px: f64,
-    /// Variance of the blur along the normal, the pixel's own included, pixels squared.
+    /// Variance of the blur along the normal, the pixel's own included, pixels squared; not a number where the line is cut off
+    /// at white, so that its edges seem steeper.
     pub(crate) variance_px2: f64,
     /// Standard deviation of the variance by the fit alone, pixels squared.
     pub(crate) variance_sigma_px2: f64,
@@ -59,10 +60,16 @@ pub(crate) fn fit(picture: &RgbImage, gamma: f64, piece: &LinePiece, found_px: f
     Some(Profile {
         offset_px: center,
         offset_sigma_px: bar.sigma[0],
-        variance_px2: bar.values[1],
+        variance_px2: if is_cut_off(&samples) { f64::NAN } else { bar.values[1] },
         variance_sigma_px2: bar.sigma[1],
         color_offset_px,
         contrast_share,
         level: inner_level(&samples, center, inner_px),
     })
+}
+
+/// Whether a part of the samples is white as far as the encoding tells.
+fn is_cut_off(samples: &[Sample]) -> bool {
+    let white = samples.iter().filter(|sample| sample.rgb.iter().any(|value| *value > THRESHOLDS.white));
+    white.count() as f64 > THRESHOLDS.most_white_share * samples.len() as f64
 }
