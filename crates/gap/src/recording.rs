@@ -40,7 +40,7 @@ pub enum RecordingError {
     },
     /// There are too few frames whose picture can be read.
     #[error(
-        "{name}: only {found} of the {frames} frames with a reference pose have a picture that can be read, the comparison needs at least {LEAST_FRAMES}; {} cannot: put it back, or record again",
+        "{name}: only {found} of the {frames} frames with a reference pose have a picture that can be read, the comparison needs at least {LEAST_FRAMES}: mend or put back {} and the others, or record again",
         first.display()
     )]
     TooFewPictures {
@@ -159,7 +159,7 @@ impl<'a> Recording<'a> {
         }
         let frames = posed.len();
         let (posed, left_out) = readable(sequence, posed);
-        if let (true, Some(first)) = (posed.len() < LEAST_FRAMES, left_out.first()) {
+        if let Some(first) = left_out.first().filter(|_| posed.len() < LEAST_FRAMES) {
             let first = sequence.folder.join(first);
             return Err(RecordingError::TooFewPictures { name: name(), found: posed.len(), frames, first });
         }

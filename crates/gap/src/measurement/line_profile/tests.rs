@@ -148,7 +148,7 @@ fn the_inner_part_of_a_wide_line_has_its_colour_and_a_thin_one_has_none() {
 fn a_line_that_is_cut_off_at_white_has_its_middle_and_no_blur() {
     let mut picture = bar(0.7, 1.3, 4.0, 1.2, [0.0; 3]);
     assert!(fit(&picture, GAMMA, &piece(0.7, 4.0), 1.3).unwrap().variance_px2.is_finite());
-    // Half an aperture more, of which the file keeps what is below white.
+    // More light, of which the file keeps what is below white.
     picture.pixels_mut().for_each(|pixel| pixel.0 = pixel.0.map(|value| value.saturating_add(value / 2)));
     let profile = fit(&picture, GAMMA, &piece(0.7, 4.0), 1.3).unwrap();
     assert!((profile.offset_px - 1.3).abs() < 0.05, "{}", profile.offset_px);
