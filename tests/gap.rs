@@ -260,7 +260,9 @@ fn an_effect_that_is_not_in_the_library_is_called_unknown_in_the_channel_that_it
     ];
     for (hidden, channel) in cases {
         let (_folder, sequence) = record(51, &[hidden]);
-        let options = Options { without: vec![hidden.id().to_owned()], ..Options::default() };
+        // Of a robot that walks ahead, a clock that is off puts the camera ahead and its IMU late.
+        let without = [hidden.id(), "camera_offset", "imu_delay"].map(str::to_owned).to_vec();
+        let options = Options { without, ..Options::default() };
         let report = analysed(&sequence, &Model::default(), &options).report;
         assert_eq!(report.verdict, Verdict::Unknown, "{}: {}", hidden.id(), summary(&report));
         let seen = report.unexplained.iter().any(|finding| finding.channel() == channel);

@@ -1,12 +1,13 @@
 //! Recordings as the workflow uses them: frames with reference poses, in order of time.
 
-use std::{ops::Range, path::PathBuf};
+use std::{collections::BTreeMap, ops::Range, path::PathBuf, sync::RwLock};
 
 use image::RgbImage;
 use rayon::prelude::*;
 use reality_sim_core::{
-    pose::{CameraPose, Motion2, Pose2},
-    sequence::{Sequence, SequenceError, decode_image},
+    pose::{CameraPose, Motion2, Pose2, wrap_angle},
+    sequence::{Sequence, SequenceError, StampedPose, decode_image},
+    statistics::median,
 };
 use reality_sim_sensor::{Trajectory, TrajectoryError};
 
@@ -94,13 +95,6 @@ pub(crate) enum ReferenceKind {
     Attitude,
 }
 
-/// Linear RGB values of the field's surfaces as the nominal camera records them; 1 is full scale.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct NominalReflectance {
-    pub(crate) line_linear_rgb: [f64; 3],
-    pub(crate) carpet_linear_rgb: [f64; 3],
-}
-
 /// Odometry between a frame and the next one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OdometryStep {
@@ -117,6 +111,9 @@ pub(crate) struct Frame {
     pub(crate) time_s: f64,
     /// Odometry step to the next frame. None for the last frame, without odometry, or if the next frame comes too late.
     pub(crate) step: Option<OdometryStep>,
+    /// Pitch and roll by joints and IMU, radians, less their median difference from the reference poses: the mount of the IMU
+    /// and of the markers is not compared. None if the reference poses have them from there.
+    pub(crate) stated_attitude_rad: Option<[f64; 2]>,
 }
 
 /// Frames of a sequence that are compared with a model.
@@ -126,15 +123,15 @@ pub struct Recording<'a> {
     pub(crate) trajectory: Trajectory,
     pub(crate) frames: PerFrame<Frame>,
     pub(crate) source: ReferenceSource,
-    /// Reflectance of lines and carpet, if the camera's file gives it.
-    pub(crate) reflectance: Option<NominalReflectance>,
+    /// Values of effects' fixed parameters that a search found, see [`crate::linear_model::fixed_values`].
+    pub(crate) searched: RwLock<BTreeMap<&'static str, f64>>,
     /// Picture files that are broken or missing; their frames are left out.
     pub(crate) left_out: Vec<PathBuf>,
 }
 
 impl<'a> Recording<'a> {
     /// Selects the frames of a sequence, or a range of them, that have a reference pose. `poses` has one entry for each
-    /// frame of the sequence.
+    /// frame of the sequence. If these are the sequence's own, its poses between the frames are used, too.
     pub fn new(
         sequence: &'a Sequence,
         poses: &[Option<CameraPose>],
@@ -163,17 +160,24 @@ impl<'a> Recording<'a> {
             let first = sequence.folder.join(first);
             return Err(RecordingError::TooFewPictures { name: name(), found: posed.len(), frames, first });
         }
-        let stamped: Vec<(f64, CameraPose)> = posed.iter().map(|frame| (frame.time_s, frame.pose)).collect();
-        let trajectory = Trajectory::new(&stamped)
+        // Other poses than the sequence's own say nothing of the times between frames.
+        let is_own =
+            source == ReferenceSource::Measured && sequence.reference_poses().eq(poses.iter().copied());
+        let between = if is_own { sequence.poses_between_frames.as_slice() } else { &[] };
+        let trajectory = Trajectory::near(&stamped_poses(&posed, between))
             .map_err(|source| RecordingError::Trajectory { name: name(), source })?;
+        let attitude_bias_rad =
+            (source == ReferenceSource::Measured).then(|| attitude_bias_rad(sequence, &posed));
         let every = posed.len().div_ceil(THRESHOLDS.most_frames);
         let frame = |&PosedFrame { index_in_sequence, time_s, .. }: &PosedFrame| Frame {
             index_in_sequence,
             time_s,
             step: step(sequence, index_in_sequence),
+            stated_attitude_rad: attitude_bias_rad
+                .map(|bias| stated_attitude_rad(sequence, index_in_sequence, bias)),
         };
         let frames = posed.iter().step_by(every).map(frame).collect();
-        Ok(Self { sequence, trajectory, frames, source, reflectance: reflectance(sequence), left_out })
+        Ok(Self { sequence, trajectory, frames, source, left_out, searched: RwLock::default() })
     }
 
     /// Returns the view of each frame. Successive frames belong to one view while their poses differ so little that they may
@@ -245,6 +249,21 @@ struct PosedFrame {
     pose: CameraPose,
 }
 
+/// Returns the poses of frames and those between them, in order of time. At the ends, one exposure or clock that is off does
+/// not reach farther than the trajectory's margin.
+fn stamped_poses(posed: &[PosedFrame], between: &[StampedPose]) -> Vec<(f64, CameraPose)> {
+    let of_frames = posed.iter().map(|frame| (frame.time_s, frame.pose));
+    let mut stamped: Vec<(f64, CameraPose)> = of_frames.collect();
+    let (Some(&(first_s, _)), Some(&(last_s, _))) = (stamped.first(), stamped.last()) else { return stamped };
+    let span = first_s - THRESHOLDS.trajectory_margin_s..=last_s + THRESHOLDS.trajectory_margin_s;
+    let others = between.iter().filter(|stamped| span.contains(&stamped.timestamp_s));
+    stamped.extend(others.map(|stamped| (stamped.timestamp_s, stamped.pose)));
+    // The sort is stable: of two poses at one time, the frame's comes first and stays.
+    stamped.sort_by(|a, b| a.0.total_cmp(&b.0));
+    stamped.dedup_by(|later, earlier| later.0 <= earlier.0);
+    stamped
+}
+
 /// Splits frames into those whose pictures can be read and the picture files of the others.
 fn readable(sequence: &Sequence, posed: Vec<PosedFrame>) -> (Vec<PosedFrame>, Vec<PathBuf>) {
     let is_readable: Vec<bool> =
@@ -268,13 +287,18 @@ fn is_same_view(a: &CameraPose, b: CameraPose) -> bool {
     moved_m < THRESHOLDS.same_view_m && turned_rad < THRESHOLDS.same_view_rad
 }
 
-/// Returns the reflectance of lines and carpet in the camera's file, if it gives both.
-fn reflectance(sequence: &Sequence) -> Option<NominalReflectance> {
-    let photometry = sequence.setup.photometry?;
-    Some(NominalReflectance {
-        line_linear_rgb: photometry.line_linear_rgb?,
-        carpet_linear_rgb: photometry.carpet_linear_rgb?,
-    })
+/// Returns pitch and roll of a frame by joints and IMU, less their bias.
+fn stated_attitude_rad(sequence: &Sequence, index: usize, [pitch_rad, roll_rad]: [f64; 2]) -> [f64; 2] {
+    let frame = &sequence.frames[index];
+    [frame.pitch_rad - pitch_rad, frame.roll_rad - roll_rad]
+}
+
+/// Returns the median differences of pitch and roll by joints and IMU from those of the reference poses.
+fn attitude_bias_rad(sequence: &Sequence, posed: &[PosedFrame]) -> [f64; 2] {
+    let stated = |frame: &PosedFrame| stated_attitude_rad(sequence, frame.index_in_sequence, [0.0; 2]);
+    let pitch = posed.iter().map(|frame| stated(frame)[0] - frame.pose.pitch_rad);
+    let roll = posed.iter().map(|frame| wrap_angle(stated(frame)[1] - frame.pose.roll_rad));
+    [median(pitch), median(roll)]
 }
 
 /// Returns the odometry between a frame and the next one. None for the last frame, without odometry, or if the next frame

@@ -8,7 +8,13 @@ use reality_sim_core::field::FieldDimensions;
 use reality_sim_sensor::{Parameter, effect};
 
 use crate::{
-    linear_model::{normal_equations::NormalEquations, system::LinearSystem},
+    frame_index::ViewIndex,
+    linear_model::{
+        column::Columns,
+        normal_equations::NormalEquations,
+        reflectance::{ReflectanceField, Tree},
+        system::LinearSystem,
+    },
     measurement::{
         quantity::{ColorChannel, Quantity},
         scalar::{Measurement, Subject},
@@ -43,6 +49,9 @@ pub(crate) fn measurement(quantity: Quantity) -> Measurement {
         speed_px_s: 0.0,
         half_width_px: 2.0,
         cos_incidence: 1.0,
+        view_direction: DVec2::ZERO,
+        luma_slope: 0.0,
+        log_brightness: 0.0,
     }
 }
 
@@ -79,20 +88,18 @@ pub(crate) fn two_column_frames(
     (0..45).map(|_| frame()).collect()
 }
 
+/// Returns columns of this number of fitted parameters alone.
+pub(crate) fn parameters(count: usize) -> Columns {
+    Columns { parameters: count, nuisances: 0, field: ReflectanceField::new(Tree::default()) }
+}
+
 /// Returns a linear system of frames with these normal equations. Each frame is a view and a cell of the field of its own.
 pub(crate) fn system_of(frames: Vec<(DMatrix<f64>, DVector<f64>)>) -> LinearSystem {
     let size = frames[0].1.len();
     let frames: Vec<NormalEquations> =
-        frames.into_iter().map(|(a, g)| NormalEquations::dense(a, g)).collect();
-    LinearSystem {
-        size,
-        cells: frames.clone(),
-        views: frames.clone(),
-        frames,
-        sigmas: BTreeMap::new(),
-        pose_sigmas: [1.0; 6],
-        weights: Vec::new(),
-    }
+        frames.into_iter().map(|(a, g)| NormalEquations::of_all(a, g)).collect();
+    let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
+    LinearSystem::of_equations(size, frames.clone(), frames, &views)
 }
 
 /// Returns the report of an effect whose parameters all have this value with certainty; all other entries are empty.

@@ -215,6 +215,7 @@ impl Takes {
             name: format!("hidden-{}", self.recipe.seed),
             setup: plan.nominal.setup(plan.stated)?,
             frames,
+            poses_between_frames: Vec::new(),
             start: Some(logger.start()),
             corrected_by: None,
             field: if other_field { drawn::another_league(field) } else { field.clone() },

@@ -1,6 +1,6 @@
 //! The simulated camera: its stages in order, each with the effects that change it.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use reality_sim_core::{
     camera::Camera,
     field::FieldDimensions,
@@ -16,6 +16,11 @@ use crate::{
     tone::Tone,
     trajectory::Trajectory,
 };
+
+/// Tolerance of an inverted tone curve, encoded.
+const INVERSION_TOLERANCE: f64 = 1e-7;
+/// Largest number of steps of an inversion; a few suffice.
+const MOST_INVERSION_STEPS: usize = 60;
 
 /// Gamma of a camera without photometric calibration.
 const DEFAULT_GAMMA: f64 = 2.2;
@@ -122,6 +127,18 @@ impl Chain {
         &self.camera
     }
 
+    /// Projects a point in the camera's axes to its pixel through [`Chain::camera`], with the shifts that this camera's model
+    /// cannot express. The pixel may lie outside the picture; `None` beyond the largest valid angle.
+    pub fn project_from_camera(&self, point_in_camera: DVec3) -> Option<DVec2> {
+        Some(self.camera.project_unbounded(point_in_camera).ok()? + self.shift_px(point_in_camera))
+    }
+
+    /// Returns the shift of a point's picture that [`Chain::camera`] does not contain, pixels.
+    pub(crate) fn shift_px(&self, point_in_camera: DVec3) -> DVec2 {
+        let shift = |used: &Used| used.effect.shift_px(&used.values, &self.camera, point_in_camera);
+        self.lens.iter().map(shift).sum()
+    }
+
     /// Returns the delay in seconds of images and odometry after the time of the reference poses.
     pub fn clock_s(&self) -> f64 {
         self.clock_s
@@ -150,12 +167,30 @@ impl Chain {
     /// Returns the camera's true pose in the middle of a row's exposure, for the frame with this timestamp. `trajectory`
     /// holds the reference poses; rows run from 0 at the top to 1 at the bottom.
     pub fn pose(&self, trajectory: &Trajectory, time_s: f64, row: f64) -> CameraPose {
-        self.mounted(trajectory.at(self.exposure_middle_s(time_s, row)))
+        self.camera_at(trajectory, self.exposure_middle_s(time_s, row))
+    }
+
+    /// Returns the camera's true pose at a time on the clock of the reference poses, seconds. A camera that stands still does
+    /// not sway.
+    pub(crate) fn camera_at(&self, trajectory: &Trajectory, time_s: f64) -> CameraPose {
+        let reference = trajectory.at(time_s);
+        if trajectory.is_still() {
+            return self.mounted(reference);
+        }
+        let swayed = |pose, used: &Used| used.effect.sway(&used.values, pose, time_s);
+        self.mounted(self.motion.iter().fold(reference, swayed))
     }
 
     /// Returns the middle of a row's exposure in seconds, on the clock of the reference poses.
     pub fn exposure_middle_s(&self, time_s: f64, row: f64) -> f64 {
-        time_s + self.clock_s + delay_s(&self.motion, row)
+        let of_picture = |used: &Used| used.effect.picture_delay_s(&used.values, time_s);
+        let of_picture_s: f64 = self.motion.iter().map(of_picture).sum();
+        time_s + self.clock_s + of_picture_s + delay_s(&self.motion, row)
+    }
+
+    /// Whether the camera's pose in a picture depends on those at other times than the picture's.
+    pub fn is_timed(&self) -> bool {
+        self.clock_s != 0.0 || !self.motion.is_empty()
     }
 
     /// Returns the camera's true pose for a reference pose.
@@ -221,8 +256,45 @@ impl Chain {
         self.tone.encode(linear)
     }
 
+    /// Returns the linear value of light, before the sensor's response, that is encoded as this pixel value, 0 to 1. Values
+    /// that no light has are clipped to those of the darkest and the brightest.
+    pub fn linear_of(&self, encoded: f64) -> f64 {
+        let excess = |linear: f64| self.encode(self.respond(linear)) - encoded;
+        let (mut low, mut high) = ((0.0, excess(0.0)), (1.0, excess(1.0)));
+        if low.1 >= 0.0 || high.1 <= 0.0 {
+            return if low.1 >= 0.0 { 0.0 } else { 1.0 };
+        }
+        // Nearly right where the chain is a power law; bounds close in from both sides (Illinois algorithm, Dowell and
+        // Jarratt 1971).
+        let mut next = encoded.powf(self.tone.gamma);
+        for _ in 0..MOST_INVERSION_STEPS {
+            let found = (next, excess(next));
+            if found.1.abs() < INVERSION_TOLERANCE {
+                break;
+            }
+            if found.1 > 0.0 {
+                (high, low.1) = (found, 0.5 * low.1);
+            } else {
+                (low, high.1) = (found, 0.5 * high.1);
+            }
+            next = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        }
+        next
+    }
+
+    /// Returns the delay in seconds of the odometry after the pictures.
+    pub fn odometry_delay_s(&self) -> f64 {
+        self.odometry.iter().map(|used| used.effect.odometry_delay_s(&used.values)).sum()
+    }
+
+    /// Returns the delay in seconds of the stated pitch and roll after the pictures.
+    pub fn attitude_delay_s(&self) -> f64 {
+        self.odometry.iter().map(|used| used.effect.attitude_delay_s(&used.values)).sum()
+    }
+
     /// Returns the motion that the odometry reports for a true motion of the camera that took `duration_s` seconds. The
-    /// robot's clock is late: between two timestamps, `true_motion` connects the poses [`Chain::clock_s`] after them.
+    /// robot's clock is late: between two timestamps, `true_motion` connects the poses [`Chain::clock_s`] after them,
+    /// less [`Chain::odometry_delay_s`].
     pub fn odometry(&self, true_motion: Motion2, duration_s: f64) -> Motion2 {
         let reported = |motion, used: &Used| used.effect.odometry(&used.values, motion, duration_s);
         self.odometry.iter().fold(true_motion, reported)

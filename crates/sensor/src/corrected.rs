@@ -119,7 +119,7 @@ impl Corrected {
         let mut corrected = stated.clone();
         (corrected.setup, corrected.field) = (self.setup(), self.field().clone());
         corrected.corrected_by = Some(self.text.clone());
-        self.correct_reference_poses(&mut corrected.frames)?;
+        self.correct_reference_poses(&mut corrected)?;
         self.correct_odometry(&mut corrected.frames);
         for frame in &mut corrected.frames {
             let mount = MountPose {
@@ -133,20 +133,26 @@ impl Corrected {
         Ok(corrected)
     }
 
-    fn correct_reference_poses(&self, frames: &mut [FrameRecord]) -> Result<(), TrajectoryError> {
-        let delay_s = self.chain.exposure_middle_s(0.0, 0.5);
-        let known: Vec<(f64, CameraPose)> =
-            frames.iter().filter_map(|frame| Some((frame.timestamp_s, frame.reference_pose?))).collect();
-        let trajectory =
-            if delay_s == 0.0 || known.is_empty() { None } else { Some(Trajectory::new(&known)?) };
-        for frame in frames {
-            frame.reference_pose = frame.reference_pose.map(|stated| match &trajectory {
-                Some(trajectory) => {
-                    let pose = self.chain.pose(trajectory, frame.timestamp_s, 0.5);
-                    CameraPose { yaw_rad: wrap_angle(pose.yaw_rad), ..pose }
-                }
-                None => self.chain.mounted(stated),
-            });
+    fn correct_reference_poses(&self, sequence: &mut Sequence) -> Result<(), TrajectoryError> {
+        let of_frames = sequence.frames.iter();
+        let of_frames = of_frames.filter_map(|frame| Some((frame.timestamp_s, frame.reference_pose?)));
+        let between = sequence.poses_between_frames.iter().map(|stamped| (stamped.timestamp_s, stamped.pose));
+        let mut known: Vec<(f64, CameraPose)> = of_frames.chain(between).collect();
+        known.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let is_timed = self.chain.is_timed() && !known.is_empty();
+        let trajectory = is_timed.then(|| Trajectory::near(&known)).transpose()?;
+        let corrected = |timestamp_s: f64, stated: CameraPose| match &trajectory {
+            Some(trajectory) => {
+                let pose = self.chain.pose(trajectory, timestamp_s, 0.5);
+                CameraPose { yaw_rad: wrap_angle(pose.yaw_rad), ..pose }
+            }
+            None => self.chain.mounted(stated),
+        };
+        for frame in &mut sequence.frames {
+            frame.reference_pose = frame.reference_pose.map(|stated| corrected(frame.timestamp_s, stated));
+        }
+        for stamped in &mut sequence.poses_between_frames {
+            stamped.pose = corrected(stamped.timestamp_s, stamped.pose);
         }
         Ok(())
     }

@@ -9,7 +9,7 @@ mod parameter;
 
 use std::fmt::Debug;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use reality_sim_core::{
     camera::{Camera, InvalidCamera},
     field::FieldDimensions,
@@ -64,6 +64,16 @@ pub trait Effect: Sync + Debug {
         0.0
     }
 
+    /// Motion: returns the delay in seconds of the picture with this timestamp after the time of the reference poses.
+    fn picture_delay_s(&self, _p: &[f64], _time_s: f64) -> f64 {
+        0.0
+    }
+
+    /// Motion: returns the true pose at a time for that of the reference.
+    fn sway(&self, _p: &[f64], pose: CameraPose, _time_s: f64) -> CameraPose {
+        pose
+    }
+
     /// Mount: returns the true pose for the nominal one.
     fn mount(&self, _p: &[f64], pose: CameraPose) -> CameraPose {
         pose
@@ -72,6 +82,12 @@ pub trait Effect: Sync + Debug {
     /// Lens: returns the true camera for the nominal one. Fails where the values leave no valid camera.
     fn lens(&self, _p: &[f64], camera: Camera) -> Result<Camera, InvalidCamera> {
         Ok(camera)
+    }
+
+    /// Lens: returns the shift in pixels of a point's picture that no camera model of the core expresses; `camera` is the true
+    /// one.
+    fn shift_px(&self, _p: &[f64], _camera: &Camera, _point_in_camera: DVec3) -> DVec2 {
+        DVec2::ZERO
     }
 
     /// Lens: returns the magnification of red, green and blue about the principal point; 1 leaves the channel unchanged.
@@ -108,6 +124,16 @@ pub trait Effect: Sync + Debug {
     /// Encoding: returns the true tone curve for the nominal one. Fails where the values leave no valid curve.
     fn tone(&self, _p: &[f64], tone: Tone) -> Result<Tone, InvalidTone> {
         Ok(tone)
+    }
+
+    /// Odometry: returns the delay in seconds of the odometry after the pictures.
+    fn odometry_delay_s(&self, _p: &[f64]) -> f64 {
+        0.0
+    }
+
+    /// Odometry: returns the delay in seconds of the stated pitch and roll after the pictures.
+    fn attitude_delay_s(&self, _p: &[f64]) -> f64 {
+        0.0
     }
 
     /// Odometry: returns the motion that the odometry reports for a true motion of this duration.

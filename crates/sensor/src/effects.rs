@@ -4,14 +4,20 @@
 mod adjustments;
 mod black_level;
 mod camera_height;
+mod camera_offset;
+mod camera_yaw;
 mod chromatic_aberration;
+mod clock_jump;
 mod defocus;
 mod exposure_drift;
 mod field_dimensions;
 mod focal_length;
+mod gait_sway;
+mod imu_delay;
 mod motion_blur;
 mod mount_pitch;
 mod mount_roll;
+mod odometry_delay;
 mod odometry_lateral_slip;
 mod odometry_scale;
 mod odometry_yaw_drift;
@@ -20,6 +26,7 @@ mod principal_point;
 mod radial_distortion;
 mod rolling_shutter;
 mod sensor_noise;
+mod tangential_distortion;
 mod time_offset;
 mod tone_curve;
 mod uneven_illumination;
@@ -33,12 +40,17 @@ const LIBRARY: &[&dyn Effect] = &[
     &field_dimensions::FieldSize,
     &uneven_illumination::UnevenIllumination,
     &time_offset::TimeOffset,
+    &clock_jump::ClockJump,
+    &gait_sway::GaitSway,
     &rolling_shutter::RollingShutter,
     &motion_blur::MotionBlur,
+    &camera_yaw::CameraYaw,
+    &camera_offset::CameraOffset,
     &mount_pitch::MountPitch,
     &mount_roll::MountRoll,
     &camera_height::CameraHeight,
     &radial_distortion::RadialDistortion,
+    &tangential_distortion::TangentialDistortion,
     &focal_length::FocalLength,
     &principal_point::PrincipalPoint,
     &chromatic_aberration::ChromaticAberration,
@@ -52,6 +64,8 @@ const LIBRARY: &[&dyn Effect] = &[
     &odometry_scale::OdometryScale,
     &odometry_yaw_drift::OdometryYawDrift,
     &odometry_lateral_slip::OdometryLateralSlip,
+    &odometry_delay::OdometryDelay,
+    &imu_delay::ImuDelay,
 ];
 
 /// Effect by which the chain applies the nominal camera's own black level.

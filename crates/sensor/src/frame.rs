@@ -92,7 +92,7 @@ impl<'a> Frame<'a> {
     fn seen(&self, camera: CameraFromWorld, point_in_world: DVec3, magnification: f64) -> Option<DVec2> {
         let lens = self.chain.camera();
         let point_in_camera = camera.rotation * (point_in_world - camera.position_in_world);
-        let pixel = lens.project_unbounded(point_in_camera).ok()?;
+        let pixel = self.chain.project_from_camera(point_in_camera)?;
         Some(pixel + (magnification - 1.0) * (pixel - DVec2::new(lens.cx, lens.cy)))
     }
 

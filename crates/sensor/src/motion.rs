@@ -35,7 +35,7 @@ impl<'a> Motion<'a> {
     /// Iterates over true poses, evenly spaced over a row's exposure; rows run from 0 at the top to 1 at the bottom.
     pub(crate) fn poses(&self, row: f64) -> impl Iterator<Item = CameraPose> {
         let middle_s = self.chain.exposure_middle_s(self.time_s, row);
-        self.offsets_s.iter().map(move |offset_s| self.chain.mounted(self.trajectory.at(middle_s + offset_s)))
+        self.offsets_s.iter().map(move |offset_s| self.chain.camera_at(self.trajectory, middle_s + offset_s))
     }
 }
 

@@ -73,7 +73,7 @@ impl Renderer {
         let magnifications = if red == green && green == blue { vec![green] } else { vec![red, green, blue] };
         Self {
             scene: Scene::new(chain.field(), colors),
-            lenses: magnifications.iter().map(|factor| Lens::new(camera, *factor)).collect(),
+            lenses: magnifications.iter().map(|factor| Lens::new(&chain, *factor)).collect(),
             encoding: Encoding::new(chain.tone()),
             size: [camera.width, camera.height],
             parts_per_side: DEFAULT_PARTS_PER_SIDE,

@@ -1,11 +1,15 @@
 //! Interpolation of a camera's pose at any time between stamped poses.
 
+mod smoothing;
 mod spline;
 
 use glam::{DMat3, DVec3};
 use reality_sim_core::pose::{CameraPose, wrap_angle};
 
-use self::spline::{Coordinates, Spline};
+use self::{
+    smoothing::{are_dense, smoothed},
+    spline::{Coordinates, Spline},
+};
 
 /// Longest time between poses that a curve connects; over longer gaps it would be a guess, and a straight line is used.
 const LONGEST_STEP_S: f64 = 0.6;
@@ -66,6 +70,19 @@ impl Trajectory {
         Ok(Self { spline: Spline::new(times_s, &places, LONGEST_STEP_S), is_still })
     }
 
+    /// Makes the trajectory near noisy poses in the order of their times, seconds. Where they are dense enough, as those of
+    /// motion capture are, the noise is smoothed as far as poses left out are predicted the better for it; poses more than
+    /// 0.06 s apart stay as they are.
+    pub fn near(poses: &[(f64, CameraPose)]) -> Result<Self, TrajectoryError> {
+        let raw = Self::new(poses)?;
+        if raw.is_still {
+            return Ok(raw);
+        }
+        let times_s: Vec<f64> = poses.iter().map(|(time_s, _)| *time_s).collect();
+        let places = smoothed(&times_s, &unwrapped(poses));
+        Ok(Self { spline: Spline::new(times_s, &places, LONGEST_STEP_S), is_still: false })
+    }
+
     /// Makes the trajectory of a camera that stands still at a pose.
     pub fn still(pose: CameraPose) -> Self {
         Self { spline: Spline::new(vec![0.0], &[coordinates(pose)], LONGEST_STEP_S), is_still: true }
@@ -74,6 +91,12 @@ impl Trajectory {
     /// Whether the camera never moves.
     pub fn is_still(&self) -> bool {
         self.is_still
+    }
+
+    /// Whether the poses are as close in time as those of motion capture, at most 0.06 s in the median: then the trajectory shows
+    /// a robot's steps.
+    pub fn is_dense(&self) -> bool {
+        are_dense(self.spline.times_s())
     }
 
     /// Returns the pose at a time, seconds. Before the first pose and after the last one, the camera keeps its velocity for

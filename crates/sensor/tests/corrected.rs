@@ -50,6 +50,7 @@ fn walk() -> Sequence {
         field: FieldDimensions::preset("spl").unwrap(),
         frames: frames.collect(),
         start: None,
+        poses_between_frames: Vec::new(),
         corrected_by: None,
     }
 }

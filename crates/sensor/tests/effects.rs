@@ -20,7 +20,8 @@ fn the_library_has_the_effects_that_reports_name() {
     let expected = "radial_distortion principal_point focal_length mount_pitch mount_roll camera_height \
         rolling_shutter time_offset motion_blur defocus chromatic_aberration vignetting tone_curve black_level \
         white_balance exposure_drift uneven_illumination sensor_noise field_dimensions odometry_scale \
-        odometry_yaw_drift odometry_lateral_slip";
+        odometry_yaw_drift odometry_lateral_slip camera_yaw camera_offset tangential_distortion \
+        odometry_delay imu_delay clock_jump gait_sway";
     let known: BTreeSet<&str> = library().iter().map(|effect| effect.id()).collect();
     assert_eq!(known, expected.split_whitespace().collect());
     assert_eq!(library().len(), known.len());
@@ -82,6 +83,13 @@ fn mount_effects_turn_and_lift_the_camera_in_its_own_axes() {
     let expected = nominal * DVec3::new(0.1_f64.cos(), 0.1_f64.sin(), 0.0);
     assert!(rolled.x_axis.distance(expected) < 1e-12 && rolled.z_axis.distance(nominal.z_axis) < 1e-12);
     assert_eq!(known("camera_height").mount(&[0.03], pose), CameraPose { height_m: 0.53, ..pose });
+    assert_eq!(known("camera_yaw").mount(&[0.25], pose), CameraPose { yaw_rad: 0.7 + 0.25, ..pose });
+    // Heading 0.7: ahead is (cos 0.7, sin 0.7), left is (−sin 0.7, cos 0.7).
+    let beside = known("camera_offset").mount(&[0.2, 0.1], pose);
+    let (sin, cos) = 0.7_f64.sin_cos();
+    let place = DVec3::new(1.0 + 0.2 * cos - 0.1 * sin, -0.5 + 0.2 * sin + 0.1 * cos, 0.5);
+    assert!(beside.position_in_world().distance(place) < 1e-12);
+    assert_eq!(beside.rotation_world_from_camera(), nominal);
 }
 
 #[test]
@@ -108,6 +116,27 @@ fn lens_effects_are_added_to_every_model() {
 }
 
 #[test]
+fn a_decentred_lens_shifts_points_by_browns_formula_on_every_model() {
+    let tangential = known("tangential_distortion");
+    let p = [0.004, -0.003];
+    // x = 0.3, y = -0.4, r² = 0.25: 2 p₁xy + p₂(r² + 2x²) and p₁(r² + 2y²) + 2 p₂xy.
+    let expected = [0.004 * -0.24 - 0.003 * 0.43, 0.004 * 0.57 + 0.003 * 0.24];
+    for camera in [common::pinhole([64, 48], 40.0), common::barrel([64, 48], 40.0)] {
+        let point = DVec3::new(0.6, -0.8, 2.0);
+        let changed = tangential.lens(&p, camera.clone()).unwrap();
+        let shift = changed.project_unbounded(point).unwrap() - camera.project_unbounded(point).unwrap();
+        assert!((shift - DVec2::from_array(expected) * DVec2::new(camera.fx, camera.fy)).length() < 1e-9);
+        assert_eq!(tangential.shift_px(&p, &camera, point), DVec2::ZERO);
+    }
+    // On a fisheye the radius is the angle: 0.5 rad from the axis.
+    let fisheye = common::fisheye([64, 48], 22.0);
+    assert_eq!(tangential.lens(&p, fisheye.clone()).unwrap(), fisheye);
+    let (sin, cos) = 0.5_f64.sin_cos();
+    let shift = tangential.shift_px(&p, &fisheye, 3.0 * DVec3::new(0.6 * sin, -0.8 * sin, cos));
+    assert!((shift - DVec2::from_array(expected) * DVec2::new(fisheye.fx, fisheye.fy)).length() < 1e-12);
+}
+
+#[test]
 fn a_camera_keeps_the_limit_that_it_was_given_and_no_other() {
     let limited = common::fisheye([64, 48], 22.0).with_max_angle_rad(1.2).unwrap();
     for (id, p) in [("radial_distortion", [0.01]), ("focal_length", [0.1]), ("principal_point", [1.0])] {
@@ -128,6 +157,13 @@ fn times_are_those_of_rows_and_clock() {
     }
     assert_eq!(known("time_offset").clock_s(&[0.04]), 0.04);
     assert_eq!(known("motion_blur").exposure_s(&[0.02]), 0.02);
+    let jump = |time_s: f64| known("clock_jump").picture_delay_s(&[0.1, 4.0], time_s);
+    assert_eq!([jump(3.9), jump(4.0), jump(9.0)], [0.0, 0.1, 0.1]);
+    let pose = common::pose([1.0, 2.0, 0.3], [0.5, 0.4, 0.0]);
+    let swayed = known("gait_sway").sway(&[0.01, 0.02, 0.003, -0.004, 1.25], pose, 0.2);
+    assert!((swayed.pitch_rad - 0.42).abs() < 1e-12 && (swayed.height_m - 0.496).abs() < 1e-12);
+    assert_eq!(known("odometry_delay").odometry_delay_s(&[0.03]), 0.03);
+    assert_eq!(known("imu_delay").attitude_delay_s(&[-0.02]), -0.02);
 }
 
 #[test]
@@ -162,11 +198,15 @@ fn light_and_gain_follow_their_formulas() {
     let field = common::field();
     let corner = DVec2::new(field.length_m, field.width_m) / 2.0;
     let uneven = known("uneven_illumination");
-    let p = [0.1, 0.2, -0.3, 0.05, 0.1, 0.2, 0.1, -0.2, 0.15];
+    let p = [0.1, 0.2, -0.3, 0.05, 0.1];
     assert!((uneven.light(&p, corner, &field).ln() - p.iter().sum::<f64>()).abs() < 1e-12);
-    let mirrored = -0.1 - 0.2 - 0.3 + 0.05 + 0.1 - 0.2 - 0.1 + 0.2 - 0.15;
+    let mirrored = -0.1 - 0.2 - 0.3 + 0.05 + 0.1;
     assert!((uneven.light(&p, -corner, &field).ln() - mirrored).abs() < 1e-12);
-    assert!((uneven.light(&[1.5; 9], 5.0 * corner, &field).ln() - 3.0).abs() < 1e-12);
+    assert!((uneven.light(&[1.5; 5], 5.0 * corner, &field).ln() - 3.0).abs() < 1e-12);
+    // Beyond the places that were seen the light is that at their edge.
+    let seen = [0.1, 0.2, -0.3, 0.05, 0.1, -0.5, 0.5, -1.0, 1.0];
+    let edge = 0.1 * 0.5 + 0.2 - 0.3 * 0.25 + 0.05 * 0.5 + 0.1;
+    assert!((uneven.light(&seen, corner, &field).ln() - edge).abs() < 1e-12);
 }
 
 #[test]

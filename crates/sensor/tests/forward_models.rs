@@ -79,12 +79,17 @@ fn changed_stages(effect: &dyn Effect, p: &[f64], probe: &Probe) -> BTreeSet<Sta
         ),
         (
             Stage::Motion,
-            effect.delay_s(p, probe.row) == 0.0 && effect.exposure_s(p) == 0.0 && effect.clock_s(p) == 0.0,
+            effect.delay_s(p, probe.row) == 0.0
+                && effect.exposure_s(p) == 0.0
+                && effect.clock_s(p) == 0.0
+                && effect.picture_delay_s(p, probe.time_s) == 0.0
+                && effect.sway(p, probe.pose, probe.time_s) == probe.pose,
         ),
         (Stage::Mount, same_pose(effect.mount(p, probe.pose), probe.pose)),
         (
             Stage::Lens,
             effect.lens(p, probe.camera.clone()) == Ok(probe.camera.clone())
+                && effect.shift_px(p, &probe.camera, probe.point.extend(2.0)) == DVec2::ZERO
                 && effect.magnification(p) == [1.0; 3]
                 && effect.falloff(p, probe.radius) == 1.0
                 && effect.blur_variance_px2(p, probe.radius) == 0.0,
@@ -95,7 +100,12 @@ fn changed_stages(effect: &dyn Effect, p: &[f64], probe: &Probe) -> BTreeSet<Sta
             effect.respond(p, probe.linear) == probe.linear && effect.noise(p, probe.noise) == probe.noise,
         ),
         (Stage::Encoding, effect.tone(p, probe.tone) == Ok(probe.tone)),
-        (Stage::Odometry, effect.odometry(p, probe.motion, 0.2) == probe.motion),
+        (
+            Stage::Odometry,
+            effect.odometry(p, probe.motion, 0.2) == probe.motion
+                && effect.odometry_delay_s(p) == 0.0
+                && effect.attitude_delay_s(p) == 0.0,
+        ),
     ];
     hooks.into_iter().filter(|(_, same)| !same).map(|(stage, _)| stage).collect()
 }
@@ -131,7 +141,7 @@ fn any_fractions() -> impl Strategy<Value = Vec<f64>> {
 /// Returns the values at these fractions of the plausible ranges. Parameters that the recording gives are its times.
 fn values(effect: &dyn Effect, fraction: impl Fn(usize) -> f64) -> Vec<f64> {
     let value = |(index, parameter): (usize, &Parameter)| match (parameter.role, parameter.range) {
-        (Role::Fixed, _) => RECORDING_S[index],
+        (Role::Fixed, _) => RECORDING_S[index % 2],
         (_, [low, high]) => low + fraction(index) * (high - low),
     };
     effect.parameters().iter().enumerate().map(value).collect()
@@ -157,8 +167,11 @@ fn outputs(effect: &dyn Effect, p: &[f64], probe: &Probe) -> Vec<f64> {
     let field = effect.field(p, common::field());
     let pose = effect.mount(p, probe.pose);
     let camera = effect.lens(p, probe.camera.clone()).unwrap();
-    let pixels = [[0.0, 0.0], [0.3, 0.1], [-0.2, 0.25], [-0.1, -0.3]]
-        .map(|[x, y]| camera.project_unbounded(DVec3::new(x, y, 1.0)).unwrap() / f64::from(camera.width));
+    let pixels = [[0.0, 0.0], [0.3, 0.1], [-0.2, 0.25], [-0.1, -0.3]].map(|[x, y]| {
+        let point = DVec3::new(x, y, 1.0);
+        let pixel = camera.project_unbounded(point).unwrap() + effect.shift_px(p, &camera, point);
+        pixel / f64::from(camera.width)
+    });
     let noise = effect.noise(p, probe.noise);
     let odometry = effect.odometry(p, probe.motion, 0.2);
     let mut all = vec![
@@ -171,6 +184,11 @@ fn outputs(effect: &dyn Effect, p: &[f64], probe: &Probe) -> Vec<f64> {
         effect.delay_s(p, probe.row),
         effect.exposure_s(p),
         effect.clock_s(p),
+        effect.picture_delay_s(p, probe.time_s),
+        effect.sway(p, probe.pose, probe.time_s).pitch_rad,
+        effect.sway(p, probe.pose, probe.time_s).height_m,
+        effect.odometry_delay_s(p),
+        effect.attitude_delay_s(p),
         effect.falloff(p, probe.radius),
         effect.blur_variance_px2(p, probe.radius),
         effect.respond(p, probe.linear),
@@ -303,7 +321,7 @@ fn central_pixels(camera: &Camera) -> impl Iterator<Item = DVec2> {
 /// Returns values at which an effect is drawn: neutral ones, all at one end of their ranges, and each alone at one end.
 fn drawn_values(effect: &dyn Effect) -> Vec<Vec<f64>> {
     let value = |(index, parameter): (usize, &Parameter)| match parameter.role {
-        Role::Fixed => RECORDING_S[index],
+        Role::Fixed => RECORDING_S[index % 2],
         _ => parameter.neutral,
     };
     let neutral: Vec<f64> = effect.parameters().iter().enumerate().map(value).collect();

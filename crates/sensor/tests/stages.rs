@@ -299,7 +299,7 @@ fn pixel_values_are_those_that_the_chain_computes() {
     let plain = Renderer::new(&setup, &field, common::colors()).draw(pose).unwrap();
     let effects: [(&str, &[f64]); 7] = [
         ("vignetting", &[0.6, 0.2]),
-        ("uneven_illumination", &[0.4, -0.3, -0.5, 0.2, 0.1, 0.2]),
+        ("uneven_illumination", &[0.4, -0.3, -0.5, 0.2, 0.1]),
         ("white_balance", &[-0.3, -0.4]),
         ("exposure_drift", &[-1.0, 1.0, -0.1, -0.2, -0.3, -0.4, -0.5, -0.6, -0.7, -0.8, -0.9]),
         ("black_level", &[0.08]),

@@ -155,3 +155,73 @@ fn poses_that_define_no_trajectory_are_refused() {
         assert!(!error.to_string().contains('\n') && error.to_string().contains(": "));
     }
 }
+
+/// Returns the pose of a camera that walks, nods and sways.
+fn gait(time_s: f64) -> CameraPose {
+    let phase = 2.0 * std::f64::consts::PI * 0.83 * time_s;
+    let planar = [0.27 * time_s, 0.006 * phase.sin(), 0.5 * (0.7 * time_s).sin()];
+    common::pose(
+        planar,
+        [0.5 + 0.006 * (2.0 * phase).cos(), 0.4 + 0.02 * (2.0 * phase).sin(), 0.026 * phase.sin()],
+    )
+}
+
+/// Returns poses at a rate with uniform noise of this standard deviation, metres and radians.
+fn captured(rate_hz: f64, noise: f64) -> Vec<(f64, CameraPose)> {
+    let mut state = 7_u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        noise * 12_f64.sqrt() * ((state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5)
+    };
+    let noisy = |time_s: f64, next: &mut dyn FnMut() -> f64| {
+        let p = gait(time_s);
+        common::pose(
+            [p.x_m + next(), p.y_m + next(), p.yaw_rad + next()],
+            [p.height_m + next(), p.pitch_rad + next(), p.roll_rad + next()],
+        )
+    };
+    (0..(12.0 * rate_hz) as usize).map(|i| i as f64 / rate_hz).map(|t| (t, noisy(t, &mut next))).collect()
+}
+
+/// Returns the root mean square errors of position (m) and velocity (m/s), and of pitch (rad) and its rate (rad/s).
+fn errors(trajectory: &Trajectory) -> [f64; 4] {
+    let times: Vec<f64> = (100..1100).map(|i| 0.01 * f64::from(i) + 0.003).collect();
+    let step_s = 1e-5;
+    let of = |time_s: &f64| {
+        let (found, truth) = (trajectory.at(*time_s), gait(*time_s));
+        let slope = |at: &dyn Fn(f64) -> f64| (at(time_s + step_s) - at(time_s - step_s)) / (2.0 * step_s);
+        [
+            found.position_in_world().distance(truth.position_in_world()),
+            slope(&|t| trajectory.at(t).x_m) - slope(&|t| gait(t).x_m),
+            found.pitch_rad - truth.pitch_rad,
+            slope(&|t| trajectory.at(t).pitch_rad) - slope(&|t| gait(t).pitch_rad),
+        ]
+    };
+    let squares =
+        times.iter().map(of).fold([0.0; 4], |sum: [f64; 4], e| std::array::from_fn(|i| sum[i] + e[i] * e[i]));
+    squares.map(|square| (square / times.len() as f64).sqrt())
+}
+
+#[test]
+fn noise_of_motion_capture_is_smoothed_and_gives_no_absurd_velocities() {
+    for (rate_hz, noise) in [(100.0, 0.001), (100.0, 0.003), (100.0, 0.005), (300.0, 0.003)] {
+        let poses = captured(rate_hz, noise);
+        let [raw_m, raw_m_per_s, ..] = errors(&Trajectory::new(&poses).unwrap());
+        let [m, m_per_s, rad, rad_per_s] = errors(&Trajectory::near(&poses).unwrap());
+        assert!(m < 0.6 * raw_m && rad < 0.7 * noise, "{rate_hz} {noise}: {m} {rad}");
+        assert!(m_per_s < 0.1 * raw_m_per_s, "{rate_hz} {noise}: {m_per_s} after {raw_m_per_s}");
+        assert!(
+            m_per_s < 20.0 * noise && rad_per_s < 20.0 * noise,
+            "{rate_hz} {noise}: {m_per_s} {rad_per_s}"
+        );
+    }
+}
+
+#[test]
+fn exact_poses_are_kept_and_sparse_ones_are_not_smoothed() {
+    let [m, _, rad, rad_per_s] = errors(&Trajectory::near(&captured(100.0, 0.0)).unwrap());
+    assert!(m < 1e-5 && rad < 1e-5 && rad_per_s < 1e-3, "{m} {rad} {rad_per_s}");
+    let sparse = captured(5.0, 0.003);
+    let trajectory = Trajectory::near(&sparse).unwrap();
+    assert!(sparse.iter().all(|(time_s, pose)| difference(trajectory.at(*time_s), *pose) < 1e-9));
+}

@@ -1,14 +1,17 @@
-//! Wording of the effects, sizes, names and limits over the whole library, compared with `words.txt`.
+//! Wording of the effects, sizes, names and limits over the whole library, compared with `words.txt`. `PINNED=write cargo test
+//! --test words` writes that file anew; review the difference before it is committed.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
 use std::{
     collections::BTreeSet,
+    env,
     fmt::Write,
     fs,
     path::{Path, PathBuf},
 };
 
+use reality_sim_core::pose::CameraPose;
 use reality_sim_sensor::{
     Changes, Effect, Estimates, Need, Parameter, Role, Stage, effect, library,
     text::{Uncertain, Unit},
@@ -89,6 +92,10 @@ fn the_wording_of_every_effect_is_the_recorded_one() {
     ranked.sort_by_key(|effect| effect.about().rank);
     let nouns = ranked.iter().map(|effect| format!("{}: {}\n", effect.id(), effect.about().noun));
     let now: String = nouns.chain(library().iter().map(|effect| said(*effect))).collect();
+    if env::var_os("PINNED").is_some_and(|value| value == "write") {
+        fs::write(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/words.txt"), &now).unwrap();
+        return;
+    }
     for (line, (now, then)) in now.lines().zip(include_str!("words.txt").lines()).enumerate() {
         assert_eq!(now, then, "line {}", line + 1);
     }
@@ -97,17 +104,23 @@ fn the_wording_of_every_effect_is_the_recorded_one() {
 
 #[test]
 fn what_an_effect_needs_and_changes_agrees_with_its_stage_and_its_numbers() {
+    let still = CameraPose { x_m: 0.0, y_m: 0.0, yaw_rad: 0.0, height_m: 0.5, pitch_rad: 0.4, roll_rad: 0.0 };
     let mut ranks = BTreeSet::new();
     for effect in library() {
         let (id, about) = (effect.id(), effect.about());
         assert!(ranks.insert(about.rank), "{id}");
-        assert_eq!(about.changes == Changes::Odometry, about.stage == Stage::Odometry, "{id}");
-        assert_eq!(about.needs.contains(&Need::Odometry), about.stage == Stage::Odometry, "{id}");
+        let is_belief = matches!(about.changes, Changes::Odometry | Changes::Attitude);
+        assert_eq!(is_belief, about.stage == Stage::Odometry, "{id}");
+        assert_eq!(about.needs.contains(&Need::Odometry), about.changes == Changes::Odometry, "{id}");
         assert_eq!(about.changes == Changes::Noise, about.needs.contains(&Need::NominalNoise), "{id}");
         let moves_clock = effect.clock_s(&[0.01]) != 0.0;
         assert_eq!(about.changes == Changes::PicturesAndOdometry, moves_clock, "{id}");
         let p = [0.0, 10.0, 0.1, 0.2];
-        assert_eq!(about.varies_over_time, effect.gain(&p, 0.0) != effect.gain(&p, 5.0), "{id}");
+        let changes = effect.gain(&p, 0.0) != effect.gain(&p, 5.0)
+            || effect.picture_delay_s(&[0.1, 3.0], 0.0) != effect.picture_delay_s(&[0.1, 3.0], 5.0)
+            || effect.sway(&[0.1, 0.1, 0.0, 0.0, 1.3], still, 0.0)
+                != effect.sway(&[0.1, 0.1, 0.0, 0.0, 1.3], still, 5.0);
+        assert_eq!(about.varies_over_time, changes, "{id}");
         for parameter in about.parameters.iter().filter(|parameter| parameter.role == Role::Size) {
             let units: &[Unit] = match parameter.unit {
                 "rad" => &[Unit::Degrees],
@@ -168,8 +181,8 @@ fn a_drift_is_stated_from_the_darkest_moment_to_the_brightest() {
 
 #[test]
 fn uneven_light_has_a_brightest_and_a_darkest_place() {
-    let names = ["x", "y", "xx", "xy", "yy", "xxx", "xxy", "xyy", "yyy"];
-    let factors = [0.3, 0.0, 0.0, 0.0, -0.2, 0.0, 0.0, 0.0, 0.0];
+    let names = ["x", "y", "xx", "xy", "yy"];
+    let factors = [0.3, 0.0, 0.0, 0.0, -0.2];
     let values: Vec<_> = names.into_iter().zip(factors).map(|(name, value)| (name, value, 0.01)).collect();
     let text =
         "the light is brightest at the end at +x and darkest in the corner at −x and −y, by a factor of 2.2";

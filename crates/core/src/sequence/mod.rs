@@ -43,6 +43,7 @@ pub use self::{
 };
 use self::{
     frames::parse_frames,
+    groundtruth::between_frames,
     picture::{copy_picture, load_picture, read_picture},
     sequence_file::{SEQUENCE_FILE, parse_sequence},
     text::read_and_parse,
@@ -67,6 +68,8 @@ pub struct Sequence {
     pub field: FieldDimensions,
     /// Frames in order of time, at least one.
     pub frames: Vec<FrameRecord>,
+    /// Reference poses at other times than the frames', in order of time: motion capture is faster than cameras.
+    pub poses_between_frames: Vec<StampedPose>,
     /// Pose of the first frame in the world, if known.
     pub start: Option<Pose2>,
     /// Text of the model by which camera, field, poses and odometry have been corrected, if one has been used.
@@ -92,13 +95,17 @@ impl Sequence {
         let (setup, mounting) = (read_camera(&camera)?, read_mounting(&camera)?);
         let field = read_field(&folder.join(&table.field))?;
         let mut frames = read_and_parse(&folder.join(&table.frames), parse_frames)?;
+        let mut poses_between_frames = Vec::new();
         if let Some(name) = &table.groundtruth {
             let path = folder.join(name);
-            let poses = match_poses(&path, read_tum(&path)?, &frames)?;
-            frames.iter_mut().zip(poses).for_each(|(frame, pose)| frame.reference_pose = pose);
+            let poses = read_tum(&path)?;
+            let matched = match_poses(&path, poses.clone(), &frames)?;
+            frames.iter_mut().zip(matched).for_each(|(frame, pose)| frame.reference_pose = pose);
+            poses_between_frames = between_frames(poses, &frames);
         }
         if !mounting.is_as_stated() {
             frames.iter_mut().for_each(|frame| mounting.correct(frame));
+            poses_between_frames.iter_mut().for_each(|stamped| mounting.correct_pose(stamped));
         }
         Ok(Self {
             folder: folder.to_path_buf(),
@@ -107,6 +114,7 @@ impl Sequence {
             setup,
             field,
             frames,
+            poses_between_frames,
             start: table.start.map(Pose2::from),
             corrected_by: None,
         })

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::{DMat3, DQuat, DVec2, DVec3, EulerRot};
 use serde::{Deserialize, Serialize};
 
-use super::{FrameRecord, error::SequenceError, toml_text::NumberCheck};
+use super::{FrameRecord, error::SequenceError, toml_text::NumberCheck, tum::StampedPose};
 use crate::{
     mount::MountPose,
     pose::{CameraPose, Pose2},
@@ -124,6 +124,11 @@ impl Mounting {
         };
         let found_or_none = if found.is_nearly_as_stated() { Self::default() } else { found };
         [at(1.0, 0.3, 0.2), at(-2.0, 0.1, -0.4)].into_iter().all(is_alike).then_some(found_or_none)
+    }
+
+    /// Corrects a reference pose between frames.
+    pub(super) fn correct_pose(self, stamped: &mut StampedPose) {
+        stamped.pose = self.pose(stamped.pose);
     }
 
     /// Corrects what a recording states of a frame.

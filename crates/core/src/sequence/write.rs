@@ -76,6 +76,10 @@ impl Sequence {
         let stamped = |frame: &FrameRecord| {
             Some(StampedPose { timestamp_s: frame.timestamp_s, pose: frame.reference_pose? })
         };
-        self.frames.iter().filter_map(stamped).collect()
+        let of_frames = self.frames.iter().filter_map(stamped);
+        let mut poses: Vec<StampedPose> =
+            of_frames.chain(self.poses_between_frames.iter().copied()).collect();
+        poses.sort_by(|a, b| a.timestamp_s.total_cmp(&b.timestamp_s));
+        poses
     }
 }

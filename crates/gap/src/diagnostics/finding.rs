@@ -2,13 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::measurement::quantity::{Channel, ColorChannel};
+use crate::{
+    diagnostics::input_mistake::InputMistake,
+    measurement::quantity::{Channel, ColorChannel},
+};
 
 /// Significant deviation that no effect of the library explains.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Finding {
+    /// File of the recording that seems to be meant in another way than it is read.
+    InputMistake {
+        /// The mistake.
+        mistake: InputMistake,
+    },
     /// Residuals with the same mean in every part of the recording.
     Pattern {
         /// Channel of the residuals.
@@ -159,8 +167,6 @@ pub enum NominalValue {
     LineLevel(ColorChannel),
     /// Level of carpet in one colour.
     CarpetLevel(ColorChannel),
-    /// Level of carpet seen at a grazing angle.
-    Sheen,
     /// Variance of the blur.
     Blur,
     /// Difference of the blur's variance between broad and thin lines.
@@ -177,7 +183,7 @@ impl Finding {
         match self {
             Self::Pattern { channel, .. } | Self::Scatter { channel, .. } => *channel,
             Self::Flicker { .. } | Self::Obstruction { .. } => Channel::Photometry,
-            Self::MissingLine { .. } => Channel::Geometry,
+            Self::MissingLine { .. } | Self::InputMistake { .. } => Channel::Geometry,
             Self::Odometry { .. } => Channel::Motion,
             Self::NominalValue { value, .. } => value.channel(),
         }
@@ -193,6 +199,7 @@ impl Finding {
             Self::Obstruction { share, .. } => *share,
             Self::MissingLine { found_share, usual_share, .. } => 1.0 - found_share / usual_share,
             Self::NominalValue { off_by, .. } => *off_by,
+            Self::InputMistake { .. } => 1.0,
         }
     }
 
@@ -200,7 +207,10 @@ impl Finding {
     pub fn unit(&self) -> &'static str {
         match self {
             Self::Pattern { channel, .. } | Self::Scatter { channel, .. } => channel.unit(),
-            Self::Flicker { .. } | Self::Obstruction { .. } | Self::MissingLine { .. } => "1",
+            Self::Flicker { .. }
+            | Self::Obstruction { .. }
+            | Self::MissingLine { .. }
+            | Self::InputMistake { .. } => "1",
             Self::Odometry { component, .. } => component.unit(),
             Self::NominalValue { value, .. } => value.unit(),
         }
@@ -230,7 +240,7 @@ impl NominalValue {
     /// Returns the channel whose residuals depend on the value.
     pub fn channel(self) -> Channel {
         match self {
-            Self::LineLevel(_) | Self::CarpetLevel(_) | Self::Sheen => Channel::Photometry,
+            Self::LineLevel(_) | Self::CarpetLevel(_) => Channel::Photometry,
             Self::Blur | Self::BlurByWidth | Self::BlurShape => Channel::Sharpness,
             Self::NoiseVariance => Channel::Noise,
         }

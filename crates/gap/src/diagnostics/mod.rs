@@ -4,6 +4,7 @@ mod carpet;
 pub(crate) mod detector;
 pub(crate) mod finding;
 mod flicker;
+pub(crate) mod input_mistake;
 mod missing_lines;
 mod nominal_consistency;
 pub(crate) mod object;

@@ -11,8 +11,10 @@ use crate::{
     inference::model_error::ModelError,
     linear_model::nuisance::Nuisance,
     measurement::quantity::{Channel, Quantity},
+    thresholds::{NuisanceThresholds, Thresholds},
 };
 
+const NUISANCES: NuisanceThresholds = Thresholds::DEFAULT.linear_model.nuisance;
 /// Channels whose nominal values are in the camera file.
 const CHANNELS: [Channel; 3] = [Channel::Photometry, Channel::Sharpness, Channel::Noise];
 
@@ -76,21 +78,33 @@ impl Nominal {
         if self.value.channel() == Channel::Sharpness { difference.abs() } else { difference.exp_m1().abs() }
     }
 
-    /// Returns the nominal value that a nuisance parameter belongs to. None for a patch of carpet, which is in no file.
+    /// Returns the nominal value that a nuisance parameter belongs to. None for what is in no file.
     fn of(nuisance: &Nuisance) -> Option<Self> {
         let is_offset = matches!(nuisance, Nuisance::Offset { .. } | Nuisance::Width { .. });
         let (value, sigma) = match *nuisance {
-            Nuisance::Offset { quantity, sigma } => (offset_of(quantity)?, sigma),
-            Nuisance::Sheen { sigma, .. } => (NominalValue::Sheen, sigma),
+            Nuisance::Offset { quantity, sigma } => (offset_of(quantity, sigma)?, sigma),
             Nuisance::Width { sigma } => (NominalValue::BlurByWidth, sigma),
             Nuisance::Kernel { sigma } | Nuisance::ThinKernel { sigma } => (NominalValue::BlurShape, sigma),
-            Nuisance::Patch { .. } => return None,
+            Nuisance::Gain { .. }
+            | Nuisance::ThinLine { .. }
+            | Nuisance::Sheen { .. }
+            | Nuisance::Pile { .. }
+            | Nuisance::NoiseExponent { .. }
+            | Nuisance::OdometryClock { .. }
+            | Nuisance::AttitudeClock { .. }
+            | Nuisance::Texture { .. } => return None,
         };
         Some(Self { value, sigma, is_offset })
     }
 }
 
-fn offset_of(quantity: Quantity) -> Option<NominalValue> {
+/// Returns the nominal value of a quantity. None where none is given, so that it is free.
+fn offset_of(quantity: Quantity, sigma: f64) -> Option<NominalValue> {
+    if quantity.is_level() && sigma >= NUISANCES.free_level
+        || quantity == Quantity::LineBlur && sigma >= NUISANCES.free_blur_px2
+    {
+        return None;
+    }
     match quantity {
         Quantity::LineLevel(color) => Some(NominalValue::LineLevel(color)),
         Quantity::CarpetLevel(color) => Some(NominalValue::CarpetLevel(color)),
@@ -103,12 +117,21 @@ fn offset_of(quantity: Quantity) -> Option<NominalValue> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{linear_model::nuisance::nuisances, measurement::quantity::ColorChannel};
+    use crate::{
+        linear_model::{
+            mean_reflectance::{MeanReflectance, SurfaceReflectance},
+            nuisance::nuisances,
+            texture::CarpetTexture,
+        },
+        measurement::quantity::ColorChannel,
+    };
 
     /// Returns the findings if the picked nominal values are `value` standard deviations off and the others half a standard
     /// deviation.
     fn findings(value: f64, model_error: &ModelError, picked: impl Fn(&Nominal) -> bool) -> Vec<Finding> {
-        let nuisances = nuisances(&[]);
+        let given = SurfaceReflectance { linear_rgb: [0.5; 3], sigma: 0.05, color_sigma: 0.02 };
+        let mean = MeanReflectance { line: given, carpet: given };
+        let nuisances = nuisances(&mean, &CarpetTexture::default(), Some(0.5));
         let off = |nuisance| if Nominal::of(nuisance).is_some_and(|n| picked(&n)) { value } else { 0.5 };
         inconsistent(&nuisances, &nuisances.iter().map(off).collect::<Vec<_>>(), model_error)
     }
@@ -123,7 +146,7 @@ mod tests {
             panic!()
         };
         assert_eq!(value, red);
-        assert!((off_by - 0.35_f64.exp_m1()).abs() < 1e-9 && p_value < SIGNIFICANCE);
+        assert!((off_by - (5.0_f64 * 0.02).exp_m1()).abs() < 1e-9 && p_value < SIGNIFICANCE);
     }
 
     #[test]

@@ -138,7 +138,7 @@ fn log_likelihood(
     let squares = rows.filter_map(|(measurement, residual)| {
         let sigma = system.sigmas.get(&measurement.quantity)?;
         let counts = channels.contains(&measurement.quantity.channel()) && residual.is_finite();
-        let independent = if measurement.quantity.is_odometry() { 1.0 } else { INDEPENDENT };
+        let independent = if measurement.quantity.is_proprioceptive() { 1.0 } else { INDEPENDENT };
         let variance = sigma * sigma + measurement.sigma * measurement.sigma;
         counts.then(|| independent * (residual * residual / variance).min(most))
     });

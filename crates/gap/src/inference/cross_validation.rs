@@ -38,14 +38,14 @@ pub(crate) struct CrossValidation {
 impl CrossValidation {
     /// Divides the frames of a system into folds.
     pub(crate) fn new(evidence: &Evidence<'_>) -> Self {
-        let (system, parameters) = (evidence.system, evidence.base.len());
+        let system = evidence.system;
         let count = system.frames.len();
         let folds = FOLDS.min(count).max(1);
         let fold = |is_left_out: &dyn Fn(usize) -> bool| -> Fold {
             let (left_out, others): (Vec<usize>, Vec<usize>) =
                 (0..count).partition(|frame| is_left_out(*frame));
             let others = others.iter().map(|&frame| &system.frames[frame]);
-            Fold { left_out, others: ReducedEquations::new(others, system.size, parameters) }
+            Fold { left_out, others: ReducedEquations::new(others, &system.columns) }
         };
         let stretches =
             (0..folds).map(|index| fold(&|frame| stretch(frame, count, folds) == index)).collect();
@@ -78,10 +78,10 @@ impl CrossValidation {
         for fold in folds {
             let delta = fold.others.fit_beside(free, &offset_from_prior, &-base)?.delta;
             for &frame in &fold.left_out {
-                gains[frame] = system.frames[frame].gain(&delta);
+                gains[frame] = system.frames[frame].gain(&delta, &system.columns);
             }
         }
-        Some(HeldOutGains::new(gains, &evidence.fit(free)?.delta, base.len()))
+        Some(HeldOutGains::new(gains, &evidence.fit(free)?.delta, &system.columns))
     }
 }
 

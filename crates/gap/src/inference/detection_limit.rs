@@ -8,7 +8,7 @@ use crate::{
     inference::power::{PowerAnalysis, SimulatedEffect},
     linear_model::column::ColumnIndex,
     linear_model::parameters::FittedParameter,
-    recording::{LEAST_VIEWS, Recording},
+    recording::{LEAST_VIEWS, Recording, ReferenceSource},
     thresholds::{InferenceThresholds, Thresholds},
 };
 
@@ -63,6 +63,8 @@ pub enum UnobservableCause {
 pub enum MissingInput {
     /// Odometry of the frames.
     Odometry,
+    /// Reference poses that something other than the pictures measured.
+    MeasuredPoses,
     /// Nominal reflectance of lines and carpet.
     Reflectance,
     /// Nominal noise of the sensor.
@@ -162,6 +164,7 @@ fn missing_input(recording: &Recording<'_>, effect: &dyn Effect) -> Option<Missi
     let missing = effect.about().needs.iter().find(|need| !provides(recording, **need))?;
     Some(match missing {
         Need::Odometry => MissingInput::Odometry,
+        Need::MeasuredPoses => MissingInput::MeasuredPoses,
         Need::NominalReflectance => MissingInput::Reflectance,
         Need::NominalNoise => MissingInput::Noise,
         Need::NominalSharpness => MissingInput::Sharpness,
@@ -173,7 +176,10 @@ fn provides(recording: &Recording<'_>, need: Need) -> bool {
     let photometry = recording.sequence.setup.photometry;
     match need {
         Need::Odometry => recording.sequence.frames.iter().any(|frame| frame.odometry.is_some()),
-        Need::NominalReflectance => recording.reflectance.is_some(),
+        Need::MeasuredPoses => recording.source == ReferenceSource::Measured,
+        Need::NominalReflectance => {
+            photometry.is_some_and(|p| p.line_linear_rgb.is_some() || p.carpet_linear_rgb.is_some())
+        }
         Need::NominalNoise => photometry.is_some_and(|p| p.noise_shot.is_some() || p.noise_read.is_some()),
         Need::NominalSharpness => photometry.is_some_and(|p| p.psf_sigma_px.is_some()),
     }

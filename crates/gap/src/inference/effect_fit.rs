@@ -8,6 +8,9 @@ use crate::{
     linear_model::parameters::FittedParameter, linear_model::reduced_equations::Fit,
 };
 
+/// Distance from an end of its range, as a part of the range, at which a value counts as lying there: rounding.
+const END_OF_RANGE: f64 = 1e-6;
+
 /// Fits of effects by their parameters' columns.
 #[derive(Debug)]
 pub(crate) struct EffectFits<'a> {
@@ -52,6 +55,17 @@ impl EffectFits<'_> {
                 _ => return Some(fit),
             }
         }
+    }
+
+    /// Whether a size of an effect of the present model lies at an end of its range: then it was not measured.
+    pub(crate) fn is_at_end_of_range(&self, effect: EffectIndex) -> bool {
+        self.sizes_of(effect).into_iter().any(|column| {
+            let parameter = self.columns[column.0].parameter();
+            let value = self.columns[column.0].value(self.evidence.base[column.0]);
+            let margin = END_OF_RANGE * (parameter.range[1] - parameter.range[0]);
+            let at = |end: f64| end != parameter.neutral && (value - end).abs() < margin;
+            at(parameter.range[0]) || at(parameter.range[1])
+        })
     }
 
     /// Returns how far a fitted column lies beyond its range; 0 inside.

@@ -9,6 +9,7 @@ use crate::{
     inference::gain::{Gain, HeldOutGains},
     inference::hypothesis_test::two_sided,
     linear_model::column::ColumnIndex,
+    linear_model::fixed_values::tries,
     linear_model::reduced_equations::Fit,
     thresholds::{InferenceThresholds, Thresholds},
 };
@@ -74,11 +75,18 @@ impl<'a> EffectTests<'a> {
             // An effect that is fixed to the field is predicted as well by the reflectance of carpet patches, which are
             // fixed too.
             let keeps_place = effect.effect().covariates().contains(&Covariate::FieldPosition);
-            let predicted = (!keeps_place).then(|| self.predicted_p_value(held_out.score_over(&others)));
-            best_of([together, self.single_size_p_value(&without, &sizes), predicted])
+            let predicted = (!keeps_place).then(|| {
+                let by_priors = self.fits.evidence.p_value_by_priors(&fit, &sizes);
+                self.predicted_p_value(held_out.score_over(&others)).max(by_priors)
+            });
+            let best = best_of([together, self.single_size_p_value(&without, &sizes), predicted]);
+            let is_confirmed = !is_light(effect) || self.is_seen_on_both_surfaces(&without, &sizes);
+            if is_confirmed { best } else { 1.0 }
         } else {
             1.0
         };
+        // The fixed parameters are the best of several values.
+        let p_value = (p_value * tries(effect.effect()) as f64).min(1.0);
         Some(EffectTest {
             effect,
             p_value: (p_value * tested as f64).min(1.0),
@@ -91,6 +99,14 @@ impl<'a> EffectTests<'a> {
     /// Tests each of these effects beside others.
     pub(crate) fn tests_of(&self, effects: &[EffectIndex], beside: &[EffectIndex]) -> Vec<EffectTest> {
         effects.par_iter().filter_map(|&effect| self.test(effect, beside, effects.len())).collect()
+    }
+
+    /// Whether lines and carpet, each without the other, show the sizes of an effect of light. Its shape is neutral: there are
+    /// few lines.
+    fn is_seen_on_both_surfaces(&self, beside: &[EffectIndex], sizes: &[ColumnIndex]) -> bool {
+        let mut free = self.fits.columns_of(beside);
+        free.extend(sizes);
+        self.fits.evidence.p_value_of_both_surfaces(&free, sizes) < THRESHOLDS.surface_significance
     }
 
     /// P-value of a gain on held-out frames that is `score` standard deviations above zero. Predictions are more informative
@@ -177,6 +193,12 @@ impl<'a> EffectTests<'a> {
 fn best_of(tests: [Option<f64>; 3]) -> f64 {
     let made = tests.iter().flatten();
     made.clone().count() as f64 * made.fold(1.0, |least: f64, p_value| least.min(*p_value))
+}
+
+/// Whether an effect changes the light on the field, which lines and carpet reflect alike.
+pub(crate) fn is_light(effect: EffectIndex) -> bool {
+    let covariates = effect.effect().covariates();
+    covariates.contains(&Covariate::FieldPosition) && covariates.contains(&Covariate::Intensity)
 }
 
 /// Whether one of these effects varies over time.

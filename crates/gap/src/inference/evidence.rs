@@ -1,6 +1,7 @@
 //! Fits of sets of columns to a linear system, with their covariances and tests.
 
 use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::{
     inference::cluster_covariance,
@@ -8,8 +9,7 @@ use crate::{
         bartlett_degrees, bartlett_interval_factor, hotelling_p_value, independent_interval_factor,
     },
     linear_model::column::ColumnIndex,
-    linear_model::normal_equations::NormalEquations,
-    linear_model::reduced_equations::{Fit, MOST_PRIOR_SHARE, ReducedEquations},
+    linear_model::reduced_equations::{Fit, MOST_PRIOR_SHARE, ProjectedEquations, ReducedEquations},
     linear_model::{normal_equations::PRIOR, system::LinearSystem},
     thresholds::Thresholds,
 };
@@ -22,14 +22,31 @@ pub(crate) struct Evidence<'a> {
     pub(crate) base: DVector<f64>,
     /// Equations of all training frames.
     total: ReducedEquations,
+    /// Evidence of the levels of one surface alone, beside everything else.
+    of_one_surface: Vec<Self>,
+    /// Equations by view and by cell of the field.
+    views: Vec<ProjectedEquations>,
+    cells: Vec<ProjectedEquations>,
+}
+
+/// Equations of the fitted parameters alone in the parts of a recording, with all else projected out.
+pub(crate) struct ReducedRecording {
+    pub(crate) frames: Vec<ProjectedEquations>,
+    pub(crate) cells: Vec<ProjectedEquations>,
+    /// Equations that the priors of nuisance parameters and reflectance add to the sum of all frames. Their information is also
+    /// the scatter of the scores that these priors make.
+    pub(crate) priors: ProjectedEquations,
 }
 
 impl<'a> Evidence<'a> {
     /// Creates the evidence of a system. `base` is the present model in the coordinates of the fitted parameters' columns;
     /// the columns of the nuisance parameters follow behind them.
     pub(crate) fn new(system: &'a LinearSystem, base: DVector<f64>) -> Self {
-        let total = ReducedEquations::new(system.frames.iter(), system.size, base.len());
-        Self { system, base, total }
+        let total = ReducedEquations::new(system.frames.iter(), &system.columns);
+        let alone = |system: &'a LinearSystem| Self::new(system, base.clone());
+        let of_one_surface = system.of_one_surface.iter().map(alone).collect();
+        let (views, cells) = (total.projected(&system.views), total.projected(&system.cells));
+        Self { system, base, total, of_one_surface, views, cells }
     }
 
     /// Number of different views.
@@ -43,28 +60,18 @@ impl<'a> Evidence<'a> {
         bartlett_degrees(self.views())
     }
 
-    /// Returns the equations of the fitted parameters alone, with the nuisance parameters eliminated.
-    pub(crate) fn reduced_system(&self) -> LinearSystem {
-        let reduce = |parts: &[NormalEquations]| parts.iter().map(|part| self.total.reduce(part)).collect();
-        LinearSystem {
-            size: self.base.len(),
-            frames: reduce(&self.system.frames),
-            views: reduce(&self.system.views),
-            cells: reduce(&self.system.cells),
-            sigmas: self.system.sigmas.clone(),
-            pose_sigmas: self.system.pose_sigmas,
-            weights: Vec::new(),
+    /// Returns the evidence without the levels of lines and that without those of carpet.
+    pub(crate) fn of_one_surface(&self) -> &[Self] {
+        &self.of_one_surface
+    }
+
+    /// Returns the equations of the fitted parameters alone, part by part.
+    pub(crate) fn reduced(&self) -> ReducedRecording {
+        ReducedRecording {
+            frames: self.total.projected(&self.system.frames),
+            cells: self.cells.clone(),
+            priors: self.total.nuisance_priors(),
         }
-    }
-
-    /// Returns what the nuisance parameters' priors tell of the fitted parameters.
-    pub(crate) fn nuisance_priors(&self) -> NormalEquations {
-        self.total.nuisance_priors()
-    }
-
-    /// Returns the scatter of the scores of these columns that the nuisance parameters' priors make.
-    pub(crate) fn nuisance_scatter(&self, columns: &[ColumnIndex]) -> DMatrix<f64> {
-        self.total.nuisance_scatter(columns)
     }
 
     /// Fits the free columns by least squares with their priors; the other columns are neutral. None if the fit is singular.
@@ -86,16 +93,15 @@ impl<'a> Evidence<'a> {
     /// Returns two cluster-robust covariances of the free columns: one from the scatter of scores between views, one from
     /// their scatter between cells of the field.
     pub(crate) fn covariances(&self, fit: &Fit) -> [DMatrix<f64>; 2] {
-        let scores = |sums: &'a [NormalEquations]| -> Vec<DVector<f64>> {
-            let score = |sums: &NormalEquations| self.total.projected(&sums.score(&fit.delta), &fit.free);
-            sums.iter().map(score).collect()
+        let scores = |clusters: &[ProjectedEquations]| -> Vec<DVector<f64>> {
+            clusters.iter().map(|cluster| cluster.score(fit)).collect()
         };
         let nuisances = self.total.nuisance_scatter(&fit.free);
         let sandwich = |scatter: DMatrix<f64>| &fit.inverse * (scatter + &nuisances) * &fit.inverse;
         let size = fit.free.len();
         [
-            sandwich(cluster_covariance::of_neighbours(&scores(&self.system.views), size)),
-            sandwich(cluster_covariance::of_independent(&scores(&self.system.cells), size)),
+            sandwich(cluster_covariance::of_neighbours(&scores(&self.views), size)),
+            sandwich(cluster_covariance::of_independent(&scores(&self.cells), size)),
         ]
     }
 
@@ -120,6 +126,25 @@ impl<'a> Evidence<'a> {
         };
         let with_counts = covariances.iter().zip(counts).filter(|(covariance, _)| seen(covariance));
         with_counts.map(|(covariance, count)| self.p_of(fit, tested, covariance, count)).fold(0.0, f64::max)
+    }
+
+    /// P-value of Wald's test by the fit's own covariance, which holds the priors of nuisance parameters and reflectance: they
+    /// are the same in all frames, so that no scatter between frames shows them.
+    pub(crate) fn p_value_by_priors(&self, fit: &Fit, tested: &[ColumnIndex]) -> f64 {
+        let places: Vec<usize> = tested.iter().filter_map(|&column| fit.position(column)).collect();
+        let number = places.len();
+        let part = DMatrix::from_fn(number, number, |i, j| fit.inverse[(places[i], places[j])]);
+        let value = DVector::from_fn(number, |i, _| self.base[tested[i].0] + fit.delta[tested[i].0]);
+        let Some(solved) = part.cholesky().map(|factor| factor.solve(&value)) else { return 1.0 };
+        ChiSquared::new(number.max(1) as f64).map_or(1.0, |distribution| distribution.sf(value.dot(&solved)))
+    }
+
+    /// Largest p-value of Wald's test by the levels of lines and by those of carpet, each without the other's. Light acts on
+    /// both alike; the reflectance of paint and that of carpet have nothing to do with each other (intersection-union test:
+    /// Berger 1982).
+    pub(crate) fn p_value_of_both_surfaces(&self, free: &[ColumnIndex], tested: &[ColumnIndex]) -> f64 {
+        let p_value = |alone: &Self| alone.fit(free).map_or(1.0, |fit| alone.p_value(&fit, tested));
+        self.of_one_surface.iter().map(p_value).fold(0.0, f64::max)
     }
 
     /// P-value of the tested columns by one covariance, which was estimated from `count` clusters.

@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use crate::{
     inference::cluster_covariance::{self, LAG},
-    linear_model::normal_equations::PRIOR,
+    linear_model::column::Columns,
 };
 
 /// Gain in log-likelihood on frames that the fit has not seen.
@@ -23,18 +23,16 @@ pub(crate) struct Gain {
 pub(crate) struct HeldOutGains {
     /// Gain in log-likelihood of each frame, by a fit to the other parts of the recording.
     frames: Vec<f64>,
-    /// Half the sum of squares of the fitted nuisance parameters, in their prior standard deviations: minus the logarithm of
-    /// their prior density. A set that needs nominal values far from their priors is less plausible, which no frame's gain
+    /// Minus the logarithm of the prior density of the fitted nuisance parameters and reflectance. A set that needs nominal values far from their priors is less plausible, which no frame's gain
     /// shows.
     nuisance_penalty: f64,
 }
 
 impl HeldOutGains {
     /// Creates the gains of a set. `frames` are the gains frame by frame; `fitted` is the change of all columns in a fit to
-    /// all frames, with `parameters` fitted parameters first and the nuisance parameters behind them.
-    pub(crate) fn new(frames: Vec<f64>, fitted: &DVector<f64>, parameters: usize) -> Self {
-        let squares = fitted.iter().skip(parameters).map(|value| value * value).sum::<f64>();
-        Self { frames, nuisance_penalty: 0.5 * PRIOR * squares }
+    /// all frames.
+    pub(crate) fn new(frames: Vec<f64>, fitted: &DVector<f64>, columns: &Columns) -> Self {
+        Self { frames, nuisance_penalty: columns.nuisance_energy(fitted.as_slice()) }
     }
 
     /// Returns the gain of this set over another one.

@@ -37,14 +37,14 @@ impl HeldOutResiduals {
         model: &Model,
     ) -> Result<Self, MeasureError> {
         let linearized = &found.linearized;
-        let frames = linearise(recording, &linearized.measurements, model, &[], &linearized.nuisances)?;
+        let frames = linearise(recording, &linearized.measurements, model, &[], linearized.others())?;
         Ok(Self { residuals: frames.iter().map(|frame| at_reference(frame, linearized)).collect() })
     }
 }
 
 /// Returns a frame's residuals at its reference pose and nominal values.
 fn at_reference(frame: &LinearizedFrame, linearized: &LinearizedRecording) -> Vec<f64> {
-    let nowhere = DVector::zeros(linearized.system.size);
+    let nowhere = DVector::zeros(linearized.system.columns.len());
     refitted(frame, &linearized.system, &nowhere, &[1e-12; 6]).residuals
 }
 
@@ -57,9 +57,11 @@ pub(crate) fn refitted(
     pose_sigmas: &[f64; 6],
 ) -> FittedResiduals {
     let fit = |residuals: &[f64]| {
-        FittedResiduals::new(frame, &weigh(frame, residuals, &system.sigmas), delta, pose_sigmas)
+        let weights = weigh(frame, residuals, &system.sigmas);
+        FittedResiduals::new(frame, &weights, delta, &system.columns, pose_sigmas)
     };
-    let unposed = FittedResiduals::new(frame, &vec![0.0; frame.residuals.len()], delta, pose_sigmas);
+    let unweighted = vec![0.0; frame.residuals.len()];
+    let unposed = FittedResiduals::new(frame, &unweighted, delta, &system.columns, pose_sigmas);
     fit(&fit(&unposed.residuals).residuals)
 }
 
@@ -122,7 +124,7 @@ impl Comparison {
         let mut next: Option<FrameIndex> = None;
         for frame in split.held_out() {
             // Neighbours are measurements in one picture; for the odometry they are successive steps.
-            last.retain(|quantity, _| quantity.is_odometry() && Some(frame) == next);
+            last.retain(|quantity, _| quantity.is_proprioceptive() && Some(frame) == next);
             next = Some(frame.next());
             let rows = Rows::new(frames.map(|frames| &frames[frame]), linearized);
             rows.add_to(&mut channels, &mut last);
@@ -173,7 +175,7 @@ struct Rows<'a> {
 impl<'a> Rows<'a> {
     fn new(frames: [&'a LinearizedFrame; 2], linearized: &'a LinearizedRecording) -> Self {
         let system = &linearized.system;
-        let nowhere = DVector::zeros(system.size);
+        let nowhere = DVector::zeros(system.columns.len());
         let [before, after] = frames.map(|frame| refitted(frame, system, &nowhere, &system.pose_sigmas));
         Self {
             frames,
@@ -272,6 +274,7 @@ mod tests {
         let frame = LinearizedFrame {
             pose_gradients: vec![Vector6::zeros(); rows.len()],
             jacobian: vec![Vec::<(ColumnIndex, f64)>::new(); rows.len()],
+            patches: vec![None; rows.len()],
             residuals: residuals.to_vec(),
             measurements: rows,
         };

@@ -1,6 +1,6 @@
 //! Recording measured and linearised at a model, with the normal equations of the training frames.
 
-use reality_sim_sensor::Model;
+use reality_sim_sensor::{Chain, Model};
 
 use crate::{
     frame_index::{PerFrame, ViewIndex},
@@ -8,10 +8,18 @@ use crate::{
     inference::effect_test::EffectTests,
     inference::evidence::Evidence,
     inference::split::HeldOutSplit,
-    linear_model::linearization::{MeasureError, linearise, measure_frames},
+    linear_model::column::Columns,
+    linear_model::linearization::{MeasureError, Others, linearise, measure_frames, measured_patches},
+    linear_model::mean_reflectance::MeanReflectance,
     linear_model::nuisance::{Nuisance, nuisances},
     linear_model::parameters::FittedParameter,
-    linear_model::{linearized_frame::LinearizedFrame, system::LinearSystem},
+    linear_model::reflectance::ReflectanceField,
+    linear_model::texture::CarpetTexture,
+    linear_model::{
+        linearized_frame::LinearizedFrame,
+        reference_drift::ReferenceDrift,
+        system::{LinearSystem, Weighting},
+    },
     measurement::frame::FrameMeasurements,
     measurement::quantity::Channel,
     recording::Recording,
@@ -42,18 +50,69 @@ impl LinearizedRecording {
         search: f64,
     ) -> Result<Self, MeasureError> {
         let measurements = measure_frames(recording, &model, search_px(recording, search))?;
-        let nuisances = nuisances(measurements.as_slice());
-        let mut frames = linearise(recording, &measurements, &model, columns, &nuisances)?;
+        Self::of_measurements(recording, model, measurements, columns, split)
+    }
+
+    /// Linearises the recording again, with the same measurements.
+    pub(crate) fn again(
+        self,
+        recording: &Recording<'_>,
+        columns: &[FittedParameter],
+        split: &HeldOutSplit,
+    ) -> Result<Self, MeasureError> {
+        Self::of_measurements(recording, self.model, self.measurements, columns, split)
+    }
+
+    fn of_measurements(
+        recording: &Recording<'_>,
+        model: Model,
+        measurements: PerFrame<FrameMeasurements>,
+        columns: &[FittedParameter],
+        split: &HeldOutSplit,
+    ) -> Result<Self, MeasureError> {
+        let setup = &recording.sequence.setup;
+        let chain = Chain::new(setup, &recording.sequence.field, &model)?;
+        let mut nuisances = nuisances(
+            &MeanReflectance::new(recording, &measurements, &chain),
+            &CarpetTexture::new(&measurements, &chain, recording.gamma()),
+            setup.photometry.and_then(|photometry| photometry.psf_sigma_px),
+        );
+        let sigma_s = chain.clock_s().abs();
+        let clocks = [Nuisance::OdometryClock { sigma_s }, Nuisance::AttitudeClock { sigma_s }];
+        nuisances.extend(clocks.into_iter().filter(|_| sigma_s > 0.0));
+        let patches = measured_patches(&measurements);
+        let others = Others { nuisances: &nuisances, patches: &patches };
+        let mut frames = linearise(recording, &measurements, &model, columns, others)?;
         // An odometry step that ends at a held-out frame is not fitted.
         for frame in split.training().filter(|frame| split.is_held_out(frame.next())) {
             frames[frame].leave_out(Channel::Motion);
         }
-        let training: Vec<&LinearizedFrame> = split.training().map(|frame| &frames[frame]).collect();
         let views = recording.views();
         let views: Vec<ViewIndex> = split.training().map(|frame| views[frame]).collect();
-        let size = columns.len() + nuisances.len();
-        let system = LinearSystem::new(&training, size, recording.reference(), &views);
+        let all = Columns {
+            parameters: columns.len(),
+            nuisances: nuisances.len(),
+            field: ReflectanceField::new(patches),
+        };
+        let times_s: Vec<f64> = split.training().map(|frame| recording.frames[frame].time_s).collect();
+        let reference = recording.reference();
+        let (weighting, fits) = Weighting::estimate(&training(&frames, split), &all, reference);
+        let drift = ReferenceDrift::new(reference, &times_s, &fits, weighting.pose_sigmas);
+        for (index, frame) in recording.frames.indexed() {
+            let yaw_rad = recording.trajectory.at(frame.time_s).yaw_rad;
+            drift.add_to(&mut frames[index], frame.time_s, yaw_rad, all.dense());
+        }
+        let all = Columns { nuisances: all.nuisances + drift.len(), ..all };
+        let training = training(&frames, split);
+        let (weighting, _) = weighting.refine(&training, &all, reference);
+        let mut system = LinearSystem::new(&training, all, weighting, &views);
+        system.pose_sigmas = drift.together_with(system.pose_sigmas);
         Ok(Self { model, measurements, nuisances, frames, system })
+    }
+
+    /// Returns the parameters beside those of effects.
+    pub(crate) fn others(&self) -> Others<'_> {
+        Others { nuisances: &self.nuisances, patches: &self.system.columns.field.tree }
     }
 
     /// Returns the fits of effects at the present model.
@@ -70,4 +129,9 @@ impl LinearizedRecording {
 /// Returns a part of the picture's width, pixels.
 pub(super) fn search_px(recording: &Recording<'_>, part: f64) -> f64 {
     part * f64::from(recording.sequence.setup.camera.width)
+}
+
+/// Returns the frames that are fitted.
+fn training<'a>(frames: &'a PerFrame<LinearizedFrame>, split: &HeldOutSplit) -> Vec<&'a LinearizedFrame> {
+    split.training().map(|frame| &frames[frame]).collect()
 }

@@ -34,13 +34,13 @@ pub(crate) fn minus_log_likelihood(
 ) -> f64 {
     // The effects keep their values; only the nuisance parameters are fitted.
     let own = &linearized.system;
-    let equations = ReducedEquations::new(own.frames.iter(), own.size, columns.len());
+    let equations = ReducedEquations::new(own.frames.iter(), &own.columns);
     let Some(fit) = equations.fit(&[], &DVector::zeros(columns.len())) else { return f64::INFINITY };
-    let nuisance_penalty = 0.5 * fit.delta.norm_squared();
+    let nuisance_penalty = own.columns.nuisance_energy(fit.delta.as_slice());
     let mut means: BTreeMap<Quantity, (f64, f64)> = BTreeMap::new();
     for (frame, weights) in split.training().zip(&own.weights) {
         let frame = &linearized.frames[frame];
-        let fitted = FittedResiduals::new(frame, weights, &fit.delta, &system.pose_sigmas);
+        let fitted = FittedResiduals::new(frame, weights, &fit.delta, &own.columns, &system.pose_sigmas);
         let residuals = frame.measurements.iter().zip(&fitted.residuals);
         for (measurement, residual) in residuals.filter(|(_, residual)| residual.is_finite()) {
             if let Some(sigma) = system.sigmas.get(&measurement.quantity) {
@@ -54,7 +54,7 @@ pub(crate) fn minus_log_likelihood(
     // Models differ in the number of lines that they find. Hence each quantity counts by its mean, times the number of
     // independent measurements.
     let counted = means.iter().map(|(quantity, (sum, count))| {
-        let independent = if quantity.is_odometry() {
+        let independent = if quantity.is_proprioceptive() {
             THRESHOLDS.odometry_rows
         } else {
             INDEPENDENT * THRESHOLDS.picture_rows

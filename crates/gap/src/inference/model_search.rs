@@ -56,6 +56,12 @@ impl ModelSearch<'_> {
         let is_supported = |tests: &EffectTests<'_>, effect: EffectIndex, beside: &[EffectIndex]| {
             tests.test(effect, beside, tested).as_ref().is_some_and(EffectTest::is_supported)
         };
+        // A value at the end of its range is no measurement, however much it explains.
+        if let Some(&effect) = named.iter().find(|effect| tests.fits.is_at_end_of_range(**effect)) {
+            let others: Vec<EffectIndex> = named.iter().copied().filter(|other| *other != effect).collect();
+            let converged = self.converge(linearized.clone(), &self.all(&others))?;
+            return Ok(Some((others, converged)));
+        }
         for &unsupported in named.iter().filter(|effect| !is_supported(tests, **effect, &all)) {
             let others: Vec<EffectIndex> =
                 named.iter().copied().filter(|effect| *effect != unsupported).collect();

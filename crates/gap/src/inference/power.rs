@@ -4,8 +4,6 @@
 //! with random signs, which neighbouring views share (wild bootstrap, Wu 1986; for dependent data Shao 2010), together with what
 //! the nuisance parameters' priors allow. The nuisance parameters are eliminated beforehand, so that a simulation is small.
 
-use std::collections::BTreeMap;
-
 use nalgebra::{DMatrix, DVector};
 use reality_sim_sensor::EffectIndex;
 
@@ -14,12 +12,12 @@ use crate::{
     inference::{
         cluster_covariance::LAG,
         effect_fit::EffectFits,
-        effect_test::{EffectTest, EffectTests},
-        evidence::Evidence,
+        effect_test::{EffectTest, EffectTests, is_light},
+        evidence::{Evidence, ReducedRecording},
     },
     linear_model::{
         column::ColumnIndex, normal_equations::NormalEquations, parameters::FittedParameter,
-        system::LinearSystem,
+        reduced_equations::ProjectedEquations, system::LinearSystem,
     },
     thresholds::Thresholds,
 };
@@ -32,16 +30,22 @@ pub(crate) struct PowerAnalysis<'a> {
     pub(crate) fits: &'a EffectFits<'a>,
     /// View of each frame.
     views: Vec<ViewIndex>,
-    /// Equations without nuisance parameters.
-    reduced: LinearSystem,
-    /// Equations of the nuisance parameters' priors.
-    priors: NormalEquations,
+    /// Equations without nuisance parameters, of all measurements.
+    whole: ReducedRecording,
+    /// The same without the levels of lines and without those of carpet.
+    of_one_surface: Vec<ReducedRecording>,
 }
 
 impl<'a> PowerAnalysis<'a> {
     /// Prepares the simulation of recordings like that of `fits`; `views` are those of its training frames.
     pub(crate) fn new(fits: &'a EffectFits<'a>, views: Vec<ViewIndex>) -> Self {
-        Self { fits, views, reduced: fits.evidence.reduced_system(), priors: fits.evidence.nuisance_priors() }
+        let of_one_surface = fits.evidence.of_one_surface();
+        Self {
+            fits,
+            views,
+            whole: fits.evidence.reduced(),
+            of_one_surface: of_one_surface.iter().map(Evidence::reduced).collect(),
+        }
     }
 
     /// Prepares the simulation of an effect beside those of the model. None if the fit is singular.
@@ -49,48 +53,19 @@ impl<'a> PowerAnalysis<'a> {
         let others: Vec<EffectIndex> = model.iter().copied().filter(|other| *other != effect).collect();
         let with: Vec<EffectIndex> = others.iter().copied().chain([effect]).collect();
         let chosen = self.fits.columns_of(&with);
-        let reduced = &self.reduced;
-        // What the nuisance parameters' priors tell is divided among the parts, as if each had told a share of it.
-        let part = |parts: &[NormalEquations]| -> Vec<NormalEquations> {
-            let share = self.priors.scaled(1.0 / parts.len().max(1) as f64);
-            parts
-                .iter()
-                .map(|part| NormalEquations::sum([part, &share].into_iter()).of_columns(&chosen))
-                .collect()
-        };
-        let system = LinearSystem {
-            size: chosen.len(),
-            frames: part(&reduced.frames),
-            views: part(&reduced.views),
-            cells: part(&reduced.cells),
-            sigmas: BTreeMap::new(),
-            pose_sigmas: reduced.pose_sigmas,
-            weights: Vec::new(),
-        };
-        let base = DVector::from_iterator(
-            chosen.len(),
-            chosen.iter().map(|column| self.fits.evidence.base[column.0]),
-        );
-        let all: Vec<ColumnIndex> = ColumnIndex::first(chosen.len()).collect();
-        let delta = Evidence::new(&system, base.clone()).fit(&all)?.delta;
-        let scores = |parts: &[NormalEquations]| -> Vec<DVector<f64>> {
-            parts.iter().map(|part| part.score(&delta)).collect()
-        };
-        let nuisances = self.fits.evidence.nuisance_scatter(&chosen);
-        let size = chosen.len();
-        // A sum of squares is positive semidefinite: a little on the diagonal makes it definite.
-        let ridge = 1e-12 * nuisances.trace().max(f64::MIN_POSITIVE);
-        let root = (nuisances + DMatrix::identity(size, size) * ridge).cholesky()?.unpack();
+        let base = chosen.iter().map(|column| self.fits.evidence.base[column.0]);
+        let base = DVector::from_iterator(chosen.len(), base);
+        // Only light is tested by one surface at a time.
+        let of_one_surface = if is_light(effect) { self.of_one_surface.as_slice() } else { &[] };
+        let simulate = |recording| Simulation::new(recording, &chosen, &base, &self.views);
         Some(SimulatedEffect {
             columns: chosen.iter().map(|column| self.fits.columns[column.0]).collect(),
-            errors: [scores(&system.frames), scores(&system.cells)],
-            views: &self.views,
+            whole: simulate(&self.whole)?,
+            of_one_surface: of_one_surface.iter().map(simulate).collect::<Option<_>>()?,
             tested: self.fits.effects().len(),
             effect,
             others,
-            system,
             base,
-            root,
         })
     }
 }
@@ -104,12 +79,8 @@ pub(crate) struct SimulatedEffect<'a> {
     tested: usize,
     columns: Vec<FittedParameter>,
     base: DVector<f64>,
-    system: LinearSystem,
-    /// Residual scores of frames and of cells.
-    errors: [Vec<DVector<f64>>; 2],
-    views: &'a [ViewIndex],
-    /// Root of the scatter of scores by the nuisance parameters' priors.
-    root: DMatrix<f64>,
+    whole: Simulation<'a>,
+    of_one_surface: Vec<Simulation<'a>>,
 }
 
 impl SimulatedEffect<'_> {
@@ -122,62 +93,88 @@ impl SimulatedEffect<'_> {
             self.columns.iter().map(|column| if is_simulated(column) { coordinate } else { 0.0 }),
         );
         let most_missed = ((1.0 - share) * DRAWS as f64).round() as usize;
-        let missed = (0..DRAWS).filter(|&draw| !self.is_found(&self.drawn(&delta, draw)));
+        let missed = (0..DRAWS).filter(|&draw| !self.is_found(&delta, draw));
         missed.take(most_missed + 1).count() <= most_missed
     }
 
     /// Whether the effect is supported by a simulated recording.
-    fn is_found(&self, system: &LinearSystem) -> bool {
-        let evidence = Evidence::new(system, self.base.clone());
+    fn is_found(&self, delta: &DVector<f64>, draw: u64) -> bool {
+        let of_one_surface = self.of_one_surface.iter().map(|surface| surface.drawn(delta, draw, Vec::new()));
+        let system = self.whole.drawn(delta, draw, of_one_surface.collect());
+        let evidence = Evidence::new(&system, self.base.clone());
         let tests = EffectTests::new(EffectFits { evidence, columns: &self.columns });
         let test = tests.test(self.effect, &self.others, self.tested);
         test.as_ref().is_some_and(EffectTest::is_supported)
     }
+}
 
-    /// Simulates a recording in which the columns are changed by `delta`.
-    fn drawn(&self, delta: &DVector<f64>, draw: u64) -> LinearSystem {
+/// Equations of some columns alone, with the errors of their scores.
+struct Simulation<'a> {
+    frames: Vec<ProjectedEquations>,
+    cells: Vec<ProjectedEquations>,
+    /// Residual scores of frames and of cells.
+    errors: [Vec<DVector<f64>>; 2],
+    views: &'a [ViewIndex],
+    /// Root of the scatter of scores by the nuisance parameters' priors.
+    root: DMatrix<f64>,
+}
+
+impl<'a> Simulation<'a> {
+    /// Prepares the simulation of these columns. None if the fit is singular.
+    fn new(
+        recording: &ReducedRecording,
+        chosen: &[ColumnIndex],
+        base: &DVector<f64>,
+        views: &'a [ViewIndex],
+    ) -> Option<Self> {
+        // What the nuisance parameters' priors tell is divided among the parts, as if each had told a share of it.
+        let priors = &recording.priors;
+        let part = |parts: &[ProjectedEquations]| -> Vec<ProjectedEquations> {
+            let share = 1.0 / parts.len().max(1) as f64;
+            parts.iter().map(|part| part.with_share_of(priors, share, chosen)).collect()
+        };
+        let (frames, cells) = (part(&recording.frames), part(&recording.cells));
+        let size = chosen.len();
+        let equations = frames.iter().map(|frame| NormalEquations::of_all(frame.a.clone(), frame.g.clone()));
+        let system = LinearSystem::of_equations(size, equations.collect(), Vec::new(), views);
+        let fit = Evidence::new(&system, base.clone()).fit(&ColumnIndex::first(size).collect::<Vec<_>>())?;
+        let scores = |parts: &[ProjectedEquations]| parts.iter().map(|part| part.score(&fit)).collect();
+        let scatter = priors.with_share_of(priors, 0.0, chosen).a;
+        // A sum of squares is positive semidefinite: a little on the diagonal makes it definite.
+        let ridge = 1e-12 * scatter.trace().max(f64::MIN_POSITIVE);
+        let root = (scatter + DMatrix::identity(size, size) * ridge).cholesky()?.unpack();
+        Some(Self { errors: [scores(&frames), scores(&cells)], frames, cells, views, root })
+    }
+
+    /// Simulates a recording in which the columns are changed by `delta`, with these systems of one surface.
+    fn drawn(&self, delta: &DVector<f64>, draw: u64, of_one_surface: Vec<LinearSystem>) -> LinearSystem {
         let mut signs = Signs(draw);
-        let size = self.columns.len();
+        let size = delta.len();
         // The priors' scatter is divided among the parts, each with a share of its own.
         let shared = |signs: &mut Signs, parts: usize| {
             let unit = DVector::from_fn(size, |_, _| signs.next());
             &self.root * unit / (parts.max(1) as f64).sqrt()
         };
+        let changed = |equations: &ProjectedEquations, error: DVector<f64>| {
+            NormalEquations::of_all(equations.a.clone(), &equations.a * delta + error)
+        };
         let [of_frames, of_cells] = &self.errors;
         let (mut block, mut sign) = (None, 1.0);
         let mut frames = Vec::with_capacity(of_frames.len());
-        for ((equations, error), view) in self.system.frames.iter().zip(of_frames).zip(self.views) {
+        for ((equations, error), view) in self.frames.iter().zip(of_frames).zip(self.views) {
             if block.replace(view.0 / (LAG + 1)) != Some(view.0 / (LAG + 1)) {
                 sign = signs.next();
             }
-            let error = error * sign + shared(&mut signs, of_frames.len());
-            frames.push(equations.with_score(delta, &error));
+            frames.push(changed(equations, error * sign + shared(&mut signs, of_frames.len())));
         }
-        let views = self.views.chunk_by(|one, next| one == next);
-        let mut rest = frames.as_slice();
-        let views = views.map(|view| {
-            let (own, others) = rest.split_at(view.len());
-            rest = others;
-            NormalEquations::sum(own.iter())
-        });
-        let views = views.collect();
-        let of_cell = |(equations, error): (&NormalEquations, &DVector<f64>)| {
+        let of_cell = |(equations, error): (&ProjectedEquations, &DVector<f64>)| {
             let sign = signs.next();
-            equations.with_score(delta, &(error * sign + shared(&mut signs, of_cells.len())))
+            changed(equations, error * sign + shared(&mut signs, of_cells.len()))
         };
-        let cells = self.system.cells.iter().zip(of_cells).map(of_cell).collect();
-        LinearSystem {
-            size,
-            frames,
-            views,
-            cells,
-            sigmas: BTreeMap::new(),
-            pose_sigmas: self.system.pose_sigmas,
-            weights: Vec::new(),
-        }
+        let cells = self.cells.iter().zip(of_cells).map(of_cell).collect();
+        LinearSystem { of_one_surface, ..LinearSystem::of_equations(size, frames, cells, self.views) }
     }
 }
-
 /// Random signs of one draw: the bits of SplitMix64 (Steele, Lea and Flood 2014).
 struct Signs(u64);
 

@@ -53,7 +53,7 @@ impl Linearize for FittedRecording<'_> {
             measurements = both.collect();
         }
         let linearise_at =
-            |model: &Model| linearise(self.recording, &measurements, model, &[], &with.nuisances);
+            |model: &Model| linearise(self.recording, &measurements, model, &[], with.others());
         let [before, after] = [linearise_at(model)?, linearise_at(&with.model)?];
         let lost = |frame| measurements[frame].lost_lines() as f64;
         Ok(Comparison::new([&before, &after], lost, with, self.split))

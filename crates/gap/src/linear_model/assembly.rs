@@ -7,8 +7,11 @@ use rayon::prelude::*;
 use crate::{
     frame_index::ViewIndex,
     linear_model::{
-        column::ColumnIndex, linearized_frame::LinearizedFrame, normal_equations::NormalEquations,
+        column::ColumnIndex,
+        linearized_frame::LinearizedFrame,
+        normal_equations::{NormalEquations, WeightedRow},
         pose_projection::PoseProjection,
+        reflectance::PatchIndex,
     },
     measurement::quantity::Quantity,
     thresholds::Thresholds,
@@ -60,7 +63,7 @@ pub(super) fn by_cell(
 fn rows_by_cell(frame: &LinearizedFrame) -> BTreeMap<[i32; 2], Vec<usize>> {
     let mut rows: BTreeMap<[i32; 2], Vec<usize>> = BTreeMap::new();
     for (row, measurement) in frame.measurements.iter().enumerate() {
-        if !measurement.quantity.is_odometry() {
+        if !measurement.quantity.is_proprioceptive() {
             let cell = (measurement.ground / CELL_M).floor();
             rows.entry([cell.x as i32, cell.y as i32]).or_default().push(row);
         }
@@ -94,27 +97,39 @@ impl Part<'_> {
         let by_pose = self.projection.columns.iter().copied().filter(|_| has_offsets);
         direct.chain(by_pose).collect()
     }
+
+    /// Returns the patches of the field that these measurements depend on.
+    fn patches(&self) -> BTreeSet<PatchIndex> {
+        self.weighted().filter_map(|row| Some(self.frame.patches[row]?.0)).collect()
+    }
 }
 
 /// Returns `J̃ᵀ W J` and `J̃ᵀ W r` of parts of frames.
 fn assemble(parts: &[Part<'_>]) -> NormalEquations {
     let columns: BTreeSet<ColumnIndex> = parts.iter().flat_map(Part::columns).collect();
-    let mut equations = NormalEquations::zero(columns.into_iter().collect());
+    let patches: BTreeSet<PatchIndex> = parts.iter().flat_map(Part::patches).collect();
+    let mut equations = NormalEquations::zero(columns.into_iter().collect(), patches.into_iter().collect());
     for part in parts {
         for row in part.weighted() {
-            let (weight, residual) = (part.weights[row], part.frame.residuals[row]);
             let derivatives: Vec<(usize, f64)> = part.frame.jacobian[row]
                 .iter()
                 .map(|(column, derivative)| (equations.position(*column), *derivative))
                 .collect();
+            let weighted = WeightedRow {
+                weight: part.weights[row],
+                residual: part.frame.residuals[row],
+                derivatives: &derivatives,
+                patch: part.frame.patches[row],
+            };
             for &(position, derivative) in &derivatives {
-                equations.add(position, derivative, &derivatives, weight, residual);
+                equations.add(position, derivative, &weighted);
             }
+            equations.add_to_patch(&weighted);
             if part.is_line_offset(row) {
                 let PoseProjection { columns, pose_changes } = part.projection;
                 for (&column, pose_change) in columns.iter().zip(pose_changes) {
                     let projected = -pose_change.dot(&part.frame.pose_gradients[row]);
-                    equations.add(equations.position(column), projected, &derivatives, weight, residual);
+                    equations.add(equations.position(column), projected, &weighted);
                 }
             }
         }

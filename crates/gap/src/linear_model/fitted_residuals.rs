@@ -3,7 +3,9 @@
 use nalgebra::{DVector, Matrix6, Vector6};
 
 use crate::linear_model::{
-    column::ColumnIndex, linearized_frame::LinearizedFrame, pose_projection::prior_precision,
+    column::{ColumnIndex, Columns},
+    linearized_frame::LinearizedFrame,
+    pose_projection::prior_precision,
 };
 
 /// Residuals of a frame after a change of the columns, with the pose refitted.
@@ -21,6 +23,7 @@ impl FittedResiduals {
         frame: &LinearizedFrame,
         weights: &[f64],
         delta: &DVector<f64>,
+        columns: &Columns,
         pose_sigmas: &[f64; 6],
     ) -> Self {
         let change = |derivatives: &Vec<(ColumnIndex, f64)>| {
@@ -29,8 +32,12 @@ impl FittedResiduals {
         let mut residuals: Vec<f64> = frame
             .residuals
             .iter()
-            .zip(&frame.jacobian)
-            .map(|(residual, derivatives)| residual - change(derivatives))
+            .zip(frame.jacobian.iter().zip(&frame.patches))
+            .map(|(residual, (derivatives, patch))| {
+                let reflectance =
+                    patch.map_or(0.0, |(patch, derivative)| derivative * delta[columns.of_patch(patch).0]);
+                residual - change(derivatives) - reflectance
+            })
             .collect();
         let (mut normal, mut gradient) = (prior_precision(pose_sigmas), Vector6::zeros());
         for ((pose_gradient, &weight), residual) in frame.pose_gradients.iter().zip(weights).zip(&residuals) {

@@ -3,29 +3,39 @@
 use nalgebra::Vector6;
 use rayon::prelude::*;
 use reality_sim_core::{pose::Motion2, sequence::SequenceError};
-use reality_sim_sensor::{Chain, Changes, Model, ModelError};
+use reality_sim_sensor::{Chain, Changes, Covariate, Model, ModelError};
 
 use crate::{
     frame_index::{FrameIndex, PerFrame},
     linear_model::{
         column::ColumnIndex,
         linearized_frame::LinearizedFrame,
+        mean_reflectance::MeanReflectance,
         nuisance::Nuisance,
         odometry_steps::instrumental_motions,
         parameters::FittedParameter,
         perturbed_model::PerturbedModel,
         pose_gradient::pose_gradient,
-        prediction::{Nominal, Predictor},
+        prediction::{Nominal, Predictor, changes},
+        reflectance::{PatchIndex, Tree},
         rounding::Rounding,
     },
     measurement::{
         camera::FrameCamera,
         frame::{FrameMeasurements, MeasurementConfig, measure_frame},
-        quantity::Quantity,
+        quantity::{ColorChannel, Quantity},
         scalar::{Measurement, component},
     },
     recording::{Frame, Recording},
+    thresholds::Thresholds,
 };
+
+/// Step of the logarithm of the brightness for its forward differences.
+const BRIGHTNESS_STEP: f64 = 0.01;
+/// Step of the robot's own clock for its forward differences, seconds.
+const CLOCK_STEP_S: f64 = 0.005;
+/// Longest time between a picture and its reference pose at which the pose is that of the picture's step, seconds.
+const LONGEST_CLOCK_S: f64 = Thresholds::DEFAULT.linear_model.same_step_s;
 
 /// Reason why a recording cannot be measured.
 #[derive(Debug, thiserror::Error)]
@@ -97,30 +107,55 @@ fn frame_camera<'a>(chain: &'a Chain, recording: &'a Recording<'_>, frame: &Fram
     FrameCamera::new(chain, &recording.trajectory, frame.time_s)
 }
 
+/// Parameters beside those of effects that a linearisation has columns of.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Others<'a> {
+    /// Nuisance parameters, in the order of their columns.
+    pub(crate) nuisances: &'a [Nuisance],
+    /// Patches of the field whose reflectance is free.
+    pub(crate) patches: &'a Tree,
+}
+
+/// Returns the patches of the field in which levels were measured.
+pub(crate) fn measured_patches(measurements: &PerFrame<FrameMeasurements>) -> Tree {
+    let of_frame = |frame: &FrameMeasurements| {
+        let lines = frame.lines.iter().filter(|line| line.profile.level.is_some());
+        let lines = lines.map(|line| (Quantity::LineLevel as fn(ColorChannel) -> Quantity, line.ground));
+        let carpet = Quantity::CarpetLevel as fn(ColorChannel) -> Quantity;
+        let blocks = frame.blocks.iter().map(|block| (carpet, block.ground));
+        let places: Vec<_> = lines.chain(blocks).collect();
+        places
+            .into_iter()
+            .flat_map(|(level, ground)| ColorChannel::ALL.map(|color| (level(color), ground)))
+            .collect::<Vec<_>>()
+    };
+    Tree::new(measurements.iter().flat_map(of_frame))
+}
+
 /// Returns the residuals of every frame with their Jacobian. The columns of the fitted parameters come first, by forward
-/// differences, followed by those of the nuisance parameters.
+/// differences, followed by those of the nuisance parameters and of the reflectance.
 pub(crate) fn linearise(
     recording: &Recording<'_>,
     measurements: &PerFrame<FrameMeasurements>,
     model: &Model,
     parameters: &[FittedParameter],
-    nuisances: &[Nuisance],
+    others: Others<'_>,
 ) -> Result<PerFrame<LinearizedFrame>, MeasureError> {
     let setup = &recording.sequence.setup;
     let photometry = setup.photometry;
     let perturbed = parameters.iter().map(|parameter| PerturbedModel::new(recording, model, parameter));
+    let chain = Chain::new(setup, &recording.sequence.field, model)?;
     let linearization = Linearization {
         recording,
-        chain: Chain::new(setup, &recording.sequence.field, model)?,
         parameters,
         perturbed: perturbed.collect::<Result<_, _>>()?,
-        nuisances,
+        others,
         nominal: Nominal {
             gamma: recording.gamma(),
-            reflectance: recording.reflectance.as_ref(),
+            reflectance: MeanReflectance::new(recording, measurements, &chain),
             noise: photometry.is_some_and(|p| p.noise_shot.is_some() || p.noise_read.is_some()),
-            sharpness: photometry.is_some_and(|p| p.psf_sigma_px.is_some()),
         },
+        chain,
     };
     let motions = instrumental_motions(recording, &recording.frames.iter().collect::<Vec<_>>());
     let frames = recording.frames.as_slice().par_iter().zip(measurements.as_slice()).zip(&motions);
@@ -136,8 +171,8 @@ struct Linearization<'a> {
     parameters: &'a [FittedParameter],
     /// Models for the forward differences, one for each parameter.
     perturbed: Vec<PerturbedModel>,
-    nuisances: &'a [Nuisance],
-    nominal: Nominal<'a>,
+    others: Others<'a>,
+    nominal: Nominal,
 }
 
 impl Linearization<'_> {
@@ -145,32 +180,42 @@ impl Linearization<'_> {
     fn frame(&self, frame: &Frame, measured: &FrameMeasurements, motion: Option<Motion2>) -> LinearizedFrame {
         let mut measurements = measured.measurements(self.nominal.gamma);
         measurements.extend(frame.step.into_iter().flat_map(|step| Measurement::of_odometry(step.odometry)));
+        measurements.extend(frame.stated_attitude_rad.into_iter().flat_map(Measurement::of_attitude));
         let rounding = Rounding::new(&measured.noise_steps);
-        let predict = |chain: &Chain| {
-            let camera = frame_camera(chain, self.recording, frame);
-            let step_until_s = frame.step.map(|step| step.until_s);
-            let predictor = Predictor {
-                camera,
-                frame: measured,
-                rounding: &rounding,
-                step_until_s,
-                nominal: self.nominal,
-            };
-            predictor.predict(&measurements)
+        let predictor = |chain| Predictor {
+            camera: frame_camera(chain, self.recording, frame),
+            frame: measured,
+            rounding: &rounding,
+            step_until_s: frame.step.map(|step| step.until_s),
+            nominal: self.nominal,
+            own_clock_s: 0.0,
         };
-        let predicted = predict(&self.chain);
+        let predicted = predictor(&self.chain).predict(&measurements);
+        let by_brightness = self.by_brightness(predictor(&self.chain), &measurements, &predicted);
+        let by_clock = by_own_clock(predictor(&self.chain), &measurements, &predicted);
         let mut jacobian = Jacobian::new(measurements.len());
         for (column, (parameter, perturbed)) in (0..).zip(self.parameters.iter().zip(&self.perturbed)) {
-            let derivatives = if parameter.effect().about().changes == Changes::Odometry {
+            // A shift in time depends on other motions than the step's own, whose errors the residual has.
+            let is_shift = perturbed.chain.odometry_delay_s() != self.chain.odometry_delay_s();
+            let derivatives = if self.is_between_poses(parameter) {
+                vec![0.0; measurements.len()]
+            } else if parameter.effect().about().changes == Changes::Odometry && !is_shift {
                 self.odometry_derivatives(perturbed, frame, motion, &measurements)
             } else {
-                differences(parameter, &measurements, &predicted, &predict(&perturbed.chain), perturbed.step)
+                let stage = parameter.effect().about().stage;
+                let values = predictor(&perturbed.chain)
+                    .predict_where(&measurements, |quantity| changes(stage, quantity));
+                differences(parameter, &measurements, &predicted, &values, perturbed.step)
             };
             jacobian.push(ColumnIndex(column), derivatives);
         }
-        for (column, nuisance) in (self.parameters.len()..).zip(self.nuisances) {
-            let pairs = measurements.iter().zip(&predicted);
-            let derivatives = pairs.map(|(measurement, value)| nuisance.derivative(measurement, *value));
+        for (column, nuisance) in (self.parameters.len()..).zip(self.others.nuisances) {
+            let rows = measurements.iter().zip(&predicted).zip(by_brightness.iter().zip(&by_clock));
+            let derivatives = rows.map(|((measurement, value), (by_brightness, by_clock))| {
+                let by_input =
+                    if measurement.quantity.is_proprioceptive() { by_clock } else { by_brightness };
+                nuisance.derivative(measurement, *value, *by_input)
+            });
             jacobian.push(ColumnIndex(column), derivatives.collect());
         }
         let residuals = measurements
@@ -179,7 +224,39 @@ impl Linearization<'_> {
             .map(|(measurement, value)| measurement.measured - value)
             .collect();
         let pose_gradients = self.pose_gradients(frame, &measurements);
-        LinearizedFrame { measurements, residuals, jacobian: jacobian.rows, pose_gradients }
+        let patches = measurements.iter().zip(by_brightness).map(|pair| self.patch(pair.0, pair.1)).collect();
+        LinearizedFrame { measurements, residuals, jacobian: jacobian.rows, patches, pose_gradients }
+    }
+
+    /// Whether an effect follows the steps of a robot whose pictures were taken at other times than its reference poses, which
+    /// are too far apart to show the steps in between.
+    fn is_between_poses(&self, parameter: &FittedParameter) -> bool {
+        let follows_steps = parameter.effect().about().covariates.contains(&Covariate::GaitPhase);
+        follows_steps && self.chain.clock_s().abs() > LONGEST_CLOCK_S && !self.recording.trajectory.is_dense()
+    }
+
+    /// Returns the derivatives of all levels by the logarithm of the light that the surface reflects.
+    fn by_brightness(
+        &self,
+        mut predictor: Predictor<'_>,
+        measurements: &[Measurement],
+        predicted: &[f64],
+    ) -> Vec<f64> {
+        let brighter = |linear: f64| linear * BRIGHTNESS_STEP.exp();
+        let MeanReflectance { line, carpet } = &mut predictor.nominal.reflectance;
+        (line.linear_rgb, carpet.linear_rgb) =
+            (line.linear_rgb.map(brighter), carpet.linear_rgb.map(brighter));
+        let values = predictor.predict_where(measurements, Quantity::is_level);
+        let derivative = |(value, predicted): (f64, &f64)| (value - predicted) / BRIGHTNESS_STEP;
+        values.into_iter().zip(predicted).map(derivative).collect()
+    }
+
+    /// Returns the patch of the field in which a level was measured, with the derivative by the logarithm of its reflectance.
+    fn patch(&self, measurement: &Measurement, by_brightness: f64) -> Option<(PatchIndex, f64)> {
+        let is_known = measurement.quantity.is_level() && by_brightness.is_finite();
+        let patch =
+            is_known.then(|| self.others.patches.smallest_at(measurement.quantity, measurement.ground));
+        Some((patch??, by_brightness))
     }
 
     /// Returns the derivatives of all measurements by a parameter of the odometry, at this motion of the robot.
@@ -211,6 +288,13 @@ impl Linearization<'_> {
         };
         measurements.iter().map(gradient).collect()
     }
+}
+
+/// Returns the derivatives of what odometry, joints and IMU say by the time that their clock is ahead, per second.
+fn by_own_clock(mut predictor: Predictor<'_>, measurements: &[Measurement], predicted: &[f64]) -> Vec<f64> {
+    predictor.own_clock_s = CLOCK_STEP_S;
+    let values = predictor.predict_where(measurements, Quantity::is_proprioceptive);
+    values.into_iter().zip(predicted).map(|(value, predicted)| (value - predicted) / CLOCK_STEP_S).collect()
 }
 
 /// Returns the derivatives of all predictions by a parameter, as forward differences.

@@ -3,7 +3,7 @@
 use nalgebra::Vector6;
 
 use crate::{
-    linear_model::column::ColumnIndex,
+    linear_model::{column::ColumnIndex, reflectance::PatchIndex},
     measurement::{quantity::Channel, scalar::Measurement},
 };
 
@@ -15,6 +15,8 @@ pub(crate) struct LinearizedFrame {
     pub(crate) residuals: Vec<f64>,
     /// Sparse rows of the Jacobian of the predictions: columns with their derivatives, in the order of the columns.
     pub(crate) jacobian: Vec<Vec<(ColumnIndex, f64)>>,
+    /// Smallest patch of the field in which a level was measured, with the derivative by the logarithm of its reflectance.
+    pub(crate) patches: Vec<Option<(PatchIndex, f64)>>,
     /// Gradients of line offsets with respect to the pose, see
     /// [`crate::linear_model::pose_gradient::pose_gradient`]; zero for other measurements.
     pub(crate) pose_gradients: Vec<Vector6<f64>>,

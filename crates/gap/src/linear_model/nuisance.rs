@@ -1,14 +1,12 @@
 //! Nuisance parameters: errors of nominal values, which are free in every fit and have a normal prior.
 
-use std::collections::BTreeSet;
-
-use glam::DVec2;
-
 use crate::{
+    linear_model::mean_reflectance::MeanReflectance,
+    linear_model::texture::{self, CarpetTexture},
     measurement::{
-        frame::FrameMeasurements,
-        quantity::{ColorChannel, Quantity},
-        scalar::Measurement,
+        luma::LUMA,
+        quantity::{ColorChannel, Quantity, Surface},
+        scalar::{Measurement, Subject},
     },
     thresholds::{NuisanceThresholds, Thresholds},
 };
@@ -22,12 +20,50 @@ pub(crate) enum Nuisance {
         /// Standard deviation, in the quantity's unit.
         sigma: f64,
     },
-    /// Specular reflection of the carpet at grazing angles: a linear value `s (1 − cos θ)^power` added to all colours alike,
-    /// where θ is the angle of incidence and `s` the parameter.
+    /// Gain that all levels share, or those of one surface.
+    Gain {
+        surface: Option<Surface>,
+        /// Standard deviation of the logarithm.
+        sigma: f64,
+    },
+    /// Level of thin lines, whose middle the blur mixes with what is beside them: proportional to one over half the width.
+    ThinLine {
+        /// Standard deviation of the logarithm at a half width of 1 pixel.
+        sigma: f64,
+    },
+    /// Exponent of the noise's variance in the carpet's brightness, because the nominal model of noise is not exactly that
+    /// of the sensor and of what its driver does.
+    NoiseExponent {
+        /// Natural logarithm of the brightness at which the nominal noise holds.
+        log_reference: f64,
+        /// Standard deviation.
+        sigma: f64,
+    },
+    /// Specular reflection of the carpet at grazing angles: a reflectance `s (1 − cos θ)^power` added to that of all colours
+    /// alike, where θ is the angle of incidence and `s` the parameter.
     Sheen {
         power: i32,
         /// Standard deviation, linear, at grazing incidence.
         sigma: f64,
+        /// Reflectance of the carpet in each colour without it.
+        carpet: [f64; 3],
+    },
+    /// Brightness of the carpet by the direction in which its pile is seen: proportional to a component of the direction of
+    /// view on the ground, sin θ long.
+    Pile {
+        /// World axis of the component: 0 is x, 1 is y.
+        axis: usize,
+        /// Standard deviation of the logarithm at grazing incidence.
+        sigma: f64,
+    },
+    /// Fine texture of the carpet, which looks like noise: its contrast at one resolution of the ground.
+    Texture {
+        /// Resolution in powers of [`NuisanceThresholds::texture_octave`] below that straight down.
+        octave: usize,
+        /// Standard deviation of the logarithm of the carpet's brightness.
+        contrast: f64,
+        /// Texture that the recording shows.
+        seen: CarpetTexture,
     },
     /// Dependence of the blur on the width of a line, because the profile that is fitted is not exactly that of a line.
     Width {
@@ -45,58 +81,96 @@ pub(crate) enum Nuisance {
         /// Standard deviation, as a fraction of the variance.
         sigma: f64,
     },
-    /// Reflectance of a patch of carpet relative to the rest, in all colours alike.
-    Patch {
-        /// Square of the field, see [`patch_at`].
-        cell: [i32; 2],
-        /// Standard deviation of the logarithm.
-        sigma: f64,
+    /// Clock of the odometry: it may be the pictures' or that of the reference poses.
+    OdometryClock {
+        /// Time between the two, seconds.
+        sigma_s: f64,
+    },
+    /// Clock of joints and IMU, likewise.
+    AttitudeClock {
+        /// Time between the two, seconds.
+        sigma_s: f64,
     },
 }
 
 const THRESHOLDS: NuisanceThresholds = Thresholds::DEFAULT.linear_model.nuisance;
 
-/// Nuisance parameters of every recording.
-const COMMON: [Nuisance; 13] = [
-    offset(Quantity::LineLevel(ColorChannel::Red), THRESHOLDS.line_level),
-    offset(Quantity::LineLevel(ColorChannel::Green), THRESHOLDS.line_level),
-    offset(Quantity::LineLevel(ColorChannel::Blue), THRESHOLDS.line_level),
-    offset(Quantity::CarpetLevel(ColorChannel::Red), THRESHOLDS.carpet_level),
-    offset(Quantity::CarpetLevel(ColorChannel::Green), THRESHOLDS.carpet_level),
-    offset(Quantity::CarpetLevel(ColorChannel::Blue), THRESHOLDS.carpet_level),
-    offset(Quantity::LineBlur, THRESHOLDS.blur_px2),
-    offset(Quantity::NoiseVariance, THRESHOLDS.noise_variance),
+/// Nuisance parameters of every recording beside those of [`nuisances`].
+const COMMON: [Nuisance; 7] = [
+    Nuisance::Gain { surface: None, sigma: THRESHOLDS.gain },
+    Nuisance::ThinLine { sigma: THRESHOLDS.thin_line_level },
     Nuisance::Width { sigma: THRESHOLDS.blur_by_width_px2 },
     Nuisance::Kernel { sigma: THRESHOLDS.blur_shape },
     Nuisance::ThinKernel { sigma: THRESHOLDS.thin_blur_shape },
-    Nuisance::Sheen { power: 1, sigma: THRESHOLDS.sheen },
-    Nuisance::Sheen { power: 2, sigma: THRESHOLDS.sheen },
+    Nuisance::Pile { axis: 0, sigma: THRESHOLDS.pile },
+    Nuisance::Pile { axis: 1, sigma: THRESHOLDS.pile },
 ];
 
-const fn offset(quantity: Quantity, sigma: f64) -> Nuisance {
-    Nuisance::Offset { quantity, sigma }
-}
-
-/// Returns the square of the field that contains a point on the ground (world axes, metres).
-pub(crate) fn patch_at(ground: DVec2) -> [i32; 2] {
-    let cell = (ground / THRESHOLDS.patch_m).floor();
-    [cell.x as i32, cell.y as i32]
-}
-
-/// Returns the nuisance parameters of a recording: those that every recording has, and a patch for every square in which
-/// carpet was measured.
-pub(crate) fn nuisances(measurements: &[FrameMeasurements]) -> Vec<Nuisance> {
-    let blocks = measurements.iter().flat_map(|frame| &frame.blocks);
-    let cells: BTreeSet<[i32; 2]> = blocks.map(|block| patch_at(block.ground)).collect();
-    let patches = cells.into_iter().map(|cell| Nuisance::Patch { cell, sigma: THRESHOLDS.patch_level });
-    COMMON.into_iter().chain(patches).collect()
+/// Returns the nuisance parameters of a recording, whose nominal values are trusted as far as `mean` says. `psf_sigma_px` is the
+/// nominal width of the point spread function.
+pub(crate) fn nuisances(
+    mean: &MeanReflectance,
+    texture: &CarpetTexture,
+    psf_sigma_px: Option<f64>,
+) -> Vec<Nuisance> {
+    let offset = |quantity: Quantity, sigma: f64| Nuisance::Offset { quantity, sigma };
+    let lines = ColorChannel::ALL.map(|color| offset(Quantity::LineLevel(color), mean.line.color_sigma));
+    let carpet = ColorChannel::ALL.map(|color| offset(Quantity::CarpetLevel(color), mean.carpet.color_sigma));
+    let gain = |surface, sigma| Nuisance::Gain { surface: Some(surface), sigma };
+    let gains = [gain(Surface::Line, mean.line.sigma), gain(Surface::Carpet, mean.carpet.sigma)];
+    let blur_px2 = psf_sigma_px.map_or(THRESHOLDS.free_blur_px2, |sigma_px| {
+        THRESHOLDS.blur_px2.hypot(THRESHOLDS.blur_share * sigma_px * sigma_px)
+    });
+    let luma: f64 = mean.carpet.linear_rgb.iter().zip(LUMA).map(|(value, weight)| value * weight).sum();
+    let others = [
+        offset(Quantity::LineBlur, blur_px2),
+        offset(Quantity::NoiseVariance, THRESHOLDS.noise_variance),
+        Nuisance::NoiseExponent { log_reference: luma.max(1e-6).ln(), sigma: THRESHOLDS.noise_exponent },
+    ];
+    let textures = (0..texture::OCTAVES).map(|octave| Nuisance::Texture {
+        octave,
+        contrast: THRESHOLDS.texture,
+        seen: *texture,
+    });
+    let carpet_rgb = mean.carpet.linear_rgb.map(|linear| linear.max(THRESHOLDS.least_reflectance));
+    let sheen = [1, 2].map(|power| Nuisance::Sheen { power, sigma: THRESHOLDS.sheen, carpet: carpet_rgb });
+    lines
+        .into_iter()
+        .chain(carpet)
+        .chain(sheen)
+        .chain(gains)
+        .chain(others)
+        .chain(COMMON)
+        .chain(textures)
+        .collect()
 }
 
 impl Nuisance {
     /// Returns the derivative of a measurement's prediction by this parameter in units of its standard deviation.
-    pub(crate) fn derivative(&self, measurement: &Measurement, predicted: f64) -> f64 {
+    /// `by_input` is that of a level by the logarithm of the light that the surface reflects, and that of what odometry, joints
+    /// and IMU say by the time that their clock is ahead.
+    pub(crate) fn derivative(&self, measurement: &Measurement, predicted: f64, by_input: f64) -> f64 {
         match *self {
-            Self::Offset { quantity, sigma } if measurement.quantity == quantity => sigma,
+            Self::Offset { quantity, sigma } if measurement.quantity == quantity => {
+                if quantity.is_level() {
+                    sigma * by_input
+                } else {
+                    sigma
+                }
+            }
+            Self::Gain { surface, sigma }
+                if measurement.quantity.surface().is_some_and(|of| surface.is_none_or(|only| only == of)) =>
+            {
+                sigma * by_input
+            }
+            Self::ThinLine { sigma } if measurement.quantity.surface() == Some(Surface::Line) => {
+                sigma * by_input / measurement.half_width_px
+            }
+            Self::NoiseExponent { log_reference, sigma }
+                if measurement.quantity == Quantity::NoiseVariance =>
+            {
+                sigma * (measurement.log_brightness - log_reference)
+            }
             Self::Width { sigma } if measurement.quantity == Quantity::LineBlur => {
                 sigma * measurement.half_width_px.ln()
             }
@@ -104,13 +178,21 @@ impl Nuisance {
             Self::ThinKernel { sigma } if is_blur(measurement, predicted) => {
                 sigma * predicted * (-measurement.half_width_px / predicted.sqrt()).exp()
             }
-            Self::Patch { cell, sigma } if is_carpet(measurement) && patch_at(measurement.ground) == cell => {
-                sigma
+            Self::Sheen { power, sigma, carpet } => {
+                let Quantity::CarpetLevel(color) = measurement.quantity else { return 0.0 };
+                // Levels grow with the logarithm of the reflectance: d ln(v) = dv / v.
+                let share = (1.0 - measurement.cos_incidence).powi(power) / carpet[color as usize];
+                sigma * by_input * share
             }
-            Self::Sheen { power, sigma } if is_carpet(measurement) => {
-                // Levels are logarithms of linear values: d ln(v) = dv / v.
-                let derivative = sigma * (1.0 - measurement.cos_incidence).powi(power) * (-predicted).exp();
-                if derivative.is_finite() { derivative } else { 0.0 }
+            Self::OdometryClock { sigma_s } if measurement.subject == Subject::OdometryStep => {
+                sigma_s * by_input
+            }
+            Self::AttitudeClock { sigma_s } if measurement.subject == Subject::Attitude => sigma_s * by_input,
+            Self::Pile { axis, sigma } if is_carpet(measurement) => {
+                sigma * by_input * measurement.view_direction[axis]
+            }
+            Self::Texture { octave, contrast, seen } if measurement.quantity == Quantity::NoiseVariance => {
+                seen.derivative(octave, contrast, measurement, predicted)
             }
             _ => 0.0,
         }
@@ -122,13 +204,13 @@ fn is_blur(measurement: &Measurement, predicted: f64) -> bool {
 }
 
 fn is_carpet(measurement: &Measurement) -> bool {
-    measurement.quantity.is_carpet_level()
+    measurement.quantity.surface() == Some(Surface::Carpet)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{carpet_measurement, measurement};
+    use crate::testing::measurement;
 
     fn line_blur(half_width_px: f64) -> Measurement {
         Measurement { half_width_px, ..measurement(Quantity::LineBlur) }
@@ -138,7 +220,7 @@ mod tests {
     fn prior_sigma(half_width_px: f64, variance_px2: f64) -> f64 {
         let squares = COMMON.iter().map(|nuisance| {
             let is_shape = matches!(nuisance, Nuisance::Kernel { .. } | Nuisance::ThinKernel { .. });
-            let relative = nuisance.derivative(&line_blur(half_width_px), variance_px2) / variance_px2;
+            let relative = nuisance.derivative(&line_blur(half_width_px), variance_px2, 1.0) / variance_px2;
             if is_shape { relative * relative } else { 0.0 }
         });
         squares.sum::<f64>().sqrt()
@@ -163,27 +245,20 @@ mod tests {
             Nuisance::Kernel { sigma: THRESHOLDS.blur_shape },
             Nuisance::ThinKernel { sigma: THRESHOLDS.thin_blur_shape },
         ] {
-            assert_eq!(nuisance.derivative(&line, 1.0), 0.0);
+            assert_eq!(nuisance.derivative(&line, 1.0, 1.0), 0.0);
         }
     }
 
     #[test]
-    fn a_patch_changes_only_the_carpet_in_its_own_square() {
-        let carpet = |ground: DVec2| carpet_measurement(DVec2::ZERO, ground);
-        let patch = Nuisance::Patch { cell: patch_at(DVec2::new(0.7, -0.2)), sigma: THRESHOLDS.patch_level };
-        assert_eq!(patch.derivative(&carpet(DVec2::new(0.9, -0.4)), -2.0), THRESHOLDS.patch_level);
-        assert_eq!(patch.derivative(&carpet(DVec2::new(1.1, -0.4)), -2.0), 0.0);
-    }
-
-    #[test]
     fn sheen_vanishes_from_straight_above_and_is_stronger_on_dark_colours() {
-        let at = |cos_incidence: f64| Measurement {
+        let at = |cos_incidence: f64, color| Measurement {
             cos_incidence,
-            ..measurement(Quantity::CarpetLevel(ColorChannel::Red))
+            ..measurement(Quantity::CarpetLevel(color))
         };
-        let sheen = Nuisance::Sheen { power: 1, sigma: THRESHOLDS.sheen };
-        assert_eq!(sheen.derivative(&at(1.0), -3.0), 0.0);
-        assert!(sheen.derivative(&at(0.2), -3.0) > sheen.derivative(&at(0.2), -2.0));
-        assert!(sheen.derivative(&at(0.2), -3.0) > sheen.derivative(&at(0.6), -3.0));
+        let sheen = Nuisance::Sheen { power: 1, sigma: THRESHOLDS.sheen, carpet: [0.04, 0.14, 0.05] };
+        let of = |cos_incidence, color| sheen.derivative(&at(cos_incidence, color), -3.0, 1.0);
+        assert_eq!(of(1.0, ColorChannel::Red), 0.0);
+        assert!(of(0.2, ColorChannel::Red) > of(0.2, ColorChannel::Green));
+        assert!(of(0.2, ColorChannel::Red) > of(0.6, ColorChannel::Red));
     }
 }

@@ -1,15 +1,18 @@
-//! Normal equations of the fitted parameters alone, with the nuisance parameters eliminated by a Schur complement, so that
-//! the fit of any set of effects is small.
+//! Normal equations of the fitted parameters alone, with the nuisance parameters and the reflectance of all places
+//! eliminated by Schur complements, so that the fit of any set of effects is small.
 //!
-//! With the columns in two blocks, fitted parameters `p` and nuisance parameters `n`, a fit has `δn = y − X δp` with
-//! `X = (A_nn + I)⁻¹ A_np` and `y = (A_nn + I)⁻¹ g_n`. The reduced equations are `A_pp − A_pn X` and `g_p − A_pn y`.
+//! With the columns in two blocks, fitted parameters `p` and all others `n`, whose prior precision is `Q`, a fit has
+//! `δn = y − X δp` with `X = (A_nn + Q)⁻¹ A_np` and `y = (A_nn + Q)⁻¹ g_n`. The reduced equations are `A_pp − A_pn X` and
+//! `g_p − A_pn y`.
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use crate::{
     linear_model::{
-        column::ColumnIndex,
+        column::{ColumnIndex, Columns},
         normal_equations::{NormalEquations, PRIOR},
+        reflectance::{Eliminated, IncrementVariances, PatchEquations, increment_variances},
     },
     thresholds::Thresholds,
 };
@@ -45,67 +48,66 @@ impl Fit {
     }
 }
 
-/// Normal equations of the fitted parameters, with the nuisance parameters eliminated.
+/// Normal equations of the fitted parameters, with the nuisance parameters and the reflectance eliminated.
 #[derive(Debug, Clone)]
 pub(crate) struct ReducedEquations {
+    columns: Columns,
     /// Schur complement `A_pp − A_pn X`.
     a: DMatrix<f64>,
     g: DVector<f64>,
-    /// `X` and `y` of the nuisance parameters, see the module.
+    /// `X` and `y` of the nuisance parameters and of the patches, see the module.
     x: DMatrix<f64>,
     y: DVector<f64>,
+    eliminated: Eliminated,
 }
 
 impl ReducedEquations {
-    /// Reduces the sum of these equations, which have `size` columns: first those of the fitted parameters, `parameters` in
-    /// number, then those of the nuisance parameters.
-    pub(crate) fn new<'a>(
-        equations: impl Iterator<Item = &'a NormalEquations>,
-        size: usize,
-        parameters: usize,
-    ) -> Self {
-        let (mut a, mut g) = (DMatrix::zeros(size, size), DVector::zeros(size));
-        equations.for_each(|equations| equations.add_to(&mut a, &mut g));
-        let count = size - parameters;
-        let across = a.view((0, parameters), (parameters, count)).clone_owned();
-        let mut nuisances = a.view((parameters, parameters), (count, count)).clone_owned();
-        nuisances += DMatrix::identity(count, count) * PRIOR;
+    /// Reduces the sum of these equations of `columns`.
+    pub(crate) fn new<'a>(equations: impl Iterator<Item = &'a NormalEquations>, columns: &Columns) -> Self {
+        let (dense, parameters, nuisances) = (columns.dense(), columns.parameters, columns.nuisances);
+        let (mut a, mut g) = (DMatrix::zeros(dense, dense), DVector::zeros(dense));
+        let mut patches = PatchEquations::zero(columns.field.tree.len(), dense);
+        equations.for_each(|equations| equations.add_to(&mut a, &mut g, &mut patches));
+        let eliminated = Eliminated::new(&columns.field, patches, &mut a, &mut g);
+        let across = a.view((0, parameters), (parameters, nuisances)).clone_owned();
+        let mut of_nuisances = a.view((parameters, parameters), (nuisances, nuisances)).clone_owned();
+        of_nuisances += DMatrix::identity(nuisances, nuisances) * PRIOR;
         // A sum of squares and a prior precision is positive definite, except for rounding.
-        let solve = |right: &DMatrix<f64>| match nuisances.clone().cholesky() {
-            Some(cholesky) => cholesky.solve(right),
+        let cholesky = of_nuisances.cholesky();
+        let solve = |right: DMatrix<f64>| match &cholesky {
+            Some(cholesky) => cholesky.solve(&right),
             None => right * 0.0,
         };
-        let x = solve(&a.view((parameters, 0), (count, parameters)).clone_owned());
-        let rest = g.rows(parameters, count).clone_owned();
-        let y = solve(&DMatrix::from_column_slice(count, 1, rest.as_slice())).column(0).clone_owned();
+        let x = solve(a.view((parameters, 0), (nuisances, parameters)).clone_owned());
+        let y = solve(DMatrix::from_column_slice(
+            nuisances,
+            1,
+            g.rows(parameters, nuisances).clone_owned().as_slice(),
+        ));
+        let y = y.column(0).clone_owned();
+        let (patches_x, patches_y) = eliminated.solution(&columns.field, &x, &y);
         Self {
             a: a.view((0, 0), (parameters, parameters)).clone_owned() - &across * &x,
             g: g.rows(0, parameters).clone_owned() - &across * &y,
-            x,
-            y,
+            x: stacked(&x, &patches_x),
+            y: DVector::from_iterator(nuisances + patches_y.len(), y.iter().chain(&patches_y).copied()),
+            columns: columns.clone(),
+            eliminated,
         }
     }
 
-    /// Returns the equations of the fitted parameters in a part of the measurements: the nuisance parameters follow them as in
-    /// all measurements together.
-    pub(crate) fn reduce(&self, part: &NormalEquations) -> NormalEquations {
-        let parameters = self.g.len();
-        let size = parameters + self.y.len();
-        let combinations =
-            DMatrix::from_fn(size, parameters, |row, column| match row.checked_sub(parameters) {
-                Some(nuisance) => -self.x[(nuisance, column)],
-                None => f64::from(u8::from(row == column)),
-            });
-        let zeros = DVector::zeros(parameters);
-        part.combined(
-            &combinations,
-            &DVector::from_iterator(size, zeros.iter().chain(self.y.iter()).copied()),
-        )
+    /// Returns the equations that the priors of nuisance parameters and reflectance add to those of all parts, as
+    /// [`Self::projected`] makes them.
+    pub(crate) fn nuisance_priors(&self) -> ProjectedEquations {
+        let all: Vec<ColumnIndex> = ColumnIndex::first(self.columns.parameters).collect();
+        let score = all.iter().map(|column| self.prior_product(self.of_column(*column), self.y.as_slice()));
+        ProjectedEquations { a: self.nuisance_scatter(&all), g: DVector::from_iterator(all.len(), score) }
     }
 
-    /// Returns the equations that the nuisance parameters' priors add to those of all parts, as [`Self::reduce`] makes them.
-    pub(crate) fn nuisance_priors(&self) -> NormalEquations {
-        NormalEquations::of_all(self.x.transpose() * &self.x * PRIOR, self.x.transpose() * &self.y * PRIOR)
+    /// Estimates the variances of the reflectance's increments from a fit to these equations.
+    pub(crate) fn increment_variances(&self, fit: &Fit) -> IncrementVariances {
+        let values = &fit.delta.as_slice()[self.columns.dense()..];
+        increment_variances(&self.columns.field, &self.eliminated, values)
     }
 
     /// Fits the free columns by least squares; the other fitted parameters become neutral. `base` is the present model in the
@@ -152,24 +154,86 @@ impl ReducedEquations {
         self.g.dot(&parameters) - 0.5 * parameters.dot(&(&self.a * parameters))
     }
 
-    /// Returns the free columns' part of a score of all columns, with the nuisance parameters projected out.
-    pub(crate) fn projected(&self, scores: &DVector<f64>, free: &[ColumnIndex]) -> DVector<f64> {
+    /// Returns the equations of some of the measurements with the nuisance parameters and the reflectance projected out as in
+    /// the sum of all. The scores of a fit follow from them, see [`ProjectedEquations::score`].
+    pub(crate) fn projected(&self, some: &[NormalEquations]) -> Vec<ProjectedEquations> {
         let parameters = self.g.len();
-        let nuisances = scores.rows(parameters, scores.len() - parameters);
-        DVector::from_fn(free.len(), |i, _| scores[free[i].0] - self.x.column(free[i].0).dot(&nuisances))
+        // A change δ of the fitted parameters goes with one of y − X δ of the others.
+        let mut z_transposed = DMatrix::zeros(parameters, self.columns.len());
+        z_transposed.view_mut((0, 0), (parameters, parameters)).fill_with_identity();
+        z_transposed.columns_mut(parameters, self.x.nrows()).copy_from(&-self.x.transpose());
+        let mut others = DVector::zeros(self.columns.len());
+        others.rows_mut(parameters, self.y.len()).copy_from(&self.y);
+        let project = |equations: &NormalEquations| {
+            let (a, g) = equations.projected(&z_transposed, &others, &self.columns);
+            ProjectedEquations { a, g }
+        };
+        some.par_iter().map(project).collect()
     }
 
-    /// Returns the contribution of the nuisance parameters' priors to the scatter of scores, which no frame shows.
+    /// Returns the contribution of the priors of nuisance parameters and reflectance to the scatter of scores, which no frame
+    /// shows.
     pub(crate) fn nuisance_scatter(&self, free: &[ColumnIndex]) -> DMatrix<f64> {
-        DMatrix::from_fn(free.len(), free.len(), |i, j| {
-            PRIOR * self.x.column(free[i].0).dot(&self.x.column(free[j].0))
-        })
+        let product =
+            |a: ColumnIndex, b: ColumnIndex| self.prior_product(self.of_column(a), self.of_column(b));
+        DMatrix::from_fn(free.len(), free.len(), |i, j| product(free[i.min(j)], free[i.max(j)]))
     }
+
+    /// Returns the column of `X` that belongs to a fitted parameter.
+    fn of_column(&self, column: ColumnIndex) -> &[f64] {
+        let rows = self.x.nrows();
+        &self.x.as_slice()[column.0 * rows..(column.0 + 1) * rows]
+    }
+
+    /// Returns `aᵀ Q b` for values of all nuisance parameters and patches.
+    fn prior_product(&self, a: &[f64], b: &[f64]) -> f64 {
+        let [(a, of_patches), (b, others)] = [a, b].map(|values| values.split_at(self.columns.nuisances));
+        let nuisances: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
+        PRIOR * nuisances + self.columns.field.prior_product(of_patches, others)
+    }
+}
+
+/// Equations of some measurements in the fitted parameters, with everything else projected out.
+#[derive(Debug, Clone)]
+pub(crate) struct ProjectedEquations {
+    pub(crate) a: DMatrix<f64>,
+    pub(crate) g: DVector<f64>,
+}
+
+impl ProjectedEquations {
+    /// Returns the score in the free columns after a fit.
+    pub(crate) fn score(&self, fit: &Fit) -> DVector<f64> {
+        let parameters = fit.delta.rows(0, self.g.len());
+        let score = |column: &ColumnIndex| self.g[column.0] - (self.a.row(column.0) * parameters)[0];
+        DVector::from_iterator(fit.free.len(), fit.free.iter().map(score))
+    }
+
+    /// Returns the equations of some columns, with this share of the priors' equations.
+    pub(crate) fn with_share_of(&self, priors: &Self, share: f64, columns: &[ColumnIndex]) -> Self {
+        let entry = |i: usize, j: usize| {
+            let place = (columns[i].0, columns[j].0);
+            self.a[place] + share * priors.a[place]
+        };
+        let score = columns.iter().map(|column| self.g[column.0] + share * priors.g[column.0]);
+        Self {
+            a: DMatrix::from_fn(columns.len(), columns.len(), entry),
+            g: DVector::from_iterator(columns.len(), score),
+        }
+    }
+}
+
+/// Returns one matrix above another.
+fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut stacked = DMatrix::zeros(above.nrows() + below.nrows(), above.ncols());
+    stacked.rows_mut(0, above.nrows()).copy_from(above);
+    stacked.rows_mut(above.nrows(), below.nrows()).copy_from(below);
+    stacked
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear_model::reflectance::{ReflectanceField, Tree};
 
     const BOTH: [ColumnIndex; 2] = [ColumnIndex(0), ColumnIndex(1)];
 
@@ -189,7 +253,12 @@ mod tests {
 
     fn normal_equations() -> NormalEquations {
         let (a, g) = equations();
-        NormalEquations::dense(a, g)
+        NormalEquations::of_all(a, g)
+    }
+
+    /// Returns two fitted and two nuisance parameters.
+    fn columns() -> Columns {
+        Columns { parameters: 2, nuisances: 2, field: ReflectanceField::new(Tree::default()) }
     }
 
     /// Solves for all four columns at once.
@@ -203,7 +272,7 @@ mod tests {
     #[test]
     fn a_reduced_fit_equals_the_fit_of_all_columns_at_once() {
         let base = DVector::from_vec(vec![0.3, -0.2]);
-        let reduced = ReducedEquations::new([normal_equations()].iter(), 4, 2);
+        let reduced = ReducedEquations::new([normal_equations()].iter(), &columns());
         let fit = reduced.fit(&BOTH, &base).unwrap();
         assert!((fit.delta - at_once(&base)).norm() < 1e-12);
     }
@@ -211,11 +280,12 @@ mod tests {
     #[test]
     fn parts_and_priors_without_nuisance_parameters_add_up_to_the_reduced_equations() {
         let parts = [normal_equations(), normal_equations()];
-        let all = ReducedEquations::new(parts.iter(), 4, 2);
-        let reduced: Vec<NormalEquations> = parts.iter().map(|part| all.reduce(part)).collect();
+        let all = ReducedEquations::new(parts.iter(), &columns());
+        let parameters: Vec<ColumnIndex> = BOTH.to_vec();
         let priors = all.nuisance_priors();
-        let sum = NormalEquations::sum(reduced.iter().chain([&priors]));
-        let alone = ReducedEquations::new([sum].iter(), 2, 2);
+        let sum = all.projected(&parts).into_iter().map(|part| part.with_share_of(&priors, 0.5, &parameters));
+        let sum: Vec<NormalEquations> = sum.map(|part| NormalEquations::of_all(part.a, part.g)).collect();
+        let alone = ReducedEquations::new(sum.iter(), &Columns { nuisances: 0, ..columns() });
         let base = DVector::zeros(2);
         let [one, other] = [&all, &alone].map(|equations| equations.fit(&BOTH, &base).unwrap());
         assert!((one.delta.rows(0, 2) - other.delta).norm() < 1e-12);
@@ -225,7 +295,8 @@ mod tests {
     #[test]
     fn a_parameter_that_is_not_free_becomes_neutral() {
         let base = DVector::from_vec(vec![0.3, -0.2]);
-        let fit = ReducedEquations::new([normal_equations()].iter(), 4, 2).fit(&BOTH[1..], &base).unwrap();
+        let fit =
+            ReducedEquations::new([normal_equations()].iter(), &columns()).fit(&BOTH[1..], &base).unwrap();
         assert_eq!(fit.delta[0], -0.3);
         assert!(fit.prior_share(BOTH[1]) < 1.0 && fit.prior_share(BOTH[0]) == 1.0);
     }
@@ -233,7 +304,7 @@ mod tests {
     #[test]
     fn a_held_parameter_keeps_its_value_and_the_free_ones_are_optimal_beside_it() {
         let base = DVector::from_vec(vec![0.3, -0.2]);
-        let reduced = ReducedEquations::new([normal_equations()].iter(), 4, 2);
+        let reduced = ReducedEquations::new([normal_equations()].iter(), &columns());
         let held = DVector::from_vec(vec![0.25, 7.0]);
         let fit = reduced.fit_beside(&BOTH[1..], &base, &held).unwrap();
         assert_eq!(fit.delta[0], 0.25);
@@ -248,7 +319,7 @@ mod tests {
     #[test]
     fn a_fit_has_the_largest_gain() {
         let base = DVector::zeros(2);
-        let reduced = ReducedEquations::new([normal_equations()].iter(), 4, 2);
+        let reduced = ReducedEquations::new([normal_equations()].iter(), &columns());
         let gain = |delta: &DVector<f64>| reduced.gain(delta) - 0.5 * PRIOR * delta.rows(0, 2).norm_squared();
         let best = reduced.fit(&BOTH, &base).unwrap().delta;
         for step in [[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1], [0.0, -0.1]] {

@@ -26,7 +26,7 @@ pub(crate) fn weigh(
         let Some(&sigma) = sigmas.get(&measurement.quantity) else { return 0.0 };
         let variance = sigma * sigma + measurement.sigma * measurement.sigma;
         let outlying = (residual * residual / (CUTOFF * CUTOFF * variance)).min(1.0);
-        let independent = if measurement.quantity.is_odometry() { 1.0 } else { INDEPENDENT };
+        let independent = if measurement.quantity.is_proprioceptive() { 1.0 } else { INDEPENDENT };
         if residual.is_finite() { independent * (1.0 - outlying).powi(2) / variance } else { 0.0 }
     };
     frame.measurements.iter().zip(residuals).map(weight).collect()
@@ -50,7 +50,7 @@ pub(super) fn with_residuals<'a>(
 pub(super) fn first_residuals(frames: &[&LinearizedFrame]) -> Vec<Vec<f64>> {
     let mut by_quantity: BTreeMap<Quantity, Vec<f64>> = BTreeMap::new();
     for (measurement, value) in with_residuals(frames, frames.iter().map(|frame| &frame.residuals)) {
-        if measurement.quantity.is_odometry() && value.is_finite() {
+        if measurement.quantity.is_proprioceptive() && value.is_finite() {
             by_quantity.entry(measurement.quantity).or_default().push(value);
         }
     }

@@ -7,19 +7,22 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use crate::{
     frame_index::ViewIndex,
     linear_model::{
         assembly::{by_cell, by_frame, by_view},
+        column::{ColumnIndex, Columns},
         fitted_residuals::FittedResiduals,
         linearized_frame::LinearizedFrame,
-        normal_equations::{NormalEquations, PRIOR},
+        normal_equations::NormalEquations,
         pose_error::pose_sigmas,
+        reduced_equations::ReducedEquations,
+        reflectance::{IncrementVariances, ReflectanceField},
         robust_weights::{first_residuals, sigmas_by_quantity, weigh, with_residuals},
     },
-    measurement::quantity::Quantity,
+    measurement::quantity::{Quantity, Surface},
     recording::ReferenceKind,
     thresholds::Thresholds,
 };
@@ -30,8 +33,8 @@ const ITERATIONS: usize = Thresholds::DEFAULT.linear_model.reweighting_rounds;
 /// Normal equations of a recording's training frames.
 #[derive(Debug, Clone)]
 pub(crate) struct LinearSystem {
-    /// Number of columns: those of the fitted parameters, followed by those of the nuisance parameters.
-    pub(crate) size: usize,
+    /// Columns, with the prior of the reflectance.
+    pub(crate) columns: Columns,
     /// Normal equations by frame.
     pub(crate) frames: Vec<NormalEquations>,
     /// Normal equations by view. Successive frames from one place share their errors and form one cluster.
@@ -40,79 +43,181 @@ pub(crate) struct LinearSystem {
     pub(crate) cells: Vec<NormalEquations>,
     /// Standard deviations of the residuals.
     pub(crate) sigmas: BTreeMap<Quantity, f64>,
-    /// Standard deviations of the pose errors, in the order of
+    /// Standard deviations of the pose errors, slow ones included, in the order of
     /// [`crate::linear_model::pose_gradient::pose_gradient`].
     pub(crate) pose_sigmas: [f64; 6],
     /// Weights of the measurements of each frame; 0 for outliers and missing residuals.
     pub(crate) weights: Vec<Vec<f64>>,
+    /// The same system without the levels of lines, and without those of carpet; empty in these systems themselves.
+    pub(crate) of_one_surface: Vec<Self>,
 }
 
 impl LinearSystem {
-    /// Assembles the normal equations by iteratively reweighted least squares. `views` gives each frame's view.
+    /// Assembles the normal equations with these weights. `views` gives each frame's view.
     pub(crate) fn new(
         frames: &[&LinearizedFrame],
-        size: usize,
-        reference: ReferenceKind,
+        columns: Columns,
+        weighting: Weighting,
         views: &[ViewIndex],
     ) -> Self {
-        let mut estimate = Weighting::new(frames, &first_residuals(frames), pose_sigmas(None, reference));
-        for _ in 0..ITERATIONS {
-            estimate = estimate.improved(frames, size, reference);
+        let field = ReflectanceField { variances: weighting.variances.clone(), ..columns.field };
+        let columns = Columns { field: field.of_shared_brightness(), ..columns };
+        let mut system = Self::assembled(frames, &weighting, &columns, views);
+        let alone = |without| {
+            let weights = weighting.without_levels_of(frames, without);
+            let weighting = Weighting { weights, ..weighting.clone() };
+            Self { weights: Vec::new(), ..Self::assembled(frames, &weighting, &columns, views) }
+        };
+        system.of_one_surface = Surface::ALL.map(alone).into();
+        system
+    }
+
+    /// Creates the system of equations that depend on a few fitted parameters alone. `views` gives each frame's view.
+    pub(crate) fn of_equations(
+        parameters: usize,
+        frames: Vec<NormalEquations>,
+        cells: Vec<NormalEquations>,
+        views: &[ViewIndex],
+    ) -> Self {
+        Self {
+            columns: Columns::of_parameters(parameters),
+            views: by_view(&frames, views),
+            frames,
+            cells,
+            sigmas: BTreeMap::new(),
+            pose_sigmas: [1.0; 6],
+            weights: Vec::new(),
+            of_one_surface: Vec::new(),
         }
-        let Weighting { sigmas, weights, pose_sigmas } = estimate;
+    }
+
+    /// Assembles the normal equations with these weights.
+    fn assembled(
+        frames: &[&LinearizedFrame],
+        weighting: &Weighting,
+        columns: &Columns,
+        views: &[ViewIndex],
+    ) -> Self {
+        let Weighting { sigmas, weights, pose_sigmas, .. } = weighting.clone();
         let (equations, projections) = by_frame(frames, &weights, &pose_sigmas);
         let cells = by_cell(frames, &weights, &projections);
         let views = by_view(&equations, views);
-        Self { size, frames: equations, views, cells, sigmas, pose_sigmas, weights }
+        let (columns, of_one_surface) = (columns.clone(), Vec::new());
+        Self { columns, frames: equations, views, cells, sigmas, pose_sigmas, weights, of_one_surface }
+    }
+
+    /// Returns the gain in log-likelihood by a fit of these frames' own columns, with the weights of the system.
+    pub(crate) fn gain_of(&self, frames: &[&LinearizedFrame], parameters: usize) -> f64 {
+        let (equations, _) = by_frame(frames, &self.weights, &self.pose_sigmas);
+        let columns = Columns::of_parameters(parameters);
+        let (delta, _) = solve(&equations, &columns);
+        equations.iter().map(|equations| equations.gain(&delta, &columns)).sum()
     }
 }
 
 /// Standard deviations and weights, estimated in turn with the fit that uses them.
-struct Weighting {
+#[derive(Debug, Clone)]
+pub(crate) struct Weighting {
     sigmas: BTreeMap<Quantity, f64>,
     weights: Vec<Vec<f64>>,
-    pose_sigmas: [f64; 6],
+    pub(crate) pose_sigmas: [f64; 6],
+    /// Variances of the reflectance.
+    variances: IncrementVariances,
 }
 
 impl Weighting {
+    /// Estimates them by iteratively reweighted least squares; returns them with the frames' residuals in the last fit.
+    pub(crate) fn estimate(
+        frames: &[&LinearizedFrame],
+        columns: &Columns,
+        reference: ReferenceKind,
+    ) -> (Self, Vec<FittedResiduals>) {
+        let variances = columns.field.variances.clone();
+        let first = Self::new(frames, &first_residuals(frames), pose_sigmas(None, reference), variances);
+        first.refine(frames, columns, reference)
+    }
+
+    /// Estimates them further, with columns that may be others than before.
+    pub(crate) fn refine(
+        mut self,
+        frames: &[&LinearizedFrame],
+        columns: &Columns,
+        reference: ReferenceKind,
+    ) -> (Self, Vec<FittedResiduals>) {
+        let mut columns = columns.clone();
+        let mut fits = Vec::new();
+        for _ in 0..ITERATIONS {
+            columns.field.variances = self.variances.clone();
+            (self, fits) = self.improved(frames, &columns, reference);
+        }
+        (self, fits)
+    }
+
     /// Estimates standard deviations and weights from the residuals of each frame.
-    fn new(frames: &[&LinearizedFrame], residuals: &[Vec<f64>], pose_sigmas: [f64; 6]) -> Self {
+    fn new(
+        frames: &[&LinearizedFrame],
+        residuals: &[Vec<f64>],
+        pose_sigmas: [f64; 6],
+        variances: IncrementVariances,
+    ) -> Self {
         let sigmas = sigmas_by_quantity(with_residuals(frames, residuals.iter()));
         let weights =
             frames.iter().zip(residuals).map(|(frame, residuals)| weigh(frame, residuals, &sigmas)).collect();
-        Self { sigmas, weights, pose_sigmas }
+        Self { sigmas, weights, pose_sigmas, variances }
+    }
+
+    /// Returns the weights with those of one surface's levels set to 0.
+    fn without_levels_of(&self, frames: &[&LinearizedFrame], surface: Surface) -> Vec<Vec<f64>> {
+        let without = |(frame, weights): (&&LinearizedFrame, &Vec<f64>)| {
+            let rows = frame.measurements.iter().zip(weights);
+            rows.map(|(row, weight)| if row.quantity.surface() == Some(surface) { 0.0 } else { *weight })
+                .collect()
+        };
+        frames.iter().zip(&self.weights).map(without).collect()
     }
 
     /// Estimates them anew from the residuals of a fit with these weights.
-    fn improved(&self, frames: &[&LinearizedFrame], size: usize, reference: ReferenceKind) -> Self {
+    fn improved(
+        &self,
+        frames: &[&LinearizedFrame],
+        columns: &Columns,
+        reference: ReferenceKind,
+    ) -> (Self, Vec<FittedResiduals>) {
         let (equations, _) = by_frame(frames, &self.weights, &self.pose_sigmas);
-        let delta = solve(&equations, size);
+        let (delta, variances) = solve(&equations, columns);
         let fits: Vec<FittedResiduals> = frames
             .iter()
             .zip(&self.weights)
-            .map(|(frame, weights)| FittedResiduals::new(frame, weights, &delta, &self.pose_sigmas))
+            .map(|(frame, weights)| FittedResiduals::new(frame, weights, &delta, columns, &self.pose_sigmas))
             .collect();
         let pose_sigmas = pose_sigmas(Some(&fits), reference);
-        let residuals: Vec<Vec<f64>> = fits.into_iter().map(|fit| fit.residuals).collect();
-        Self::new(frames, &residuals, pose_sigmas)
+        let residuals: Vec<Vec<f64>> = fits.iter().map(|fit| fit.residuals.clone()).collect();
+        (Self::new(frames, &residuals, pose_sigmas, variances), fits)
     }
 }
 
-/// Solves for all columns by least squares, each with the prior `N(0, 1 / PRIOR)`.
-fn solve(equations: &[NormalEquations], size: usize) -> DVector<f64> {
-    let (mut a, mut g) = (DMatrix::identity(size, size) * PRIOR, DVector::zeros(size));
-    equations.iter().for_each(|equations| equations.add_to(&mut a, &mut g));
-    a.cholesky().map_or_else(|| DVector::zeros(size), |factor| factor.solve(&g))
+/// Solves for all columns by least squares with their priors; returns them with the variances of the reflectance that this
+/// solution suggests.
+fn solve(equations: &[NormalEquations], columns: &Columns) -> (DVector<f64>, IncrementVariances) {
+    let reduced = ReducedEquations::new(equations.iter(), columns);
+    let free: Vec<ColumnIndex> = ColumnIndex::first(columns.parameters).collect();
+    match reduced.fit(&free, &DVector::zeros(columns.parameters)) {
+        Some(fit) => {
+            let variances = reduced.increment_variances(&fit);
+            (fit.delta, variances)
+        }
+        None => (DVector::zeros(columns.len()), columns.field.variances.clone()),
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector6;
+    use nalgebra::{DMatrix, Vector6};
 
     use super::*;
     use crate::{
-        linear_model::{column::ColumnIndex, robust_weights::INDEPENDENT},
-        testing::{Noise, measurement},
+        linear_model::{reflectance::PatchEquations, robust_weights::INDEPENDENT},
+        testing::{Noise, measurement, parameters},
     };
 
     /// Returns frames of lines, each with a pose error of its own. The first column moves lines as a rotation of the camera
@@ -126,6 +231,7 @@ mod tests {
                     measurements: Vec::new(),
                     residuals: Vec::new(),
                     jacobian: Vec::new(),
+                    patches: vec![None; 60],
                     pose_gradients: Vec::new(),
                 };
                 for _ in 0..60 {
@@ -143,13 +249,16 @@ mod tests {
 
     fn system(frames: &[LinearizedFrame]) -> LinearSystem {
         let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
-        LinearSystem::new(&frames.iter().collect::<Vec<_>>(), 2, ReferenceKind::Whole, &views)
+        let (frames, columns): (Vec<_>, _) = (frames.iter().collect(), parameters(2));
+        let (weighting, _) = Weighting::estimate(&frames, &columns, ReferenceKind::Whole);
+        LinearSystem::new(&frames, columns, weighting, &views)
     }
 
     /// Returns the dense sum of normal equations.
     fn total(equations: &[NormalEquations]) -> (DMatrix<f64>, DVector<f64>) {
         let (mut a, mut g) = (DMatrix::zeros(2, 2), DVector::zeros(2));
-        equations.iter().for_each(|equations| equations.add_to(&mut a, &mut g));
+        let mut patches = PatchEquations::zero(0, 2);
+        equations.iter().for_each(|equations| equations.add_to(&mut a, &mut g, &mut patches));
         (a, g)
     }
 
@@ -172,7 +281,7 @@ mod tests {
             assert!((0.0035..0.006).contains(&mean), "{:?}", system.pose_sigmas);
             let sigma = system.sigmas[&Quantity::LineOffset];
             assert!((sigma - 0.3).abs() < 0.05, "{sigma}");
-            let delta = solve(&system.frames, 2);
+            let delta = solve(&system.frames, &system.columns).0;
             assert!((delta[1] - 0.2).abs() < 0.05, "{delta}");
         }
     }
@@ -192,13 +301,16 @@ mod tests {
                     ],
                     residuals: vec![(1.0 + truth) * 0.05 - ahead_m, -aside_m],
                     jacobian: vec![vec![(ColumnIndex(0), ahead_m)], vec![(ColumnIndex(0), aside_m)]],
+                    patches: vec![None; 2],
                     pose_gradients: vec![Vector6::zeros(); 2],
                 }
             })
             .collect();
         let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
-        let system = LinearSystem::new(&frames.iter().collect::<Vec<_>>(), 1, ReferenceKind::Whole, &views);
-        let delta = solve(&system.frames, 1);
+        let (frames, columns): (Vec<_>, _) = (frames.iter().collect(), parameters(1));
+        let (weighting, _) = Weighting::estimate(&frames, &columns, ReferenceKind::Whole);
+        let system = LinearSystem::new(&frames, columns, weighting, &views);
+        let delta = solve(&system.frames, &system.columns).0;
         assert!((delta[0] - truth).abs() < 0.1, "{delta}");
     }
 
@@ -211,7 +323,7 @@ mod tests {
             }
         }
         let system = system(&frames);
-        let delta = solve(&system.frames, 2);
+        let delta = solve(&system.frames, &system.columns).0;
         assert!((delta[1] - 0.2).abs() < 0.06, "{delta}");
         let zero = system.weights[0].iter().step_by(9).filter(|weight| **weight == 0.0).count();
         assert_eq!(zero, 7);

@@ -1,5 +1,7 @@
 //! Blocks of plain carpet: mean colour and variance of the noise.
 
+use std::collections::BTreeMap;
+
 use glam::DVec2;
 use image::RgbImage;
 
@@ -28,7 +30,7 @@ pub(crate) struct CarpetBlock {
     pub(crate) level: [f64; 3],
     /// Sum of squares of the coefficients of [`Spectrum`], grey levels squared.
     pub(crate) energy: f64,
-    /// Number of these coefficients.
+    /// Number of these coefficients; 0 where the edge of a shadow or of a thing runs through the block.
     pub(crate) coefficients: usize,
 }
 
@@ -85,16 +87,33 @@ pub(crate) fn measure_carpet(
 ) -> Vec<CarpetBlock> {
     let side = block_side(picture);
     let visibility = Visibility::new(camera);
-    let mut blocks = Vec::new();
-    for row in 0..picture.height() / side {
-        for column in 0..picture.width() / side {
-            let corner = [column * side, row * side];
-            if let Some(point) = visibility.plain_carpet(corner, side) {
-                blocks.push(measure_block(picture, spectrum, corner, side, point));
-            }
-        }
-    }
-    blocks
+    let corners = (0..picture.height() / side)
+        .flat_map(|row| (0..picture.width() / side).map(move |column| [column * side, row * side]));
+    let plain: Vec<([u32; 2], DVec2)> =
+        corners.filter_map(|corner| Some((corner, visibility.plain_carpet(corner, side)?))).collect();
+    let measure = |(corner, point)| measure_block(picture, spectrum, corner, side, point);
+    thinned(plain).into_iter().map(measure).collect()
+}
+
+/// Keeps some of the blocks where many show the same piece of the ground: those near the camera, which would outweigh all
+/// others. Blocks are given with a point on the ground, world axes, metres.
+fn thinned(blocks: Vec<([u32; 2], DVec2)>) -> Vec<([u32; 2], DVec2)> {
+    let square = |point: DVec2| {
+        let place = (point / THRESHOLDS.thinned_square_m).floor();
+        [place.x as i32, place.y as i32]
+    };
+    let mut counts: BTreeMap<[i32; 2], usize> = BTreeMap::new();
+    blocks.iter().for_each(|(_, point)| *counts.entry(square(*point)).or_default() += 1);
+    let mut seen: BTreeMap<[i32; 2], usize> = BTreeMap::new();
+    let mut is_kept = |point: DVec2| {
+        let square = square(point);
+        let index = seen.entry(square).or_default();
+        *index += 1;
+        // The next of the blocks that are kept is due whenever a share of all has passed.
+        let due = |index: usize| index * THRESHOLDS.most_blocks_in_square / counts[&square];
+        counts[&square] <= THRESHOLDS.most_blocks_in_square || due(*index) > due(*index - 1)
+    };
+    blocks.into_iter().filter(|(_, point)| is_kept(*point)).collect()
 }
 
 /// Measures the square of `side` pixels (a multiple of 8) from a corner that lies on the file's grid of blocks.
@@ -107,6 +126,8 @@ fn measure_block(
 ) -> CarpetBlock {
     let mut sum = [0.0; 3];
     let mut energy = 0.0;
+    // Luma of the block's quarters.
+    let mut quarters = [0.0; 4];
     let parts = side / BLOCK as u32;
     for part in 0..parts * parts {
         let from = [corner[0] + BLOCK as u32 * (part % parts), corner[1] + BLOCK as u32 * (part / parts)];
@@ -121,7 +142,17 @@ fn measure_block(
             }
         }
         energy += spectrum.energy(&luma);
+        for (row, values) in luma.iter().enumerate() {
+            for (column, value) in values.iter().enumerate() {
+                let [u, v] = [from[0] + column as u32 - corner[0], from[1] + row as u32 - corner[1]];
+                quarters[(2 * (2 * v / side) + 2 * u / side) as usize] += value;
+            }
+        }
     }
+    let (darkest, brightest) = quarters
+        .iter()
+        .fold((f64::INFINITY, 0.0_f64), |(low, high), &quarter| (low.min(quarter), high.max(quarter)));
+    let is_even = brightest < (1.0 + THRESHOLDS.most_unevenness) * darkest;
     let pixels = f64::from(side * side);
     let middle = 0.5 * f64::from(side - 1);
     CarpetBlock {
@@ -129,7 +160,7 @@ fn measure_block(
         ground,
         level: sum.map(|sum| sum / (255.0 * pixels)),
         energy,
-        coefficients: (parts * parts) as usize * spectrum.chosen.len(),
+        coefficients: if is_even { (parts * parts) as usize * spectrum.chosen.len() } else { 0 },
     }
 }
 

@@ -11,12 +11,15 @@ use crate::{
         carpet::{CarpetBlock, Spectrum, measure_carpet},
         curve_index::CurveIndex,
         lines::{ExpectedLine, Line, measure_lines},
+        luma::LUMA,
         quantity::{ColorChannel, Quantity},
         quantization::luma_steps,
         scalar::{Measurement, Subject},
     },
-    thresholds::Thresholds,
+    thresholds::{MeasurementThresholds, Thresholds},
 };
+
+const THRESHOLDS: MeasurementThresholds = Thresholds::DEFAULT.measurement;
 
 /// Measurements of one picture; by default, there are none.
 #[derive(Debug, Clone, Default)]
@@ -104,7 +107,7 @@ impl FrameMeasurements {
     fn of_line(&self, subject: Subject, line: &Line, gamma: f64) -> [Measurement; 7] {
         let profile = &line.profile;
         let [red, blue] = profile.color_offset_px.unwrap_or([f64::NAN; 2]);
-        let level = profile.level.unwrap_or([f64::NAN; 3]).map(|level| log_linear(level, gamma));
+        let level = profile.level.unwrap_or([f64::NAN; 3]).map(|level| log_level(level, gamma));
         let at_line = |quantity, measured, sigma| Measurement {
             pixel: line.pixel,
             ground: line.ground,
@@ -112,6 +115,7 @@ impl FrameMeasurements {
             speed_px_s: line.speed_px_s,
             half_width_px: line.half_width_px,
             cos_incidence: self.cos_incidence(line.ground),
+            view_direction: self.view_direction(line.ground),
             ..Measurement::without_covariates(subject, quantity, measured, sigma)
         };
         [
@@ -126,14 +130,18 @@ impl FrameMeasurements {
     }
 
     fn of_block(&self, subject: Subject, block: &CarpetBlock, gamma: f64) -> [Measurement; 4] {
-        let level = block.level.map(|level| log_linear(level, gamma));
+        let level = block.level.map(|level| log_level(level, gamma));
         let count = block.coefficients as f64;
+        let luma: f64 = block.level.iter().zip(LUMA).map(|(level, weight)| level * weight).sum();
         // The expected logarithm of the mean square of n normal variables is 1/n below the logarithm of their variance.
-        let log_variance = (block.energy / count).ln() + 1.0 / count;
+        let log_variance = if count > 0.0 { (block.energy / count).ln() + 1.0 / count } else { f64::NAN };
         let at_block = |quantity, measured, sigma| Measurement {
             pixel: block.pixel,
             ground: block.ground,
             cos_incidence: self.cos_incidence(block.ground),
+            view_direction: self.view_direction(block.ground),
+            luma_slope: luma / gamma,
+            log_brightness: log_linear(luma, gamma),
             ..Measurement::without_covariates(subject, quantity, measured, sigma)
         };
         [
@@ -148,6 +156,17 @@ impl FrameMeasurements {
     fn cos_incidence(&self, ground: DVec2) -> f64 {
         (self.camera_in_world.z / self.camera_in_world.distance(ground.extend(0.0))).clamp(0.0, 1.0)
     }
+
+    /// Returns the horizontal part of the unit vector from the camera to a point on the ground.
+    fn view_direction(&self, ground: DVec2) -> DVec2 {
+        (ground.extend(0.0) - self.camera_in_world).normalize_or_zero().truncate()
+    }
+}
+
+/// Returns [`log_linear`] of a measured level; not a number where it is too dark or too bright to tell the light.
+fn log_level(encoded: f64, gamma: f64) -> f64 {
+    let [darkest, brightest] = THRESHOLDS.level;
+    if (darkest..=brightest).contains(&encoded) { log_linear(encoded, gamma) } else { f64::NAN }
 }
 
 /// Returns the natural logarithm of the linear value of a mean encoded value, by the nominal encoding

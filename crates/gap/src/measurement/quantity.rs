@@ -10,7 +10,7 @@ pub enum Channel {
     Color,
     /// Offset of white lines along their normal, pixels.
     Geometry,
-    /// Increments of the odometry: forward and left in metres, turn in radians.
+    /// Increments of the odometry, forward and left in metres, turn in radians; pitch and roll by joints and IMU, radians.
     Motion,
     /// Natural logarithm of the variance of luma on plain carpet.
     Noise,
@@ -46,6 +46,20 @@ impl Channel {
             Self::Motion => "m or rad",
         }
     }
+}
+
+/// Surface with a reflectance of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) enum Surface {
+    /// Painted line.
+    Line,
+    /// Carpet.
+    Carpet,
+}
+
+impl Surface {
+    /// Both surfaces.
+    pub(crate) const ALL: [Self; 2] = [Self::Line, Self::Carpet];
 }
 
 /// Colour channel of a picture, in the order in which pixels store them.
@@ -85,15 +99,27 @@ pub(crate) enum Quantity {
     OdometryLeft,
     /// Turn to the left in one step of the odometry, radians.
     OdometryTurn,
+    /// Pitch of the camera by joints and IMU, without its usual difference from that of the reference poses, radians.
+    StatedPitch,
+    /// The same of its roll.
+    StatedRoll,
+}
+
+impl ColorChannel {
+    /// All colour channels.
+    pub(crate) const ALL: [Self; 3] = [Self::Red, Self::Green, Self::Blue];
 }
 
 impl Quantity {
     /// Three quantities of an odometry step.
     pub(crate) const ODOMETRY: [Self; 3] = [Self::OdometryForward, Self::OdometryLeft, Self::OdometryTurn];
 
+    /// Pitch and roll by joints and IMU.
+    pub(crate) const STATED: [Self; 2] = [Self::StatedPitch, Self::StatedRoll];
+
     /// All quantities.
     #[cfg(test)]
-    pub(crate) const ALL: [Self; 14] = [
+    pub(crate) const ALL: [Self; 16] = [
         Self::LineOffset,
         Self::LineLevel(ColorChannel::Red),
         Self::LineLevel(ColorChannel::Green),
@@ -108,6 +134,8 @@ impl Quantity {
         Self::OdometryForward,
         Self::OdometryLeft,
         Self::OdometryTurn,
+        Self::StatedPitch,
+        Self::StatedRoll,
     ];
 
     pub(crate) const fn channel(self) -> Channel {
@@ -117,18 +145,36 @@ impl Quantity {
             Self::LineBlur => Channel::Sharpness,
             Self::RedOffset | Self::BlueOffset => Channel::Color,
             Self::NoiseVariance => Channel::Noise,
-            Self::OdometryForward | Self::OdometryLeft | Self::OdometryTurn => Channel::Motion,
+            Self::OdometryForward
+            | Self::OdometryLeft
+            | Self::OdometryTurn
+            | Self::StatedPitch
+            | Self::StatedRoll => Channel::Motion,
         }
     }
 
-    /// Whether the odometry measures it, not a picture.
-    pub(crate) fn is_odometry(self) -> bool {
+    /// Whether the odometry, joints or IMU measure it, not a picture.
+    pub(crate) fn is_proprioceptive(self) -> bool {
         self.channel() == Channel::Motion
     }
 
-    /// Whether it is the level of a block of carpet in some colour.
-    pub(crate) fn is_carpet_level(self) -> bool {
-        matches!(self, Self::CarpetLevel(_))
+    /// Returns the surface whose level it is.
+    pub(crate) fn surface(self) -> Option<Surface> {
+        match self {
+            Self::LineLevel(_) => Some(Surface::Line),
+            Self::CarpetLevel(_) => Some(Surface::Carpet),
+            _ => None,
+        }
+    }
+
+    /// Iterates over the levels of lines and of carpet.
+    pub(crate) fn levels() -> impl Iterator<Item = Self> {
+        ColorChannel::ALL.into_iter().flat_map(|color| [Self::LineLevel(color), Self::CarpetLevel(color)])
+    }
+
+    /// Whether it is a level of lines or of carpet.
+    pub(crate) fn is_level(self) -> bool {
+        self.surface().is_some()
     }
 }
 

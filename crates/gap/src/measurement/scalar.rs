@@ -14,6 +14,8 @@ pub(crate) enum Subject {
     Carpet(usize),
     /// Odometry step to the next frame.
     OdometryStep,
+    /// Pitch and roll by joints and IMU.
+    Attitude,
 }
 
 /// Scalar measurement.
@@ -37,6 +39,12 @@ pub(crate) struct Measurement {
     pub(crate) half_width_px: f64,
     /// Cosine of the angle of incidence at which the ground is seen; 1 from straight above.
     pub(crate) cos_incidence: f64,
+    /// Horizontal part of the unit vector from the camera to the point on the ground, world axes.
+    pub(crate) view_direction: DVec2,
+    /// Derivative of encoded luma (0–1) by the logarithm of the light, by the nominal encoding.
+    pub(crate) luma_slope: f64,
+    /// Natural logarithm of the linear value of luma, by the nominal encoding.
+    pub(crate) log_brightness: f64,
 }
 
 impl Measurement {
@@ -58,7 +66,18 @@ impl Measurement {
             speed_px_s: 0.0,
             half_width_px: 0.0,
             cos_incidence: 1.0,
+            view_direction: DVec2::ZERO,
+            luma_slope: 0.0,
+            log_brightness: 0.0,
         }
+    }
+
+    /// Returns the two measurements of pitch and roll by joints and IMU, radians.
+    pub(crate) fn of_attitude([pitch_rad, roll_rad]: [f64; 2]) -> [Self; 2] {
+        let [pitch, roll] = Quantity::STATED;
+        [(pitch, pitch_rad), (roll, roll_rad)].map(|(quantity, angle_rad)| {
+            Self::without_covariates(Subject::Attitude, quantity, angle_rad, 0.0)
+        })
     }
 
     /// Returns the three measurements of an odometry step.

@@ -16,8 +16,11 @@ pub use self::{
     pictures::{Pictures, PicturesError},
 };
 pub use crate::{
-    diagnostics::finding::{FieldLine, Finding, Movement, NominalValue, OdometryComponent, PatternCell},
-    diagnostics::object::{Object, ObjectMotion},
+    diagnostics::{
+        finding::{FieldLine, Finding, Movement, NominalValue, OdometryComponent, PatternCell},
+        input_mistake::InputMistake,
+        object::{Object, ObjectMotion},
+    },
     inference::detection_limit::{MissingInput, UnobservableCause},
     measurement::quantity::{Channel, ColorChannel},
 };

@@ -49,14 +49,17 @@ impl Pictures {
         let sequence = recording.sequence;
         let index = analysis.report.shown_frame;
         let time_s = sequence.frames.get(index).map_or(0.0, |frame| frame.timestamp_s);
+        let measured = sequence.load_image(index)?;
+        let (width, height) = measured.dimensions();
         let colors = SceneColors::new(&sequence.setup, &sequence.field);
         let drawn = |model: &Model| -> Result<RgbImage, PicturesError> {
             let renderer = Renderer::with_model(&sequence.setup, &sequence.field, colors, model)?;
-            renderer
-                .draw_at(&recording.trajectory, time_s, None)
-                .map_err(|source| PicturesError::Pose { index, source })
+            match renderer.draw_at(&recording.trajectory, time_s, None) {
+                // A camera under the ground sees nothing; why it is there is in the report.
+                Err(RenderError::NotAboveGround { .. }) => Ok(RgbImage::new(width, height)),
+                drawn => drawn.map_err(|source| PicturesError::Pose { index, source }),
+            }
         };
-        let measured = sequence.load_image(index)?;
         let chain = Chain::new(&sequence.setup, &sequence.field, &analysis.model)?;
         let view = FrameCamera::new(&chain, &recording.trajectory, time_s);
         let visibility = Visibility::new(&view);

@@ -7,6 +7,9 @@ pub(crate) struct MeasurementThresholds {
     pub(crate) profile: ProfileThresholds,
     pub(crate) carpet: CarpetThresholds,
     pub(crate) visibility: VisibilityThresholds,
+    /// Darkest and brightest mean encoded value that tells of the light, 0 to 1. Chosen: below, files keep little of a colour
+    /// and noise is cut off at black; above, it is cut off at white.
+    pub(crate) level: [f64; 2],
 }
 
 /// Which pieces of line are predicted, and with how much contrast they are found.
@@ -101,6 +104,15 @@ pub(crate) struct CarpetThresholds {
     /// Width of pictures from which on blocks of carpet have 16 × 16 pixels, and not 8 × 8, pixels. Chosen: between the 320
     /// and the 640 px of the study's pictures, so that a block shows as much carpet in both.
     pub(crate) large_blocks_from_width_px: u32,
+    /// Side of the squares of the ground in which only some blocks are measured, metres. Derived: the smallest patch of
+    /// carpet, [`super::ReflectanceThresholds::smallest_carpet_patch_m`].
+    pub(crate) thinned_square_m: f64,
+    /// Number of blocks that are measured in such a square. Chosen: near the camera dozens show it, and the light on them is
+    /// the same; a few suffice to tell that of the lens.
+    pub(crate) most_blocks_in_square: usize,
+    /// Difference of the quarters of a block in which noise is measured, as a part of the darkest one, encoded. Chosen: above
+    /// blotches and noise, below the edge of a shadow.
+    pub(crate) most_unevenness: f64,
     /// Lowest and highest frequency in which noise is measured, as the sum of the coefficient's row and column. Chosen: lower
     /// ones hold the carpet's texture, and of higher ones a JPEG file keeps little. Doubling it changes a report, see
     /// `docs/figures/gap_thresholds.md`.
@@ -145,6 +157,7 @@ pub(crate) struct VisibilityThresholds {
 
 impl MeasurementThresholds {
     pub(super) const DEFAULT: Self = Self {
+        level: [0.12, 0.97],
         line: LineThresholds {
             spacing_m: 0.03,
             spacing_px: 9.0,
@@ -179,6 +192,9 @@ impl MeasurementThresholds {
         },
         carpet: CarpetThresholds {
             large_blocks_from_width_px: 480,
+            thinned_square_m: 0.25,
+            most_unevenness: 0.12,
+            most_blocks_in_square: 4,
             noise_frequencies: [3, 6],
             most_quantization_step: 12.0,
             same_hue_factor: 1.3,

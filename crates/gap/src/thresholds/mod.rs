@@ -31,13 +31,16 @@ pub(crate) use self::{
         ObstructionThresholds, OdometryThresholds, PatternThresholds,
     },
     inference::InferenceThresholds,
-    linear_model::{LinearModelThresholds, NuisanceThresholds, PoseErrorThresholds},
+    linear_model::{
+        LinearModelThresholds, NuisanceThresholds, PoseErrorThresholds, ReferenceDriftThresholds,
+        ReflectanceThresholds,
+    },
     measurement::{
         CarpetThresholds, LineThresholds, MeasurementThresholds, ProfileThresholds, VisibilityThresholds,
     },
     recording::RecordingThresholds,
     report::ReportThresholds,
-    workflow::WorkflowThresholds,
+    workflow::{InputMistakeThresholds, WorkflowThresholds},
 };
 
 /// Every number that decides something, by the layer that it decides in.

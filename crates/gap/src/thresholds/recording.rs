@@ -18,6 +18,9 @@ pub(crate) struct RecordingThresholds {
     /// Odometry between frames farther apart than this is not compared, seconds. Derived: the longest step that a trajectory
     /// joins by a curve, see [`reality_sim_sensor::Trajectory`].
     pub(crate) longest_step_s: f64,
+    /// Reference poses are used up to this time before the first frame and after the last, seconds. Chosen: the largest
+    /// delays of the library add up to less.
+    pub(crate) trajectory_margin_s: f64,
     /// The camera moves where its distance from the first frame is more than this on average, metres. Chosen: two views.
     pub(crate) moves_m: f64,
     /// Or where it is turned from the first frame by more than this on average, radians. Chosen: two and a half views.
@@ -32,6 +35,7 @@ impl RecordingThresholds {
         same_view_rad: 0.02,
         least_views: 8,
         longest_step_s: 0.6,
+        trajectory_margin_s: 0.5,
         moves_m: 0.05,
         moves_rad: 0.05,
     };

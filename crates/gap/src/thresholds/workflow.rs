@@ -25,6 +25,30 @@ pub(crate) struct WorkflowThresholds {
     pub(crate) alignment_values: usize,
     /// Parameters that are moved, one after the other. Chosen for the time that it takes.
     pub(crate) alignment_rounds: usize,
+    /// Times of a jump of the clock that are tried. Chosen for the time that it takes: one in four frames of a minute.
+    pub(crate) jump_times: usize,
+    pub(crate) input_mistake: InputMistakeThresholds,
+}
+
+/// When a recording's files are taken to be meant in another way than they are read.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct InputMistakeThresholds {
+    /// Pictures that are looked at. Chosen for the time that it takes.
+    pub(crate) pictures: usize,
+    /// Share of the pieces of line that is found from which on the files are read as they are meant. Chosen: far above what
+    /// wrong poses find by chance, and below what poses find that are off by a degree.
+    pub(crate) most_found_before: f64,
+    /// Share that another reading has to find. Chosen: as [`WorkflowThresholds::alignment_found`].
+    pub(crate) least_found_after: f64,
+    /// Pieces of line that a reading has to expect in a picture on average. Chosen; no measurement.
+    pub(crate) least_pieces: f64,
+    /// Median depression of a camera from which on it can be no number of radians. Chosen: a camera that looks straight down.
+    pub(crate) largest_pitch_rad: f64,
+    /// Mean square difference between what the robot states of itself and its reference poses, over the mean square of the
+    /// latter, that another reading may leave. Chosen: half of the motion may be odometry's errors.
+    pub(crate) most_misfit: f64,
+    /// Part of that of the files as they stand which it may leave. Chosen; no measurement.
+    pub(crate) least_misfit_ratio: f64,
 }
 
 impl WorkflowThresholds {
@@ -39,5 +63,15 @@ impl WorkflowThresholds {
         alignment_least_move_px: 2.0,
         alignment_values: 16,
         alignment_rounds: 3,
+        jump_times: 15,
+        input_mistake: InputMistakeThresholds {
+            pictures: 8,
+            most_found_before: 0.4,
+            least_found_after: 0.6,
+            least_pieces: 5.0,
+            largest_pitch_rad: 1.6,
+            most_misfit: 0.5,
+            least_misfit_ratio: 0.1,
+        },
     };
 }

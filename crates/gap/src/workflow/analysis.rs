@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::DVector;
 use rayon::prelude::*;
-use reality_sim_sensor::{EffectIndex, Model};
+use reality_sim_sensor::{EffectIndex, Model, Role};
 
 use crate::{
     diagnostics::DETECTORS,
@@ -32,13 +32,15 @@ use crate::{
     report::data::{EffectReport, Estimate, Gap, Limit, NotFoundReport, PosesReport, Report, Unobservable},
     report::maps::maps,
     thresholds::{ReportThresholds, Thresholds},
+    workflow::input_mistakes::input_mistake,
     workflow::selection::{Options, as_given, find},
+    workflow::stopped::stopped,
     workflow::verdict::verdict,
 };
 
 const THRESHOLDS: ReportThresholds = Thresholds::DEFAULT.report;
 
-/// Runs the whole workflow: finds the effects that a model lacks, adds them, and evaluates the result on held-out frames.
+/// Runs the whole workflow, unless the recording's files hold a mistake, which is then all that is reported: finds the effects that a model lacks, adds them, and evaluates the result on held-out frames.
 /// `progress` is called at every stage.
 ///
 /// # Errors
@@ -50,6 +52,9 @@ pub fn analyse(
     options: &Options,
     progress: &dyn Fn(Progress),
 ) -> Result<Analysis, MeasureError> {
+    if let Some(mistake) = input_mistake(recording)? {
+        return Ok(stopped(recording, model, options.seed, mistake));
+    }
     let found = find(recording, model, options, progress)?;
     progress(Progress::Evaluating);
     let tests = found.effect_tests();
@@ -175,7 +180,7 @@ fn effect_report(
     let confusable = found.confusable_with(test.effect).into_iter();
     EffectReport {
         id: effect.id().to_owned(),
-        parameters: estimates(fits, test),
+        parameters: estimates(fits, test, &found.linearized.model),
         correlations: correlations(fits, test),
         given: given.map(|(parameter, value)| (parameter.name.to_owned(), *value)).collect(),
         p_value: found.p_value(test),
@@ -186,7 +191,7 @@ fn effect_report(
 }
 
 /// Returns estimates of an effect's parameters by their names.
-fn estimates(fits: &EffectFits<'_>, test: &EffectTest) -> BTreeMap<String, Estimate> {
+fn estimates(fits: &EffectFits<'_>, test: &EffectTest, model: &Model) -> BTreeMap<String, Estimate> {
     let estimate = |index: ColumnIndex| {
         let column = &fits.columns[index.0];
         let sigma = fits.evidence.sigma(&test.fit, index);
@@ -196,7 +201,18 @@ fn estimates(fits: &EffectFits<'_>, test: &EffectTest) -> BTreeMap<String, Estim
         let parameter = column.parameter();
         (parameter.name.to_owned(), Estimate { value, sigma, unit: Some(parameter.unit.to_owned()) })
     };
-    fits.columns_of(&[test.effect]).into_iter().map(estimate).collect()
+    let fitted = fits.columns_of(&[test.effect]).into_iter().map(estimate);
+    fitted.chain(fixed(test.effect, model)).collect()
+}
+
+/// Iterates over the parameters that the recording gives.
+fn fixed(effect: EffectIndex, model: &Model) -> impl Iterator<Item = (String, Estimate)> {
+    let parameters = effect.effect().parameters().iter();
+    let values = model.values(effect.effect().id()).unwrap_or_default();
+    let given = parameters.zip(values).filter(|(parameter, _)| parameter.role == Role::Fixed);
+    given.map(|(parameter, &value)| {
+        (parameter.name.to_owned(), Estimate { value, sigma: 0.0, unit: Some(parameter.unit.to_owned()) })
+    })
 }
 
 /// Returns correlations of these estimates' errors; each pair of parameters appears once, in their order.
@@ -261,7 +277,7 @@ fn fit_residuals<'a>(
         measurements: found.split.training().map(|frame| &linearized.measurements[frame]).collect(),
         sigmas: &linearized.system.sigmas,
         nuisances: &linearized.nuisances,
-        nuisance_values: &delta.as_slice()[found.columns.len()..],
+        nuisance_values: &delta.as_slice()[found.columns.len()..linearized.system.columns.dense()],
         model_error,
         gaps,
     }
@@ -276,10 +292,10 @@ fn findings(fit: &FitResiduals<'_>) -> Vec<Finding> {
 /// values.
 fn nuisance_fit(found: &SelectedModel) -> DVector<f64> {
     let fits = found.effect_fits();
-    let mut delta = fits.evidence.fit(&fits.columns_of(&found.all())).map_or_else(
-        || DVector::zeros(found.columns.len() + found.linearized.nuisances.len()),
-        |fit| fit.delta,
-    );
+    let mut delta = fits
+        .evidence
+        .fit(&fits.columns_of(&found.all()))
+        .map_or_else(|| DVector::zeros(found.linearized.system.columns.len()), |fit| fit.delta);
     delta.rows_mut(0, found.columns.len()).fill(0.0);
     delta
 }
@@ -298,7 +314,8 @@ fn frame_residuals<'a>(
             let frame = &found.linearized.frames[index];
             FrameResiduals {
                 measurements: &frame.measurements,
-                values: FittedResiduals::new(frame, weights, delta, &system.pose_sigmas).residuals,
+                values: FittedResiduals::new(frame, weights, delta, &system.columns, &system.pose_sigmas)
+                    .residuals,
                 time_s: recording.frames[index].time_s,
                 camera: found.linearized.measurements[index].camera_in_world.truncate(),
                 size: [camera.width, camera.height],

@@ -2,5 +2,8 @@
 
 pub(crate) mod analysis;
 pub(crate) mod coarse_alignment;
+mod fixed_values;
+mod input_mistakes;
 pub(crate) mod selection;
+mod stopped;
 pub(crate) mod verdict;

@@ -16,6 +16,7 @@ use crate::{
     recording::Recording,
     thresholds::Thresholds,
     workflow::coarse_alignment::coarsely_aligned,
+    workflow::fixed_values::search_fixed_values,
 };
 
 const SEARCH_FIRST: f64 = Thresholds::DEFAULT.inference.search_first;
@@ -103,7 +104,8 @@ fn start(
     if let Some(aligned) = coarsely_aligned(recording, &as_given, search.columns, search.split)? {
         linearized = linearize(aligned)?;
     }
-    Ok((as_given, linearized))
+    search_fixed_values(recording, &linearized, search.split)?;
+    Ok((as_given, linearized.again(recording, search.columns, search.split)?))
 }
 
 /// Returns the effects of a model that are in the library.

@@ -20,7 +20,7 @@ pub enum Stage {
     Sensor,
     /// Linear output to pixel values.
     Encoding,
-    /// The motion that the robot believes it made.
+    /// What the robot believes of its motion: the odometry, and the pitch and roll of its camera.
     Odometry,
 }
 
@@ -61,6 +61,8 @@ pub enum Covariate {
     Intensity,
     /// Time since the recording's start.
     Time,
+    /// Phase of the robot's steps.
+    GaitPhase,
     /// Red, green or blue.
     Color,
     /// The frame as a whole.
@@ -72,6 +74,8 @@ pub enum Covariate {
 pub enum Need {
     /// The odometry of its frames.
     Odometry,
+    /// Reference poses that something other than the pictures measured.
+    MeasuredPoses,
     /// The nominal reflectance of lines and carpet.
     NominalReflectance,
     /// The nominal noise of the sensor.
@@ -90,6 +94,8 @@ pub enum Changes {
     Noise,
     /// The odometry.
     Odometry,
+    /// Pitch and roll as the robot states them.
+    Attitude,
     /// Pictures and odometry.
     PicturesAndOdometry,
 }

@@ -3,7 +3,7 @@
 //! The output for a linear value `v` is `offset + (1 − offset) · v`: full scale stays full scale.
 
 use crate::{
-    effect::{About, Changes, Covariate, Effect, Estimates, Need, Opposite, Parameter, Stage, values},
+    effect::{About, Changes, Covariate, Effect, Estimates, Opposite, Parameter, Stage, values},
     text::Unit,
 };
 
@@ -24,7 +24,7 @@ const ABOUT: About = About {
     stage: Stage::Sensor,
     parameters: &[Parameter::size("offset", "1", [-0.05, 0.2], 0.004)],
     covariates: &[Covariate::Intensity],
-    needs: &[Need::NominalReflectance],
+    needs: &[],
     changes: Changes::Pictures,
     varies_over_time: false,
     recording_that_would_decide: "bring places into the picture that are nearly black and places that are bright",

@@ -4,7 +4,7 @@
 //! recording's start to its end; outside the recording it is constant.
 
 use crate::{
-    effect::{About, Changes, Covariate, Effect, Estimates, Need, Parameter, Stage, values},
+    effect::{About, Changes, Covariate, Effect, Estimates, Parameter, Stage, values},
     text::{Uncertain, Unit, percent},
 };
 
@@ -48,7 +48,7 @@ const ABOUT: About = About {
         knot("ev_12"),
     ],
     covariates: &[Covariate::Time, Covariate::Frame, Covariate::Intensity],
-    needs: &[Need::NominalReflectance],
+    needs: &[],
     changes: Changes::Pictures,
     varies_over_time: true,
     recording_that_would_decide: "look at the same places of the field again and again over the whole recording",

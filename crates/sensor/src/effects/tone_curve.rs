@@ -4,7 +4,7 @@
 
 use super::phrases::outstanding;
 use crate::{
-    effect::{About, Changes, Covariate, Effect, Estimates, Need, Parameter, Stage, values},
+    effect::{About, Changes, Covariate, Effect, Estimates, Parameter, Stage, values},
     text::{Uncertain, Unit},
     tone::{InvalidTone, Tone},
 };
@@ -26,7 +26,7 @@ const ABOUT: About = About {
         Parameter::size("contrast", "1", [-0.8, 0.8], 0.03),
     ],
     covariates: &[Covariate::Intensity],
-    needs: &[Need::NominalReflectance],
+    needs: &[],
     changes: Changes::Pictures,
     varies_over_time: false,
     recording_that_would_decide: "bring places of many brightnesses into the picture, between black and full white",

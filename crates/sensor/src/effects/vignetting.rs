@@ -5,7 +5,7 @@
 //! and bend terms vanish at the centre and at the corner.
 
 use crate::{
-    effect::{About, Changes, Covariate, Effect, Estimates, Need, Parameter, Stage, values},
+    effect::{About, Changes, Covariate, Effect, Estimates, Parameter, Stage, values},
     text::Unit,
 };
 
@@ -30,7 +30,7 @@ const ABOUT: About = About {
         Parameter::shape("bend", "1", [-0.4, 0.4], 0.01),
     ],
     covariates: &[Covariate::Radius, Covariate::Intensity],
-    needs: &[Need::NominalReflectance],
+    needs: &[],
     changes: Changes::Pictures,
     varies_over_time: false,
     recording_that_would_decide: "bring the same places of the field into the middle of the picture and into its corners",

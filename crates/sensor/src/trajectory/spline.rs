@@ -27,6 +27,11 @@ impl Spline {
         Self { times_s, values: values.to_vec(), bends }
     }
 
+    /// Times of the values, seconds.
+    pub(super) fn times_s(&self) -> &[f64] {
+        &self.times_s
+    }
+
     /// Returns the value at a time; beyond the knots it extrapolates linearly for at most `continuation_s`. NaN if the time
     /// is NaN.
     pub(super) fn at(&self, time_s: f64, continuation_s: f64) -> Coordinates {

@@ -87,6 +87,35 @@ fn poses_are_matched_to_the_nearest_frame_in_any_order() {
 }
 
 #[test]
+fn a_frame_between_two_near_poses_has_the_pose_interpolated_there() {
+    // Frames at 0.2, 0.4 and 0.6 s; half a turn about the optical axis goes on for 0.04 s at an even rate.
+    let text = "0.19 1 0 1 0 0 0 1\n0.23 2 0 3 0 0 1 1\n0.375 0 0 1 0 0 0 1\n0.43 9 0 1 0 0 0 1\n0.6 3 0 1 0 0 0 1\n";
+    let sequence = Sequence::open(folder_with("groundtruth.tum", text).path()).unwrap();
+    let poses: Vec<_> = sequence.reference_poses().collect();
+    let first = poses[0].unwrap();
+    assert!((first.x_m - 1.25).abs() < 1e-9 && (first.height_m - 1.5).abs() < 1e-9);
+    let turned = first.quaternion_world_from_camera().angle_between(glam::DQuat::IDENTITY);
+    assert!((turned - std::f64::consts::FRAC_PI_8).abs() < 1e-6, "{turned}");
+    assert_eq!(poses[1], None, "poses 0.055 s apart are too far apart");
+    assert_eq!(poses[2].unwrap().x_m, 3.0);
+}
+
+#[test]
+fn poses_of_no_frame_are_kept_in_order_of_time() {
+    let text = "0.7 5 0 1 0 0 0 1\n0.6004 3 0 1 0 0 0 1\n0.3 2 0 1 0 0 0 1\n0.2006 1 0 1 0 0 0 1\n0.1 0 0 1 0 0 0 1\n";
+    let folder = folder_with("groundtruth.tum", text);
+    let sequence = Sequence::open(folder.path()).unwrap();
+    let times = |sequence: &Sequence| -> Vec<f64> {
+        sequence.poses_between_frames.iter().map(|stamped| stamped.timestamp_s).collect()
+    };
+    assert_eq!(times(&sequence), [0.1, 0.2006, 0.3, 0.7]);
+    let again = tempfile::tempdir().unwrap();
+    sequence.write(again.path()).unwrap();
+    let read = Sequence::open(again.path()).unwrap();
+    assert_eq!(times(&read), times(&sequence), "a sequence is written with all its poses");
+}
+
+#[test]
 fn tum_takes_comments_blank_lines_and_any_scale_of_the_quaternion() {
     let text = "# one\n\n  1e0\t1  2 3 0 0 0 1  \n   # two\n2 1 2 3 0 0 0 7\r\n3 1 2 3 0 0 0 1e200";
     let poses = tum::parse_tum(Path::new("a.tum"), text).unwrap();

@@ -10,12 +10,14 @@ use reality_sim_sensor::{EffectIndex, Model};
 use crate::{
     frame_index::{PerFrame, ViewIndex},
     linear_model::{
-        column::ColumnIndex, linearized_frame::LinearizedFrame, parameters::FittedParameter,
-        system::LinearSystem,
+        column::ColumnIndex,
+        linearized_frame::LinearizedFrame,
+        parameters::FittedParameter,
+        system::{LinearSystem, Weighting},
     },
     measurement::{quantity::Quantity, scalar::Measurement},
     recording::ReferenceKind,
-    testing::{Noise, measurement},
+    testing::{Noise, measurement, parameters},
 };
 
 /// Number of frames of a simulated recording; each frame is a view of its own.
@@ -85,6 +87,7 @@ impl World {
                     measurements: Vec::new(),
                     residuals: Vec::new(),
                     jacobian: Vec::new(),
+                    patches: vec![None; ROWS],
                     pose_gradients: vec![Vector6::zeros(); ROWS],
                 };
                 for row in 0..ROWS {
@@ -115,7 +118,9 @@ impl World {
 
     fn system(&self, frames: &[&LinearizedFrame]) -> LinearSystem {
         let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
-        LinearSystem::new(frames, self.columns.len(), ReferenceKind::Whole, &views)
+        let columns = parameters(self.columns.len());
+        let (weighting, _) = Weighting::estimate(frames, &columns, ReferenceKind::Whole);
+        LinearSystem::new(frames, columns, weighting, &views)
     }
 
     /// Returns a model in the columns' coordinates.

@@ -39,6 +39,7 @@ fn walk<'a>(sequence: &'a Sequence, steps_m: &[f64], gaps: &[usize]) -> Recordin
                 index_in_sequence: index,
                 time_s: poses[index].0,
                 step: has_step.then_some(OdometryStep { until_s, odometry }),
+                stated_attitude_rad: None,
             }
         })
         .collect();
@@ -48,8 +49,8 @@ fn walk<'a>(sequence: &'a Sequence, steps_m: &[f64], gaps: &[usize]) -> Recordin
         trajectory,
         frames,
         source: ReferenceSource::Measured,
-        reflectance: None,
         left_out: Vec::new(),
+        searched: Default::default(),
     }
 }
 

@@ -6,6 +6,7 @@ use super::*;
 use crate::{
     diagnostics::{
         finding::{FieldLine, Movement, NominalValue, OdometryComponent, PatternCell},
+        input_mistake::InputMistake,
         object::ObjectMotion,
     },
     inference::detection_limit::MissingInput,
@@ -27,7 +28,6 @@ fn all_findings() -> Vec<Finding> {
     let values = [
         NominalValue::LineLevel(ColorChannel::Red),
         NominalValue::CarpetLevel(ColorChannel::Blue),
-        NominalValue::Sheen,
         NominalValue::Blur,
         NominalValue::BlurByWidth,
         NominalValue::BlurShape,
@@ -44,6 +44,8 @@ fn all_findings() -> Vec<Finding> {
         odometry(OdometryComponent::Left, Movement::Turn),
         odometry(OdometryComponent::Turn, Movement::Time),
         Finding::Scatter { channel: Channel::Geometry, size: 1.4, floor: 0.5 },
+        Finding::InputMistake { mistake: InputMistake::PosesCameraFromWorld },
+        Finding::InputMistake { mistake: InputMistake::FieldOfAnotherLeague(2) },
     ];
     all.extend(cells.map(pattern));
     all.push(Finding::Obstruction { share: 0.12, column: 1, row: 4, grid: [8, 6] });
@@ -58,10 +60,11 @@ fn all_objects() -> Vec<Object> {
     vec![standing, Object { motion: ObjectMotion::Moving, place_m: None, ..standing }]
 }
 
-fn all_causes() -> [UnobservableCause; 8] {
+fn all_causes() -> [UnobservableCause; 9] {
     let missing = |input| UnobservableCause::MissingInput { input };
     [
         missing(MissingInput::Odometry),
+        missing(MissingInput::MeasuredPoses),
         missing(MissingInput::Reflectance),
         missing(MissingInput::Noise),
         missing(MissingInput::Sharpness),
@@ -183,7 +186,7 @@ fn words_stand_beside_the_numbers() {
     }
     assert_eq!(written["unexplained"][0]["finding"]["kind"], "flicker");
     assert_eq!(written["objects"][0]["motion"], "standing");
-    assert_eq!(written["not_judged"], serde_json::json!(vec!["time_offset"; 4]));
+    assert_eq!(written["not_judged"], serde_json::json!(vec!["time_offset"; 5]));
     assert_eq!(written["unobservable"][6]["cause"]["kind"], "few_views");
     assert_eq!(written["gap"]["channels"]["geometry"]["unit"], "px");
     assert_eq!(written["maps"]["sharpness"]["unit"], "px2");

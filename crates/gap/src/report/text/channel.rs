@@ -19,7 +19,7 @@ pub fn channel_meaning(channel: Channel) -> &'static str {
     match channel {
         Channel::Color => "Offset of red and blue against the other colours along a line's normal",
         Channel::Geometry => "Offset of white lines along their normal",
-        Channel::Motion => "Increments of the odometry",
+        Channel::Motion => "Increments of the odometry; pitch and roll by joints and IMU",
         Channel::Noise => "Natural logarithm of the variance on plain carpet",
         Channel::Photometry => "Natural logarithm of lines' and carpet's brightness, for each colour",
         Channel::Sharpness => "Variance of the blur across a line",

@@ -3,6 +3,7 @@
 use reality_sim_sensor::text::{percent, rounded};
 
 use super::{
+    input_mistake::input_mistake,
     number::amount,
     place::{field_place, picture_place},
 };
@@ -14,6 +15,7 @@ use crate::{
 /// Returns where a finding shows, and as what: "in the picture, strongest left of the middle, in the lower part".
 pub fn finding_place(finding: &Finding) -> String {
     match finding {
+        Finding::InputMistake { mistake } => input_mistake(*mistake),
         Finding::Pattern { strongest, .. } => pattern(*strongest),
         Finding::Flicker { .. } => {
             "bands along the rows that differ from picture to picture, as of lamps that flicker".to_owned()
@@ -49,7 +51,10 @@ pub fn finding_size(finding: &Finding) -> String {
 
 /// Whether the words of [`finding_place`] already state the finding's size.
 pub(super) fn place_has_size(finding: &Finding) -> bool {
-    matches!(finding, Finding::Obstruction { .. } | Finding::MissingLine { .. })
+    matches!(
+        finding,
+        Finding::Obstruction { .. } | Finding::MissingLine { .. } | Finding::InputMistake { .. }
+    )
 }
 
 /// Returns where a pattern is strongest.
@@ -100,7 +105,6 @@ fn nominal_value(value: NominalValue) -> String {
     match value {
         NominalValue::LineLevel(color) => format!("{} of lines", color_name(color)),
         NominalValue::CarpetLevel(color) => format!("{} of carpet", color_name(color)),
-        NominalValue::Sheen => "carpet seen at a grazing angle".to_owned(),
         NominalValue::Blur => "the blur".to_owned(),
         NominalValue::BlurByWidth => "the blur of broad lines against thin ones".to_owned(),
         NominalValue::BlurShape => "the shape of the blur".to_owned(),

@@ -3,6 +3,7 @@
 mod channel;
 mod effect;
 mod finding;
+mod input_mistake;
 mod number;
 mod object;
 mod place;

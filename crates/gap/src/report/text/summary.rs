@@ -23,6 +23,9 @@ const NAMED: usize = 2;
 
 /// Returns the verdict as one to a few sentences.
 pub fn summary(report: &Report) -> String {
+    if let [finding @ Finding::InputMistake { .. }] = report.unexplained.as_slice() {
+        return sentence(&finding_place(finding));
+    }
     let verdict = match report.verdict {
         Verdict::None => nothing(report),
         Verdict::Named | Verdict::Confusable => named(report),

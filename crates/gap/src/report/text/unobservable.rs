@@ -12,6 +12,9 @@ pub fn unobservable_reason(cause: &UnobservableCause) -> &'static str {
     match cause {
         UnobservableCause::MissingInput { input } => match input {
             MissingInput::Odometry => "there is no odometry in frames.csv",
+            MissingInput::MeasuredPoses => {
+                "places and headings come from the pictures themselves, and follow whatever shifts these"
+            }
             MissingInput::Reflectance => "nothing in camera.toml says how bright lines and carpet are",
             MissingInput::Noise => "nothing in camera.toml says how much noise to expect",
             MissingInput::Sharpness => "nothing in camera.toml says how sharp the picture should be",
@@ -34,6 +37,9 @@ pub fn unobservable_remedy(report: &Unobservable) -> &'static str {
     match report.cause {
         UnobservableCause::MissingInput { input } => match input {
             MissingInput::Odometry => "write odometry_x_m, odometry_y_m and odometry_yaw_rad into frames.csv",
+            MissingInput::MeasuredPoses => {
+                "measure the camera's poses, with motion capture or the like, for groundtruth.tum"
+            }
             MissingInput::Reflectance => {
                 "write line_linear_rgb and carpet_linear_rgb into [photometry] of camera.toml"
             }
