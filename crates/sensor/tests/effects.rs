@@ -203,10 +203,13 @@ fn light_and_gain_follow_their_formulas() {
     let mirrored = -0.1 - 0.2 - 0.3 + 0.05 + 0.1;
     assert!((uneven.light(&p, -corner, &field).ln() - mirrored).abs() < 1e-12);
     assert!((uneven.light(&[1.5; 5], 5.0 * corner, &field).ln() - 3.0).abs() < 1e-12);
-    // Beyond the places that were seen the light is that at their edge.
-    let seen = [0.1, 0.2, -0.3, 0.05, 0.1, -0.5, 0.5, -1.0, 1.0];
-    let edge = 0.1 * 0.5 + 0.2 - 0.3 * 0.25 + 0.05 * 0.5 + 0.1;
+    // Legendre's polynomials over the places that were seen; beyond them the light is that at their edge.
+    let seen = [0.1, 0.2, -0.3, 0.05, 0.1, 0.07, -0.5, 0.5, -1.0, 1.0];
+    let edge = seen[..6].iter().sum::<f64>();
     assert!((uneven.light(&seen, corner, &field).ln() - edge).abs() < 1e-12);
+    let within = DVec2::new(0.25 * corner.x, 0.0);
+    let at_half = 0.1 * 0.5 - 0.3 * (1.5 * 0.25 - 0.5) + 0.1 * -0.5 + 0.07;
+    assert!((uneven.light(&seen, within, &field).ln() - at_half).abs() < 1e-12);
 }
 
 #[test]

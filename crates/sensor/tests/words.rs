@@ -185,7 +185,7 @@ fn uneven_light_has_a_brightest_and_a_darkest_place() {
     let factors = [0.3, 0.0, 0.0, 0.0, -0.2];
     let values: Vec<_> = names.into_iter().zip(factors).map(|(name, value)| (name, value, 0.01)).collect();
     let text =
-        "the light is brightest at the end at +x and darkest in the corner at −x and −y, by a factor of 2.2";
+        "the light is brightest at the end at +x and darkest in the corner at −x and −y, by a factor of 2.5";
     assert_eq!(size("uneven_illumination", &values, 0.0), text);
 }
 

@@ -74,9 +74,9 @@ pub enum MissingInput {
 }
 
 impl UnobservableCause {
-    /// Whether another recording by the same robot would help. Otherwise the recording's files lack something.
-    pub(crate) fn is_of_the_recording(self) -> bool {
-        !matches!(self, Self::MissingInput { .. })
+    /// Whether the robot moved too little: then the recording as a whole, not its view of one effect, falls short.
+    pub(crate) fn is_lack_of_movement(self) -> bool {
+        matches!(self, Self::CameraAtRest | Self::RobotAtRest | Self::FewViews { .. })
     }
 }
 

@@ -129,7 +129,7 @@ pub(crate) fn nuisances(
     ];
     let textures = (0..texture::OCTAVES).map(|octave| Nuisance::Texture {
         octave,
-        contrast: THRESHOLDS.texture,
+        contrast: THRESHOLDS.texture[0] * THRESHOLDS.texture[1].powi(octave as i32),
         seen: *texture,
     });
     let carpet_rgb = mean.carpet.linear_rgb.map(|linear| linear.max(THRESHOLDS.least_reflectance));

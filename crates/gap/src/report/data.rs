@@ -210,7 +210,7 @@ impl Report {
     /// Returns the ids of effects that cannot be judged because the recording's files lack what they are compared with. With
     /// the verdict [`Verdict::None`], nothing is missing among the others.
     pub fn not_judged(&self) -> impl Iterator<Item = &str> {
-        let missing = self.unobservable.iter().filter(|effect| !effect.cause.is_of_the_recording());
+        let missing = self.unobservable.iter().filter(|effect| !effect.cause.is_lack_of_movement());
         missing.map(|effect| effect.id.as_str())
     }
 }

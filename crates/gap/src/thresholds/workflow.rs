@@ -44,6 +44,11 @@ pub(crate) struct InputMistakeThresholds {
     pub(crate) least_pieces: f64,
     /// Median depression of a camera from which on it can be no number of radians. Chosen: a camera that looks straight down.
     pub(crate) largest_pitch_rad: f64,
+    /// Time over which odometry and reference poses are compared, seconds. Chosen: a walking robot's sway, which odometry does
+    /// not show, is over in one or two steps.
+    pub(crate) odometry_step_s: f64,
+    /// Movement in that time that counts at least, metres or radians. Chosen: the errors of both over a step.
+    pub(crate) least_movement: f64,
     /// Mean square difference between what the robot states of itself and its reference poses, over the mean square of the
     /// latter, that another reading may leave. Chosen: half of the motion may be odometry's errors.
     pub(crate) most_misfit: f64,
@@ -70,6 +75,8 @@ impl WorkflowThresholds {
             least_found_after: 0.6,
             least_pieces: 5.0,
             largest_pitch_rad: 1.6,
+            odometry_step_s: 1.0,
+            least_movement: 0.02,
             most_misfit: 0.5,
             least_misfit_ratio: 0.1,
         },

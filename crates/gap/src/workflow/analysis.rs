@@ -40,8 +40,8 @@ use crate::{
 
 const THRESHOLDS: ReportThresholds = Thresholds::DEFAULT.report;
 
-/// Runs the whole workflow, unless the recording's files hold a mistake, which is then all that is reported: finds the effects that a model lacks, adds them, and evaluates the result on held-out frames.
-/// `progress` is called at every stage.
+/// Runs the whole workflow: finds the effects that a model lacks, adds them, and evaluates the result on held-out frames. A
+/// mistake in the recording's files is all that is reported where there is one. `progress` is called at every stage.
 ///
 /// # Errors
 ///

@@ -18,7 +18,7 @@ pub(crate) fn verdict(
         Verdict::Confusable
     } else if !effects.is_empty() {
         Verdict::Named
-    } else if unobservable.iter().any(|effect| effect.cause.is_of_the_recording()) {
+    } else if unobservable.iter().any(|effect| effect.cause.is_lack_of_movement()) {
         Verdict::Inconclusive
     } else {
         Verdict::None
@@ -66,19 +66,20 @@ mod tests {
     }
 
     #[test]
-    fn without_effects_every_cause_but_a_missing_input_makes_the_verdict_inconclusive() {
+    fn without_effects_a_lack_of_movement_makes_the_verdict_inconclusive() {
         let causes = [
             UnobservableCause::CameraAtRest,
             UnobservableCause::RobotAtRest,
             UnobservableCause::FewViews { views: 3, needed: 8 },
-            UnobservableCause::NotSeparable,
         ];
         for cause in causes {
             assert_eq!(verdict(&[], &[], &[unseen(cause)]), Verdict::Inconclusive, "{cause:?}");
         }
-        // What only the files lack is listed beside the verdict: `Report::not_judged`.
+        // Single effects that cannot be judged are listed beside the verdict: `Report::not_judged`.
         let missing = UnobservableCause::MissingInput { input: MissingInput::Noise };
-        assert_eq!(verdict(&[], &[], &[unseen(missing)]), Verdict::None);
+        for cause in [missing, UnobservableCause::NotSeparable] {
+            assert_eq!(verdict(&[], &[], &[unseen(cause)]), Verdict::None);
+        }
         assert_eq!(verdict(&[], &[], &[unseen(missing), unseen(causes[0])]), Verdict::Inconclusive);
     }
 

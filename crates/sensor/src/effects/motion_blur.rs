@@ -4,7 +4,7 @@
 
 use super::phrases::plain;
 use crate::{
-    effect::{About, Changes, Covariate, Effect, Estimates, Need, Parameter, Stage, values},
+    effect::{About, Changes, Covariate, Effect, Estimates, Parameter, Stage, values},
     text::Unit,
 };
 
@@ -22,7 +22,7 @@ const ABOUT: About = About {
     stage: Stage::Motion,
     parameters: &[Parameter::square("exposure_s", "s", 0.1, 0.005)],
     covariates: &[Covariate::AngularRate, Covariate::Speed, Covariate::Pixel],
-    needs: &[Need::NominalSharpness],
+    needs: &[],
     changes: Changes::Pictures,
     varies_over_time: false,
     recording_that_would_decide: "walk with quick turns of the head past lines in several directions, and stand still in between",

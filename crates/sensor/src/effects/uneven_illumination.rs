@@ -2,8 +2,8 @@
 //!
 //! The light's logarithm is a polynomial of the second degree in the position on the field: a sum of products of Legendre's
 //! polynomials over the rectangle in which the light was measured, so that each coefficient is at most what it changes there.
-//! Its mean is free, too: brightness that a person read off in one place is not that of the hall. Outside the rectangle, the light is that at the rectangle's edge: a
-//! polynomial tells nothing of places that nobody has seen.
+//! Its mean is free, too: brightness that a person read off in one place is not that of the hall. Outside the rectangle, the
+//! light is that at the rectangle's edge: a polynomial tells nothing of places that nobody has seen.
 
 use glam::DVec2;
 use reality_sim_core::field::FieldDimensions;
@@ -60,7 +60,8 @@ impl Effect for UnevenIllumination {
     }
 
     fn size(&self, estimates: &Estimates<'_>) -> Option<String> {
-        let coefficients = ABOUT.parameters.iter().filter(|parameter| parameter.role != Role::Fixed);
+        // The mean is the same in all places.
+        let coefficients = ABOUT.parameters.iter().filter(|parameter| parameter.role == Role::Size);
         let value = |parameter: &Parameter| Some(estimates.get(parameter.name)?.value);
         let factors: Vec<f64> = coefficients.map(value).collect::<Option<_>>()?;
         let factors = &factors;

@@ -165,7 +165,7 @@ fn nothing(report: &Report) -> String {
 /// Returns "9 of 22 effects could not be judged: …, most of them because …".
 fn not_judged(report: &Report) -> Option<String> {
     let causes = || {
-        let missing = report.unobservable.iter().filter(|effect| !effect.cause.is_of_the_recording());
+        let missing = report.unobservable.iter().filter(|effect| !effect.cause.is_lack_of_movement());
         missing.map(|effect| &effect.cause)
     };
     let ids: Vec<&str> = report.not_judged().collect();

@@ -91,21 +91,24 @@ fn angle_misfit(recording: &Recording<'_>, reading: AngleReading) -> f64 {
     squares / sizes
 }
 
-/// Returns the mean square difference between the odometry's steps and those of the reference poses over the mean square of
-/// the latter. A radian counts as a metre.
+/// Returns the mean square difference between the odometry's movements and those of the reference poses over the mean square of
+/// the latter: the mean of those ahead, to the left and in heading, so that a robot that walks straight on still tells in which
+/// way it turns.
 fn odometry_misfit(recording: &Recording<'_>, reading: OdometryReading) -> f64 {
-    let (mut squares, mut sizes) = (0.0, 0.0);
-    for (frame, next) in recording.frames.iter().zip(recording.frames.iter().skip(1)) {
-        let pose = |frame: &Frame| recording.sequence.frames[frame.index_in_sequence].odometry.map(reading);
-        let (Some(from), Some(to)) = (pose(frame), pose(next)) else { continue };
-        let stated = from.motion_to(to);
-        let at = |frame: &Frame| recording.trajectory.at(frame.time_s).planar();
-        let reference = at(frame).motion_to(at(next));
-        let numbers = |motion: Motion2| [motion.forward_m, motion.left_m, motion.turn_rad];
-        for (stated, reference) in numbers(stated).into_iter().zip(numbers(reference)) {
-            squares += (stated - reference).powi(2);
-            sizes += reference * reference;
+    let stated = |frame: &Frame| recording.sequence.frames[frame.index_in_sequence].odometry.map(reading);
+    let reference = |frame: &Frame| recording.trajectory.at(frame.time_s).planar();
+    let numbers = |motion: Motion2| [motion.forward_m, motion.left_m, motion.turn_rad];
+    let (mut squares, mut sizes) = ([0.0; 3], [0.0; 3]);
+    let frames = recording.frames.as_slice();
+    for (index, frame) in frames.iter().enumerate() {
+        let is_later = |next: &&Frame| next.time_s >= frame.time_s + THRESHOLDS.odometry_step_s;
+        let Some(next) = frames[index..].iter().find(is_later) else { break };
+        let (Some(from), Some(to)) = (stated(frame), stated(next)) else { continue };
+        let moved = numbers(reference(frame).motion_to(reference(next)));
+        for (axis, stated) in numbers(from.motion_to(to)).into_iter().enumerate() {
+            squares[axis] += (stated - moved[axis]).powi(2);
+            sizes[axis] += (moved[axis] * moved[axis]).max(THRESHOLDS.least_movement.powi(2));
         }
     }
-    squares / sizes
+    squares.iter().zip(sizes).map(|(square, size)| square / size).sum::<f64>() / 3.0
 }
