@@ -92,17 +92,18 @@ impl<'a> Evidence<'a> {
 
     /// Returns two cluster-robust covariances of the free columns: one from the scatter of scores between views, one from
     /// their scatter between cells of the field.
-    pub(crate) fn covariances(&self, fit: &Fit) -> [DMatrix<f64>; 2] {
+    fn covariances(&self, fit: &Fit) -> [Covariance; 2] {
         let scores = |clusters: &[ProjectedEquations]| -> Vec<DVector<f64>> {
             clusters.iter().map(|cluster| cluster.score(fit)).collect()
         };
-        let nuisances = self.total.nuisance_scatter(&fit.free);
-        let sandwich = |scatter: DMatrix<f64>| &fit.inverse * (scatter + &nuisances) * &fit.inverse;
+        let sandwich = |scatter: DMatrix<f64>| &fit.inverse * scatter * &fit.inverse;
+        let of_priors = sandwich(self.total.nuisance_scatter(&fit.free) + self.system.prior_scatter(&fit.free));
         let size = fit.free.len();
-        [
-            sandwich(cluster_covariance::of_neighbours(&scores(&self.views), size)),
-            sandwich(cluster_covariance::of_independent(&scores(&self.cells), size)),
-        ]
+        let scatter = [
+            cluster_covariance::of_neighbours(&scores(&self.views), size),
+            cluster_covariance::of_independent(&scores(&self.cells), size),
+        ];
+        scatter.map(|scatter| Covariance { sampled: sandwich(scatter), of_priors: of_priors.clone() })
     }
 
     /// P-value of Wald's test that the effect vanishes in the columns `tested`, a subset of the free ones: the larger of the
@@ -119,9 +120,9 @@ impl<'a> Evidence<'a> {
         let covariances = self.covariances(fit);
         let place = |column: &ColumnIndex| fit.position(*column);
         // Parameters that are not observed on the field, such as those of the odometry, have no scatter between cells.
-        let seen = |covariance: &DMatrix<f64>| {
-            let on_field =
-                tested.iter().filter_map(place).map(|i| covariance[(i, i)] / covariances[0][(i, i)]);
+        let seen = |covariance: &Covariance| {
+            let ratio = |i: usize| covariance.sampled[(i, i)] / covariances[0].sampled[(i, i)];
+            let on_field = tested.iter().filter_map(place).map(ratio);
             on_field.fold(0.0, f64::max) > Thresholds::DEFAULT.inference.least_field_variance_ratio
         };
         let with_counts = covariances.iter().zip(counts).filter(|(covariance, _)| seen(covariance));
@@ -148,34 +149,75 @@ impl<'a> Evidence<'a> {
     }
 
     /// P-value of the tested columns by one covariance, which was estimated from `count` clusters.
-    fn p_of(&self, fit: &Fit, tested: &[ColumnIndex], covariance: &DMatrix<f64>, count: usize) -> f64 {
+    fn p_of(&self, fit: &Fit, tested: &[ColumnIndex], covariance: &Covariance, count: usize) -> f64 {
         let places: Vec<usize> = tested.iter().filter_map(|&column| fit.position(column)).collect();
         let number = places.len();
-        let part = DMatrix::from_fn(number, number, |i, j| covariance[(places[i], places[j])]);
+        let part = covariance.of(&places);
         let value = DVector::from_fn(number, |i, _| self.base[tested[i].0] + fit.delta[tested[i].0]);
-        hotelling_p_value(&part, &value, count)
+        hotelling_p_value(&part.total(), &value, part.effective_count(count))
     }
 
     /// Standard deviation of a free column, of which 1.96 make a 95 % interval although the clusters are few. A column held only by
     /// its prior scatters little between frames, so the prior's variance is added.
     pub(crate) fn sigma(&self, fit: &Fit, column: ColumnIndex) -> f64 {
         let Some(place) = fit.position(column) else { return 0.0 };
-        let [by_views, by_cells] = self.covariances(fit).map(|covariance| covariance[(place, place)]);
+        let covariances = self.covariances(fit);
+        let [by_views, by_cells] = [0, 1].map(|by| covariances[by].sampled[(place, place)]);
         let variances = [
             by_views * bartlett_interval_factor(self.views()).powi(2),
             by_cells * independent_interval_factor(self.system.cells.len()).powi(2),
         ];
-        let of_prior = PRIOR * fit.inverse.column(place).norm_squared();
-        (variances.into_iter().fold(0.0, f64::max) + of_prior).sqrt()
+        let of_priors =
+            PRIOR * fit.inverse.column(place).norm_squared() + covariances[0].of_priors[(place, place)];
+        (variances.into_iter().fold(0.0, f64::max) + of_priors).sqrt()
     }
 
     /// Correlation of the errors of two free columns, from their scatter between views and from their priors.
     pub(crate) fn correlation(&self, fit: &Fit, columns: [ColumnIndex; 2]) -> f64 {
         let [Some(i), Some(j)] = columns.map(|column| fit.position(column)) else { return 0.0 };
         let [scatter, _] = self.covariances(fit);
-        let covariance = scatter + &fit.inverse * &fit.inverse * PRIOR;
+        let covariance = scatter.total() + &fit.inverse * &fit.inverse * PRIOR;
         let scale = (covariance[(i, i)] * covariance[(j, j)]).sqrt();
         if scale > 0.0 { (covariance[(i, j)] / scale).clamp(-1.0, 1.0) } else { 0.0 }
+    }
+}
+
+/// Covariance of estimates: what the clusters scatter by, and what the priors of nuisance parameters and reflectance allow, which
+/// is the same in all of them.
+#[derive(Debug, Clone)]
+struct Covariance {
+    sampled: DMatrix<f64>,
+    of_priors: DMatrix<f64>,
+}
+
+impl Covariance {
+    fn total(&self) -> DMatrix<f64> {
+        &self.sampled + &self.of_priors
+    }
+
+    /// Returns the covariance of some of the estimates.
+    fn of(&self, places: &[usize]) -> Self {
+        let part = |of: &DMatrix<f64>| {
+            DMatrix::from_fn(places.len(), places.len(), |i, j| of[(places[i], places[j])])
+        };
+        Self { sampled: part(&self.sampled), of_priors: part(&self.of_priors) }
+    }
+
+    /// Returns the number of clusters that would give a covariance as sure as this one: the sampled part was estimated from
+    /// `count`, the other is known (Satterthwaite, Biometrics Bulletin 2, 1946; for several estimates with the mean square of the
+    /// sampled part's share).
+    fn effective_count(&self, count: usize) -> usize {
+        let size = self.sampled.nrows();
+        let scale = self.total().diagonal().map(|variance| variance.max(f64::MIN_POSITIVE).sqrt());
+        let scaled = |of: &DMatrix<f64>| DMatrix::from_fn(size, size, |i, j| of[(i, j)] / (scale[i] * scale[j]));
+        // As in Hotelling's test, nearly equal parameters are kept apart.
+        let total = scaled(&self.total()) + DMatrix::identity(size, size) * 1e-9;
+        let Some(share) = total.cholesky().map(|total| total.solve(&scaled(&self.sampled))) else {
+            return count;
+        };
+        let mean_square = (&share * &share).trace() / size.max(1) as f64;
+        let degrees = count.saturating_sub(1) as f64 / mean_square.clamp(1e-3, 1.0);
+        degrees.round() as usize + 1
     }
 }
 

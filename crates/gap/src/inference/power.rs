@@ -115,7 +115,8 @@ struct Simulation<'a> {
     /// Residual scores of frames and of cells.
     errors: [Vec<DVector<f64>>; 2],
     views: &'a [ViewIndex],
-    /// Root of the scatter of scores by the nuisance parameters' priors.
+    /// Scatter of the sum of all scores by the nuisance parameters' priors, and its root.
+    scatter: DMatrix<f64>,
     root: DMatrix<f64>,
 }
 
@@ -142,19 +143,17 @@ impl<'a> Simulation<'a> {
         let scatter = priors.with_share_of(priors, 0.0, chosen).a;
         // A sum of squares is positive semidefinite: a little on the diagonal makes it definite.
         let ridge = 1e-12 * scatter.trace().max(f64::MIN_POSITIVE);
-        let root = (scatter + DMatrix::identity(size, size) * ridge).cholesky()?.unpack();
-        Some(Self { errors: [scores(&frames), scores(&cells)], frames, cells, views, root })
+        let root = (&scatter + DMatrix::identity(size, size) * ridge).cholesky()?.unpack();
+        Some(Self { errors: [scores(&frames), scores(&cells)], frames, cells, views, scatter, root })
     }
 
     /// Simulates a recording in which the columns are changed by `delta`, with these systems of one surface.
     fn drawn(&self, delta: &DVector<f64>, draw: u64, of_one_surface: Vec<LinearSystem>) -> LinearSystem {
         let mut signs = Signs(draw);
         let size = delta.len();
-        // The priors' scatter is divided among the parts, each with a share of its own.
-        let shared = |signs: &mut Signs, parts: usize| {
-            let unit = DVector::from_fn(size, |_, _| signs.next());
-            &self.root * unit / (parts.max(1) as f64).sqrt()
-        };
+        // What the nuisance parameters are off by is the same in all parts.
+        let off_by = &self.root * DVector::from_fn(size, |_, _| signs.normal());
+        let shared = |parts: usize| &off_by / parts.max(1) as f64;
         let changed = |equations: &ProjectedEquations, error: DVector<f64>| {
             NormalEquations::of_all(equations.a.clone(), &equations.a * delta + error)
         };
@@ -165,16 +164,19 @@ impl<'a> Simulation<'a> {
             if block.replace(view.0 / (LAG + 1)) != Some(view.0 / (LAG + 1)) {
                 sign = signs.next();
             }
-            frames.push(changed(equations, error * sign + shared(&mut signs, of_frames.len())));
+            frames.push(changed(equations, error * sign + shared(of_frames.len())));
         }
         let of_cell = |(equations, error): (&ProjectedEquations, &DVector<f64>)| {
             let sign = signs.next();
-            changed(equations, error * sign + shared(&mut signs, of_cells.len()))
+            changed(equations, error * sign + shared(of_cells.len()))
         };
         let cells = self.cells.iter().zip(of_cells).map(of_cell).collect();
-        LinearSystem { of_one_surface, ..LinearSystem::of_equations(size, frames, cells, self.views) }
+        let prior_scatter = Some(self.scatter.clone());
+        let system = LinearSystem::of_equations(size, frames, cells, self.views);
+        LinearSystem { prior_scatter, of_one_surface, ..system }
     }
 }
+
 /// Random signs of one draw: the bits of SplitMix64 (Steele, Lea and Flood 2014).
 struct Signs(u64);
 
@@ -185,5 +187,11 @@ impl Signs {
         bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         if (bits ^ (bits >> 31)) & 1 == 0 { 1.0 } else { -1.0 }
+    }
+
+    /// Returns a sum of signs, which is nearly a normal number.
+    fn normal(&mut self) -> f64 {
+        const SIGNS: u32 = 12;
+        (0..SIGNS).map(|_| self.next()).sum::<f64>() / f64::from(SIGNS).sqrt()
     }
 }

@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use crate::{
     frame_index::ViewIndex,
@@ -48,6 +48,9 @@ pub(crate) struct LinearSystem {
     pub(crate) pose_sigmas: [f64; 6],
     /// Weights of the measurements of each frame; 0 for outliers and missing residuals.
     pub(crate) weights: Vec<Vec<f64>>,
+    /// Scatter of the sum of all scores by priors that are the same in all frames, beside that of the columns' own; None where
+    /// there are no others.
+    pub(crate) prior_scatter: Option<DMatrix<f64>>,
     /// The same system without the levels of lines, and without those of carpet; empty in these systems themselves.
     pub(crate) of_one_surface: Vec<Self>,
 }
@@ -87,8 +90,17 @@ impl LinearSystem {
             sigmas: BTreeMap::new(),
             pose_sigmas: [1.0; 6],
             weights: Vec::new(),
+            prior_scatter: None,
             of_one_surface: Vec::new(),
         }
+    }
+
+    /// Returns the part of [`Self::prior_scatter`] that belongs to these columns.
+    pub(crate) fn prior_scatter(&self, free: &[ColumnIndex]) -> DMatrix<f64> {
+        let entry = |scatter: &DMatrix<f64>, i: usize, j: usize| scatter[(free[i].0, free[j].0)];
+        DMatrix::from_fn(free.len(), free.len(), |i, j| {
+            self.prior_scatter.as_ref().map_or(0.0, |scatter| entry(scatter, i, j))
+        })
     }
 
     /// Assembles the normal equations with these weights.
@@ -102,8 +114,17 @@ impl LinearSystem {
         let (equations, projections) = by_frame(frames, &weights, &pose_sigmas);
         let cells = by_cell(frames, &weights, &projections);
         let views = by_view(&equations, views);
-        let (columns, of_one_surface) = (columns.clone(), Vec::new());
-        Self { columns, frames: equations, views, cells, sigmas, pose_sigmas, weights, of_one_surface }
+        Self {
+            columns: columns.clone(),
+            frames: equations,
+            views,
+            cells,
+            sigmas,
+            pose_sigmas,
+            weights,
+            prior_scatter: None,
+            of_one_surface: Vec::new(),
+        }
     }
 
     /// Returns the gain in log-likelihood by a fit of these frames' own columns, with the weights of the system.
@@ -212,7 +233,7 @@ fn solve(equations: &[NormalEquations], columns: &Columns) -> (DVector<f64>, Inc
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{DMatrix, Vector6};
+    use nalgebra::Vector6;
 
     use super::*;
     use crate::{
