@@ -134,8 +134,11 @@ pub(crate) struct ReferenceDriftThresholds {
     /// Standard deviations of the rank ratio of independent errors by which it has to be smaller where errors last. Derived:
     /// chance in one of twenty.
     pub(crate) least_lasting_score: f64,
-    /// Time constants that are tried, seconds. Chosen: from a few pictures to a recording's length.
+    /// Time constants that are tried, seconds. Chosen: from a few pictures on.
     pub(crate) time_constants_s: [f64; 5],
+    /// Longest of them, as a part of the recording. Chosen: what lasts longer is a constant to the recording, of which no
+    /// variogram tells, and which [`Self::calibration`] stands for.
+    pub(crate) longest_time_constant: f64,
     /// Cosines over the recording. Chosen: with twelve, errors of half a second are seen in a recording of ten seconds; what is
     /// faster is a frame's own error.
     pub(crate) half_periods: usize,
@@ -193,6 +196,7 @@ impl LinearModelThresholds {
             largest: [0.006, 0.006],
             least_lasting_score: 1.645,
             time_constants_s: [0.5, 1.0, 2.0, 4.0, 8.0],
+            longest_time_constant: 0.4,
             half_periods: 12,
             lags: 12,
             longest_lag: 0.7,
