@@ -207,6 +207,11 @@ impl<'a> Recording<'a> {
         self.frames.as_slice().first().map_or(0.0, |frame| frame.time_s)
     }
 
+    /// Returns the time between the first frame and the last, seconds.
+    pub(crate) fn duration_s(&self) -> f64 {
+        self.frames.as_slice().last().map_or(0.0, |frame| frame.time_s) - self.start_s()
+    }
+
     /// Whether the camera moves by more than the errors of its poses, on average from the first frame.
     pub(crate) fn moves(&self) -> bool {
         let poses: Vec<CameraPose> =

@@ -7,6 +7,7 @@ use glam::DVec2;
 use crate::{
     diagnostics::finding::Finding,
     inference::held_out::ChannelGap,
+    inference::light_pattern::LightPattern,
     inference::model_error::ModelError,
     linear_model::nuisance::Nuisance,
     measurement::frame::FrameMeasurements,
@@ -42,6 +43,8 @@ pub(crate) struct FitResiduals<'a> {
     pub(crate) nuisance_values: &'a [f64],
     /// Error that the model is allowed to have: a fraction of what its effects explain.
     pub(crate) model_error: &'a ModelError,
+    /// Most significant pattern of light, beside the reflectance of all places.
+    pub(crate) light: Option<LightPattern>,
     /// Gap of each channel on held-out frames.
     pub(crate) gaps: &'a BTreeMap<Channel, ChannelGap>,
 }

@@ -20,6 +20,7 @@ pub(crate) mod evidence;
 pub(crate) mod gain;
 pub(crate) mod held_out;
 pub(crate) mod hypothesis_test;
+pub(crate) mod light_pattern;
 pub(crate) mod linearized_recording;
 pub(crate) mod model_comparison;
 pub(crate) mod model_error;

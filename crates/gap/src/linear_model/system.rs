@@ -127,6 +127,22 @@ impl LinearSystem {
         }
     }
 
+    /// Returns the system of frames with other columns, with the weights of this one.
+    pub(crate) fn with_columns(
+        &self,
+        frames: &[&LinearizedFrame],
+        columns: Columns,
+        views: &[ViewIndex],
+    ) -> Self {
+        let weighting = Weighting {
+            sigmas: self.sigmas.clone(),
+            weights: self.weights.clone(),
+            pose_sigmas: self.pose_sigmas,
+            variances: columns.field.variances.clone(),
+        };
+        Self::assembled(frames, &weighting, &columns, views)
+    }
+
     /// Returns the gain in log-likelihood by a fit of these frames' own columns, with the weights of the system.
     pub(crate) fn gain_of(&self, frames: &[&LinearizedFrame], parameters: usize) -> f64 {
         let (equations, _) = by_frame(frames, &self.weights, &self.pose_sigmas);

@@ -18,6 +18,7 @@ use crate::{
     inference::effect_test::{EffectTest, EffectTests},
     inference::gain::Gain,
     inference::held_out::{ChannelGap, HeldOutResiduals},
+    inference::light_pattern::light_pattern,
     inference::model_error::ModelError,
     inference::power::PowerAnalysis,
     inference::recording_source::{FittedRecording, Linearize},
@@ -279,6 +280,7 @@ fn fit_residuals<'a>(
         nuisances: &linearized.nuisances,
         nuisance_values: &delta.as_slice()[found.columns.len()..linearized.system.columns.dense()],
         model_error,
+        light: light_pattern(recording, found),
         gaps,
     }
 }

@@ -66,7 +66,7 @@ impl Locus {
 }
 
 /// Returns the cell of the picture's grid that a pixel is in.
-fn picture_cell(pixel: DVec2, size: [u32; 2]) -> Cell {
+pub(super) fn picture_cell(pixel: DVec2, size: [u32; 2]) -> Cell {
     let cell = |value: f64, size: u32, cells: usize| {
         ((value + 0.5) / f64::from(size) * cells as f64).clamp(0.0, cells as f64 - 1.0) as i32
     };

@@ -11,15 +11,16 @@ use std::collections::BTreeMap;
 
 use self::{
     bins::Binned,
-    locus::{Cell, Locus},
+    locus::{Cell, Locus, picture_cell},
     source::SOURCES,
 };
 use reality_sim_core::statistics::median;
 
 use crate::{
     diagnostics::detector::{Detector, FitResiduals, FrameResiduals, SIGNIFICANCE},
-    diagnostics::finding::Finding,
+    diagnostics::finding::{Finding, PatternCell},
     inference::gain::Gain,
+    inference::light_pattern::{LightPattern, Strongest},
     inference::model_error::ModelError,
     measurement::quantity::{Channel, Quantity},
     thresholds::{PatternThresholds, Thresholds},
@@ -33,7 +34,9 @@ pub(crate) struct ResidualPatterns;
 impl Detector for ResidualPatterns {
     fn detect(&self, fit: &FitResiduals<'_>) -> Vec<Finding> {
         let found = patterns(&fit.frames, fit.sigmas, fit.model_error, fit.start_s);
-        found.iter().map(Pattern::finding).collect()
+        let is_told = found.iter().any(|pattern| pattern.channel == Channel::Photometry);
+        let light = fit.light.filter(|_| !is_told).and_then(|light| light_finding(light, fit));
+        found.iter().map(Pattern::finding).chain(light).collect()
     }
 }
 
@@ -105,6 +108,25 @@ impl Pattern {
             p_value: self.p_value,
         }
     }
+}
+
+/// Returns the finding of a pattern of light that is significant and large enough to matter.
+fn light_finding(light: LightPattern, fit: &FitResiduals<'_>) -> Option<Finding> {
+    let material = THRESHOLDS.material_photometry + fit.model_error.most_off(Channel::Photometry);
+    let camera = &fit.recording.sequence.setup.camera;
+    let strongest = match light.strongest {
+        Strongest::Picture(pixel) => {
+            Locus::Picture.pattern_cell(picture_cell(pixel, [camera.width, camera.height]))
+        }
+        Strongest::Time(after_s) => PatternCell::Time { after_s },
+    };
+    let LightPattern { size, p_value, .. } = light;
+    (p_value < SIGNIFICANCE && size > material).then_some(Finding::Pattern {
+        channel: Channel::Photometry,
+        strongest,
+        size,
+        p_value,
+    })
 }
 
 /// Returns the size below which a pattern does not matter, in the channel's unit. `blur_px2` is the median variance of the
