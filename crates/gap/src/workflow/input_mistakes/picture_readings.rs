@@ -52,14 +52,18 @@ const POSE_READINGS: [(InputMistake, PoseReading); 12] = [
 pub(super) fn mistake(recording: &Recording<'_>) -> Result<Option<InputMistake>, MeasureError> {
     let sample = Sample::new(recording)?;
     let as_it_stands = Reading::as_it_stands(recording);
-    if sample.found_share(&as_it_stands) >= THRESHOLDS.most_found_before {
+    let before = sample.found_share(&as_it_stands);
+    // Fields have many lines in common: where most are found, another reading has to find nearly all.
+    let rules = THRESHOLDS.found_before_and_after;
+    let Some([_, least_after]) = rules.into_iter().find(|[most_before, _]| before < *most_before) else {
         return Ok(None);
-    }
+    };
     let readings = readings(recording, &as_it_stands);
     let found = |(mistake, reading): &(InputMistake, Reading)| (*mistake, sample.found_share(reading));
     let tried: Vec<(InputMistake, f64)> = readings.par_iter().map(found).collect();
-    let best = tried.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
-    Ok(best.filter(|(_, found)| *found >= THRESHOLDS.least_found_after).map(|(mistake, _)| mistake))
+    // The first of equals: sides that are swapped rather than a league that has them so.
+    let best = tried.into_iter().rev().max_by(|a, b| a.1.total_cmp(&b.1));
+    Ok(best.filter(|(_, found)| *found >= least_after).map(|(mistake, _)| mistake))
 }
 
 /// Way to read a recording.
