@@ -98,7 +98,7 @@ fn assert_closed(hidden: Hidden, values: &[f64]) {
     assert_eq!(ids(&report), [hidden.id()]);
     let before = case.tagged(None);
     let (after, best) = (case.tagged(Some("report/model.toml")), case.tagged(Some("truth.toml")));
-    assert!(after < 1.3 * best && after < 0.7 * before, "{before} m, {after} m found, {best} m true");
+    assert!(after < 1.5 * best && after < 0.7 * before, "{before} m, {after} m found, {best} m true");
     case.corrected_copy("report");
     let again = case.gap("corrected", "again");
     assert_eq!(ids(&again), Vec::<&str>::new(), "{}", hidden.id());

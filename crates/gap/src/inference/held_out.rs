@@ -9,6 +9,7 @@ use crate::{
     frame_index::{FrameIndex, PerFrame},
     inference::linearized_recording::LinearizedRecording,
     inference::selected_model::SelectedModel,
+    inference::shown_brightness::at_shown_brightness,
     inference::split::HeldOutSplit,
     linear_model::linearization::{MeasureError, linearise},
     linear_model::{
@@ -38,6 +39,8 @@ impl HeldOutResiduals {
     ) -> Result<Self, MeasureError> {
         let linearized = &found.linearized;
         let frames = linearise(recording, &linearized.measurements, model, &[], linearized.others())?;
+        let fitted = (&linearized.system, &found.split);
+        let frames = at_shown_brightness(recording, frames, linearized.nuisances.len(), fitted);
         Ok(Self { residuals: frames.iter().map(|frame| at_reference(frame, linearized)).collect() })
     }
 }

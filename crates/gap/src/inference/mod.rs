@@ -28,6 +28,7 @@ pub(crate) mod model_search;
 pub(crate) mod power;
 pub(crate) mod recording_source;
 pub(crate) mod selected_model;
+pub(crate) mod shown_brightness;
 pub(crate) mod split;
 #[cfg(test)]
 mod tests;

@@ -5,6 +5,7 @@ use reality_sim_sensor::{Effect, Model};
 use crate::{
     inference::held_out::Comparison,
     inference::linearized_recording::{LinearizedRecording, search_px},
+    inference::shown_brightness::at_shown_brightness,
     inference::split::HeldOutSplit,
     linear_model::initial_values::starting_values,
     linear_model::linearization::{MeasureError, linearise, measure_chosen},
@@ -52,8 +53,11 @@ impl Linearize for FittedRecording<'_> {
             let both = measurements.iter().zip(&others).map(|(own, other)| own.clone().with_lines_of(other));
             measurements = both.collect();
         }
-        let linearise_at =
-            |model: &Model| linearise(self.recording, &measurements, model, &[], with.others());
+        let linearise_at = |model: &Model| {
+            let frames = linearise(self.recording, &measurements, model, &[], with.others())?;
+            let fitted = (&with.system, self.split);
+            Ok::<_, MeasureError>(at_shown_brightness(self.recording, frames, with.nuisances.len(), fitted))
+        };
         let [before, after] = [linearise_at(model)?, linearise_at(&with.model)?];
         let lost = |frame| measurements[frame].lost_lines() as f64;
         Ok(Comparison::new([&before, &after], lost, with, self.split))

@@ -143,6 +143,30 @@ impl LinearSystem {
         Self::assembled(frames, &weighting, &columns, views)
     }
 
+    /// Returns the values of nuisance parameters that fit the levels of these frames beside the reflectance of all places.
+    /// `columns` are those of the frames, without fitted parameters.
+    pub(crate) fn nuisances_of_levels(
+        &self,
+        frames: &[&LinearizedFrame],
+        columns: &Columns,
+    ) -> DVector<f64> {
+        let mut values = DVector::zeros(columns.len());
+        // What is an outlier is seen after the first time.
+        for _ in 0..2 {
+            let weigh = |frame: &&LinearizedFrame| -> Vec<f64> {
+                let unweighted = vec![0.0; frame.residuals.len()];
+                let fit = FittedResiduals::new(frame, &unweighted, &values, columns, &self.pose_sigmas);
+                let weights = weigh(frame, &fit.residuals, &self.sigmas).into_iter();
+                let of_level = frame.measurements.iter().zip(weights);
+                of_level.map(|(row, weight)| if row.quantity.is_level() { weight } else { 0.0 }).collect()
+            };
+            let weights: Vec<Vec<f64>> = frames.iter().map(weigh).collect();
+            let (equations, _) = by_frame(frames, &weights, &self.pose_sigmas);
+            (values, _) = solve(&equations, columns);
+        }
+        values
+    }
+
     /// Returns the gain in log-likelihood by a fit of these frames' own columns, with the weights of the system.
     pub(crate) fn gain_of(&self, frames: &[&LinearizedFrame], parameters: usize) -> f64 {
         let (equations, _) = by_frame(frames, &self.weights, &self.pose_sigmas);
