@@ -251,8 +251,12 @@ fn missing_lines_are_called_unknown_and_located() {
 
 #[test]
 fn an_effect_that_is_not_in_the_library_is_called_unknown_in_the_channel_that_it_changes() {
-    let cases = [
+    let cases: [(Hidden, Channel); 6] = [
         (Hidden::Vignetting { strength: 0.4, falloff: Falloff::Cos4 }, Channel::Photometry),
+        (
+            Hidden::ExposureDrift { amplitude_ev: 0.4, course: Course::Sine { period_s: 5.0, phase_rad: 0.4 } },
+            Channel::Photometry,
+        ),
         (Hidden::OdometryScale { scale: -0.3 }, Channel::Motion),
         (Hidden::TimeOffset { offset_s: 0.08 }, Channel::Geometry),
         (Hidden::SensorNoise { factor: 1.5 }, Channel::Noise),
@@ -442,6 +446,18 @@ fn effects_that_need_an_input_missing_from_the_camera_file_are_unobservable() {
     let given = Model::default().with(white_balance, [0.1, 0.05]);
     let extended = analysed(&sequence, &given, &Options::default()).model;
     assert_eq!(extended.values("white_balance"), given.values("white_balance"));
+}
+
+#[test]
+fn a_loss_of_light_at_the_corners_is_named_without_any_nominal_photometry() {
+    let hidden = Hidden::Vignetting { strength: 0.5, falloff: Falloff::Quadratic };
+    let (_folder, mut sequence) = record(112, &[hidden]);
+    sequence.setup.photometry = None;
+    let report = reported(&sequence);
+    assert_eq!(named(&report), ["vignetting"], "{}", summary(&report));
+    assert_size(&report, "vignetting", "strength", 0.5);
+    let gap = &report.gap.channels[&Channel::Photometry];
+    assert!(gap.after < gap.before, "{gap:?}");
 }
 
 #[test]

@@ -54,7 +54,7 @@ fn missing_lines(frames: &[&FrameMeasurements], field: &FieldDimensions) -> Vec<
 #[derive(Default)]
 struct Counts {
     /// Pieces by curve and by their width in the picture.
-    pieces: BTreeMap<(CurveIndex, usize), Count>,
+    pieces: BTreeMap<(CurveIndex, i32), Count>,
     /// Frames in which a curve is in sight.
     frames: BTreeMap<CurveIndex, usize>,
 }
@@ -104,8 +104,8 @@ impl Counts {
 }
 
 /// Returns the bin of a line's width.
-fn width(half_width_px: f64) -> usize {
-    (THRESHOLDS.width_bins_per_px * half_width_px).min(THRESHOLDS.widest_bin) as usize
+fn width(half_width_px: f64) -> i32 {
+    (THRESHOLDS.width_bins_per_octave * half_width_px.log2()).floor() as i32
 }
 
 fn field_line(curve: &Curve) -> FieldLine {

@@ -65,14 +65,23 @@ impl LinearSystem {
     ) -> Self {
         let field = ReflectanceField { variances: weighting.variances.clone(), ..columns.field };
         let columns = Columns { field: field.of_shared_brightness(), ..columns };
-        let mut system = Self::assembled(frames, &weighting, &columns, views);
+        Self::with_each_surface(frames, &weighting, &columns, views)
+    }
+
+    /// Assembles the normal equations with these weights, and those without the levels of each surface.
+    fn with_each_surface(
+        frames: &[&LinearizedFrame],
+        weighting: &Weighting,
+        columns: &Columns,
+        views: &[ViewIndex],
+    ) -> Self {
         let alone = |without| {
             let weights = weighting.without_levels_of(frames, without);
             let weighting = Weighting { weights, ..weighting.clone() };
-            Self { weights: Vec::new(), ..Self::assembled(frames, &weighting, &columns, views) }
+            Self { weights: Vec::new(), ..Self::assembled(frames, &weighting, columns, views) }
         };
-        system.of_one_surface = Surface::ALL.map(alone).into();
-        system
+        let of_one_surface = Surface::ALL.map(alone).into();
+        Self { of_one_surface, ..Self::assembled(frames, weighting, columns, views) }
     }
 
     /// Creates the system of equations that depend on a few fitted parameters alone. `views` gives each frame's view.
@@ -140,7 +149,7 @@ impl LinearSystem {
             pose_sigmas: self.pose_sigmas,
             variances: columns.field.variances.clone(),
         };
-        Self::assembled(frames, &weighting, &columns, views)
+        Self::with_each_surface(frames, &weighting, &columns, views)
     }
 
     /// Returns the values of nuisance parameters that fit the levels of these frames beside the reflectance of all places.

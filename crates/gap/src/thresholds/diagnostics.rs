@@ -90,12 +90,8 @@ pub(crate) struct FlickerThresholds {
 /// When a line of the field is reported as missing.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MissingLineThresholds {
-    /// Lines are compared with others of their width: bins of the half width, for each pixel. Chosen; no measurement.
-    /// Doubling it changes a report, see `docs/figures/gap_thresholds.md`.
-    pub(crate) width_bins_per_px: f64,
-    /// Bin of all lines that are wider than those of the bins before it: 13.3 px of half width or more. Chosen; no
-    /// measurement.
-    pub(crate) widest_bin: f64,
+    /// Lines are compared with others of their width: bins of the half width for each factor of two. Chosen; no measurement.
+    pub(crate) width_bins_per_octave: f64,
     /// A line is missing where less than this part of its pieces is found, relative to other lines of the same width. Chosen;
     /// no measurement.
     pub(crate) most_found: f64,
@@ -201,8 +197,7 @@ impl DiagnosticThresholds {
         },
         flicker: FlickerThresholds { bands: 12, least_blocks: 5, material: 0.03 },
         missing_lines: MissingLineThresholds {
-            width_bins_per_px: 1.5,
-            widest_bin: 20.0,
+            width_bins_per_octave: 4.0,
             most_found: 0.4,
             near_px: 1.5,
             least_pieces: 24.0,

@@ -118,6 +118,7 @@ fn light_finding(light: LightPattern, fit: &FitResiduals<'_>) -> Option<Finding>
         Strongest::Picture(pixel) => {
             Locus::Picture.pattern_cell(picture_cell(pixel, [camera.width, camera.height]))
         }
+        Strongest::Field(place) => PatternCell::Field { x_m: place.x, y_m: place.y },
         Strongest::Time(after_s) => PatternCell::Time { after_s },
     };
     let LightPattern { size, p_value, .. } = light;

@@ -187,7 +187,7 @@ fn words_stand_beside_the_numbers() {
     assert_eq!(written["unexplained"][0]["finding"]["kind"], "flicker");
     assert_eq!(written["objects"][0]["motion"], "standing");
     assert_eq!(written["not_judged"], serde_json::json!(vec!["time_offset"; 6]));
-    assert_eq!(written["unobservable"][6]["cause"]["kind"], "few_views");
+    assert_eq!(written["unobservable"][7]["cause"]["kind"], "few_views");
     assert_eq!(written["gap"]["channels"]["geometry"]["unit"], "px");
     assert_eq!(written["maps"]["sharpness"]["unit"], "px2");
 }
