@@ -254,7 +254,10 @@ fn an_effect_that_is_not_in_the_library_is_called_unknown_in_the_channel_that_it
     let cases: [(Hidden, Channel); 6] = [
         (Hidden::Vignetting { strength: 0.4, falloff: Falloff::Cos4 }, Channel::Photometry),
         (
-            Hidden::ExposureDrift { amplitude_ev: 0.4, course: Course::Sine { period_s: 5.0, phase_rad: 0.4 } },
+            Hidden::ExposureDrift {
+                amplitude_ev: 0.4,
+                course: Course::Sine { period_s: 5.0, phase_rad: 0.4 },
+            },
             Channel::Photometry,
         ),
         (Hidden::OdometryScale { scale: -0.3 }, Channel::Motion),

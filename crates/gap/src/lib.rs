@@ -10,6 +10,7 @@
 //! |---|---|
 //! | [`Recording`] | frames of a sequence that are compared, with their reference poses |
 //! | [`Options`] | seed that chooses the held-out frames, and effects that are left out of the library |
+//! | [`inject`] | hides an effect in a recording, as a control |
 //! | [`analyse`] | runs the whole workflow; returns an [`Analysis`] with the report and the extended model |
 //! | [`report::Report`] | everything that was found: effects with sizes, unexplained findings, detection limits, the gap |
 //! | [`ChannelGap`] | size of one [`Channel`]'s residuals before and after, beside the noise floor |
@@ -44,6 +45,7 @@
 mod diagnostics;
 mod frame_index;
 mod inference;
+mod injection;
 mod linear_model;
 mod measurement;
 mod progress;
@@ -56,6 +58,7 @@ mod workflow;
 
 pub use self::{
     inference::held_out::ChannelGap,
+    injection::{InjectedRecording, InjectionError, inject, injected_parameter},
     linear_model::linearization::MeasureError,
     measurement::quantity::Channel,
     progress::Progress,

@@ -212,6 +212,11 @@ impl<'a> Recording<'a> {
         self.frames.as_slice().last().map_or(0.0, |frame| frame.time_s) - self.start_s()
     }
 
+    /// Returns the sequence.
+    pub fn sequence(&self) -> &Sequence {
+        self.sequence
+    }
+
     /// Whether the camera moves by more than the errors of its poses, on average from the first frame.
     pub(crate) fn moves(&self) -> bool {
         let poses: Vec<CameraPose> =

@@ -212,6 +212,11 @@ impl Chain {
         self.world.iter().map(light).product()
     }
 
+    /// Whether effects change the light on the ground from place to place.
+    pub(crate) fn has_uneven_light(&self) -> bool {
+        !self.world.is_empty()
+    }
+
     /// Returns the share of the light that reaches the sensor at a pixel.
     pub fn falloff(&self, pixel: DVec2) -> f64 {
         let radius = self.radius(pixel);

@@ -60,6 +60,7 @@ mod motion;
 mod noise;
 mod projected_scene;
 mod reach;
+mod redevelopment;
 mod renderer;
 mod scene;
 mod sensor;
@@ -79,6 +80,7 @@ pub use self::{
     model::{Model, ModelError, ModelFault, Used},
     noise::Noise,
     reach::Reach,
+    redevelopment::Redevelopment,
     renderer::{RenderError, Renderer},
     shading::Shading,
     tone::{InvalidTone, Tone},

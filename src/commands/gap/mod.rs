@@ -1,24 +1,29 @@
 //! `reality-sim gap`: finds the effect that a model of the camera lacks, and measures what adding it brings.
 
+mod control;
 mod corrected_files;
+mod inject;
 mod options;
 mod poses;
 mod text;
 
-use std::{fs, path::Path};
+use std::fs;
 
 use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde::Serialize;
 use std::io::{self, IsTerminal};
 
 use reality_sim::{
     Sequence,
-    gap::{Analysis, Options, Pictures, Progress, Recording, analyse, html},
+    gap::{Analysis, MeasureError, Options, Pictures, Progress, Recording, analyse, html},
     sensor::{Chain, Model},
     sequence::{save_image, write_atomically},
 };
 
+use self::control::Control;
 use self::corrected_files::corrected_files;
+use self::inject::{ControlReport, Controls};
 pub use self::options::GapArgs;
 use super::output::{create_output_folder, print, print_json};
 
@@ -38,13 +43,47 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
     progress.set_message("reading the pictures");
     let recording = Recording::new(&sequence, &poses.poses, poses.source, args.frames.clone())?;
     let options = Options { seed: args.seed, without: args.without.clone() };
-    let analysis = analyse(&recording, &given, &options, &|stage| progress.set_message(words(stage)));
-    progress.finish_and_clear();
-    let analysis = analysis?;
-    let pictures = Pictures::new(&recording, &given, &analysis)?;
-    let files = corrected_files(args, &sequence, &analysis)?;
-    write(&args.out, &analysis, &pictures, files)?;
+    let run = Run { args, given: &given, options: &options, progress: &progress };
+    let controls = Controls { recording: &recording, source: poses.source, args, options: &options };
+    if let Some(Control::One(id, size)) = &args.inject {
+        return controls.with_hidden(id, *size, |recording, hidden| run.control(recording, &hidden));
+    }
+    let analysis = run.analysed(&recording)?;
+    write(args, &recording, &given, (&analysis, &analysis.report))?;
+    if args.inject.is_some() {
+        let rows = controls.all(&analysis.report, |recording| run.analysed(recording))?;
+        inject::write(&args.out, &rows)?;
+        return if args.json { print_json(&rows) } else { print(&inject::table(&rows)) };
+    }
     if args.json { print_json(&analysis.report) } else { print(&text::text(&analysis.report, &args.out)) }
+}
+
+/// What one run needs, for several recordings.
+struct Run<'a> {
+    args: &'a GapArgs,
+    given: &'a Model,
+    options: &'a Options,
+    progress: &'a ProgressBar,
+}
+
+impl Run<'_> {
+    fn analysed(&self, recording: &Recording<'_>) -> Result<Analysis, MeasureError> {
+        let show = |stage| self.progress.set_message(words(stage));
+        let analysis = analyse(recording, self.given, self.options, &show);
+        self.progress.finish_and_clear();
+        analysis
+    }
+
+    /// Analyses a recording in which an effect is hidden, and says whether it was named.
+    fn control(&self, recording: &Recording<'_>, hidden: &inject::Hidden) -> anyhow::Result<()> {
+        let analysis = self.analysed(recording)?;
+        let control = ControlReport::new(&analysis.report, hidden);
+        write(self.args, recording, self.given, (&analysis, &control))?;
+        if self.args.json {
+            return print_json(&control);
+        }
+        print(&format!("{}\n{}", control.sentence(), text::text(&analysis.report, &self.args.out)))
+    }
 }
 
 /// Refuses effects that are both in the model and left out of the library.
@@ -55,13 +94,17 @@ fn refuse_held(args: &GapArgs, given: &Model) -> anyhow::Result<()> {
     }
 }
 
-/// Writes the report's files. `report.json`, by which other commands recognise the folder, comes last.
+/// Writes the report's files. `report.json`, by which other commands recognise the folder, comes last; `report` is what goes into
+/// it.
 fn write(
-    folder: &Path,
-    analysis: &Analysis,
-    pictures: &Pictures,
-    corrected: [(&str, String); 2],
+    args: &GapArgs,
+    recording: &Recording<'_>,
+    given: &Model,
+    (analysis, report): (&Analysis, &impl Serialize),
 ) -> anyhow::Result<()> {
+    let folder = &args.out;
+    let pictures = &Pictures::new(recording, given, analysis)?;
+    let corrected = corrected_files(args, recording.sequence(), analysis)?;
     let shown = folder.join("pictures");
     fs::create_dir_all(&shown).with_context(|| format!("{}: cannot be created", shown.display()))?;
     for (name, picture) in
@@ -69,7 +112,7 @@ fn write(
     {
         save_image(&shown.join(format!("{name}.png")), picture)?;
     }
-    let json = serde_json::to_string_pretty(&analysis.report)?;
+    let json = serde_json::to_string_pretty(report)?;
     let page = html::page(&analysis.report, pictures);
     let files = [("model.toml", analysis.model.to_toml()), ("report.html", page), ("report.json", json)];
     for (name, text) in corrected.into_iter().chain(files) {

@@ -4,6 +4,7 @@ use std::{ops::Range, path::PathBuf};
 
 use clap::Args;
 
+use super::control::{Control, effect_id};
 use crate::commands::device::BackendArgs;
 
 /// Options of `gap`.
@@ -32,6 +33,10 @@ pub struct GapArgs {
     /// Leave an effect out of the library, for control runs; may be given more than once
     #[arg(long, value_name = "ID", value_parser = effect_id)]
     pub without: Vec<String>,
+    /// Hide an effect in the pictures or files, as a control, and say whether it was named: ID=SIZE in the unit of model.toml,
+    /// or all for a table of every effect
+    #[arg(long, value_name = "ID=SIZE", value_parser = Control::parse)]
+    pub inject: Option<Control>,
     #[command(flatten)]
     pub backend: BackendArgs,
     /// Also print report.json on standard output
@@ -52,14 +57,6 @@ fn frames(text: &str) -> Result<Range<usize>, String> {
         .and_then(|(from, to)| Some(from.trim().parse::<usize>().ok()?..to.trim().parse::<usize>().ok()?));
     let range = range.filter(|range| !range.is_empty());
     range.ok_or_else(|| "give two numbers, the smaller one first, such as 0..60".to_owned())
-}
-
-fn effect_id(text: &str) -> Result<String, String> {
-    if reality_sim::sensor::effect(text).is_some() {
-        return Ok(text.to_owned());
-    }
-    let ids: Vec<_> = reality_sim::sensor::library().iter().map(|effect| effect.id()).collect();
-    Err(format!("there is no such effect: give one of {}", ids.join(", ")))
 }
 
 #[cfg(test)]

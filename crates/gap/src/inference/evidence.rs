@@ -97,7 +97,8 @@ impl<'a> Evidence<'a> {
             clusters.iter().map(|cluster| cluster.score(fit)).collect()
         };
         let sandwich = |scatter: DMatrix<f64>| &fit.inverse * scatter * &fit.inverse;
-        let of_priors = sandwich(self.total.nuisance_scatter(&fit.free) + self.system.prior_scatter(&fit.free));
+        let of_priors =
+            sandwich(self.total.nuisance_scatter(&fit.free) + self.system.prior_scatter(&fit.free));
         let size = fit.free.len();
         let scatter = [
             cluster_covariance::of_neighbours(&scores(&self.views), size),
@@ -209,7 +210,8 @@ impl Covariance {
     fn effective_count(&self, count: usize) -> usize {
         let size = self.sampled.nrows();
         let scale = self.total().diagonal().map(|variance| variance.max(f64::MIN_POSITIVE).sqrt());
-        let scaled = |of: &DMatrix<f64>| DMatrix::from_fn(size, size, |i, j| of[(i, j)] / (scale[i] * scale[j]));
+        let scaled =
+            |of: &DMatrix<f64>| DMatrix::from_fn(size, size, |i, j| of[(i, j)] / (scale[i] * scale[j]));
         // As in Hotelling's test, nearly equal parameters are kept apart.
         let total = scaled(&self.total()) + DMatrix::identity(size, size) * 1e-9;
         let Some(share) = total.cholesky().map(|total| total.solve(&scaled(&self.sampled))) else {

@@ -31,7 +31,8 @@ pub(crate) fn at_shown_brightness(
         let LinearizedFrame { measurements, residuals, jacobian, .. } = &mut frames[frame];
         for ((measurement, residual), row) in measurements.iter().zip(residuals).zip(jacobian) {
             if measurement.quantity.surface().is_some_and(|surface| unknown.contains(&surface)) {
-                *residual -= row.iter().map(|(column, derivative)| values[column.0] * derivative).sum::<f64>();
+                *residual -=
+                    row.iter().map(|(column, derivative)| values[column.0] * derivative).sum::<f64>();
             }
         }
     }

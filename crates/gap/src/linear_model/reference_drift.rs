@@ -178,7 +178,8 @@ impl SlowProcess {
         }
         let variogram = variogram(errors);
         let duration_s = errors.last()?.time_s - errors.first()?.time_s;
-        let seen = |time_constant_s: &&f64| **time_constant_s <= THRESHOLDS.longest_time_constant * duration_s;
+        let seen =
+            |time_constant_s: &&f64| **time_constant_s <= THRESHOLDS.longest_time_constant * duration_s;
         let fits = THRESHOLDS.time_constants_s.iter().filter(seen).filter_map(|&time_constant_s| {
             let (variance, misfit) = slow_variance(&variogram, time_constant_s)?;
             Some((misfit, Self { variance, time_constant_s }))

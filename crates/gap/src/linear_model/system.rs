@@ -154,11 +154,7 @@ impl LinearSystem {
 
     /// Returns the values of nuisance parameters that fit the levels of these frames beside the reflectance of all places.
     /// `columns` are those of the frames, without fitted parameters.
-    pub(crate) fn nuisances_of_levels(
-        &self,
-        frames: &[&LinearizedFrame],
-        columns: &Columns,
-    ) -> DVector<f64> {
+    pub(crate) fn nuisances_of_levels(&self, frames: &[&LinearizedFrame], columns: &Columns) -> DVector<f64> {
         let mut values = DVector::zeros(columns.len());
         // What is an outlier is seen after the first time.
         for _ in 0..2 {

@@ -197,7 +197,7 @@ impl DiagnosticThresholds {
         },
         flicker: FlickerThresholds { bands: 12, least_blocks: 5, material: 0.03 },
         missing_lines: MissingLineThresholds {
-            width_bins_per_octave: 4.0,
+            width_bins_per_octave: 2.0,
             most_found: 0.4,
             near_px: 1.5,
             least_pieces: 24.0,
