@@ -11,6 +11,7 @@
 //! | [`Recording`] | frames of a sequence that are compared, with their reference poses |
 //! | [`Options`] | seed that chooses the held-out frames, and effects that are left out of the library |
 //! | [`inject`] | hides an effect in a recording, as a control |
+//! | [`shown_photometry`] | brightness and blur that a recording shows |
 //! | [`analyse`] | runs the whole workflow; returns an [`Analysis`] with the report and the extended model |
 //! | [`report::Report`] | everything that was found: effects with sizes, unexplained findings, detection limits, the gap |
 //! | [`ChannelGap`] | size of one [`Channel`]'s residuals before and after, beside the noise floor |
@@ -67,5 +68,6 @@ pub use self::{
     workflow::{
         analysis::{analyse, gap_of},
         selection::Options,
+        shown_photometry::shown_photometry,
     },
 };

@@ -53,7 +53,7 @@ pub struct Chain {
 
 /// Returns the variance of a Gaussian kernel sampled at the pixels' centres. Below half a pixel it is less than the square
 /// of sigma, because the kernel hardly reaches the neighbouring pixels.
-pub(crate) fn sampled_variance_px2(sigma_px: f64) -> f64 {
+pub fn sampled_variance_px2(sigma_px: f64) -> f64 {
     if sigma_px <= 0.0 {
         return 0.0;
     }

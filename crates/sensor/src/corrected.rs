@@ -207,8 +207,9 @@ fn motion_of(DVec3 { x: forward_m, y: left_m, z: turn_rad }: DVec3) -> Motion2 {
     Motion2 { forward_m, left_m, turn_rad }
 }
 
-/// Returns the standard deviation of the sampled Gaussian kernel with this variance, by bisection.
-fn sampled_sigma_px(variance_px2: f64) -> f64 {
+/// Returns the standard deviation of the sampled Gaussian kernel with this variance, by bisection: the inverse of
+/// [`crate::sampled_variance_px2`].
+pub fn sampled_sigma_px(variance_px2: f64) -> f64 {
     if variance_px2 <= 0.0 {
         return 0.0;
     }

@@ -70,9 +70,9 @@ mod tone;
 mod trajectory;
 
 pub use self::{
-    chain::Chain,
+    chain::{Chain, sampled_variance_px2},
     colors::SceneColors,
-    corrected::{Corrected, CorrectionError},
+    corrected::{Corrected, CorrectionError, sampled_sigma_px},
     effect::{About, Changes, Covariate, Effect, Estimates, Growth, Need, Opposite, Parameter, Role, Stage},
     effect_index::EffectIndex,
     effects::{effect, library},

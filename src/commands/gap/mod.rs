@@ -2,6 +2,7 @@
 
 mod control;
 mod corrected_files;
+mod earlier;
 mod inject;
 mod options;
 mod poses;
@@ -23,14 +24,15 @@ use reality_sim::{
 
 use self::control::Control;
 use self::corrected_files::corrected_files;
+use self::earlier::{Earlier, SinceReport};
 use self::inject::{ControlReport, Controls};
 pub use self::options::GapArgs;
 use super::output::{create_output_folder, print, print_json};
 
 /// Runs the command.
 pub fn run(args: &GapArgs) -> anyhow::Result<()> {
-    let sequence = Sequence::open(&args.sequence)?;
-    let given = args.model.as_deref().map_or_else(|| Ok(Model::default()), Model::read)?;
+    let mut sequence = Sequence::open(&args.sequence)?;
+    let mut given = args.model.as_deref().map_or_else(|| Ok(Model::default()), Model::read)?;
     // The model may lie in the output folder, so it is read before anything is written there.
     refuse_held(args, &given)?;
     if let Some(path) = &args.model {
@@ -41,21 +43,33 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
     let poses = poses::reference(args, &sequence)?;
     let progress = stages()?;
     progress.set_message("reading the pictures");
-    let recording = Recording::new(&sequence, &poses.poses, poses.source, args.frames.clone())?;
     let options = Options { seed: args.seed, without: args.without.clone() };
+    let earlier =
+        args.reference.as_deref().map(|folder| Earlier::new(args, folder, &options)).transpose()?;
+    if let Some(earlier) = &earlier {
+        given.clone_from(&earlier.model);
+        sequence.setup.photometry = Some(earlier.photometry);
+    }
+    let recording = Recording::new(&sequence, &poses.poses, poses.source, args.frames.clone())?;
     let run = Run { args, given: &given, options: &options, progress: &progress };
     let controls = Controls { recording: &recording, source: poses.source, args, options: &options };
     if let Some(Control::One(id, size)) = &args.inject {
         return controls.with_hidden(id, *size, |recording, hidden| run.control(recording, &hidden));
     }
     let analysis = run.analysed(&recording)?;
-    write(args, &recording, &given, (&analysis, &analysis.report))?;
+    let since = earlier.as_ref().map(|earlier| &earlier.told);
+    let report = SinceReport { report: &analysis.report, reference: since };
+    write(args, &recording, &given, (&analysis, &report))?;
     if args.inject.is_some() {
         let rows = controls.all(&analysis.report, |recording| run.analysed(recording))?;
         inject::write(&args.out, &rows)?;
         return if args.json { print_json(&rows) } else { print(&inject::table(&rows)) };
     }
-    if args.json { print_json(&analysis.report) } else { print(&text::text(&analysis.report, &args.out)) }
+    if args.json {
+        return print_json(&report);
+    }
+    let before = since.map_or_else(String::new, |told| format!("{}\n", told.sentence()));
+    print(&format!("{before}{}", text::text(&analysis.report, &args.out)))
 }
 
 /// What one run needs, for several recordings.

@@ -33,6 +33,9 @@ pub struct GapArgs {
     /// Leave an effect out of the library, for control runs; may be given more than once
     #[arg(long, value_name = "ID", value_parser = effect_id)]
     pub without: Vec<String>,
+    /// Find what has changed since an earlier recording by the same camera: the folder of its sequence
+    #[arg(long, value_name = "EARLIER", conflicts_with_all = ["model", "inject", "poses"])]
+    pub reference: Option<PathBuf>,
     /// Hide an effect in the pictures or files, as a control, and say whether it was named: ID=SIZE in the unit of model.toml,
     /// or all for a table of every effect
     #[arg(long, value_name = "ID=SIZE", value_parser = Control::parse)]

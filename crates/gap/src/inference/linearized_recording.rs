@@ -105,7 +105,7 @@ impl LinearizedRecording {
         let all = Columns { nuisances: all.nuisances + drift.len(), ..all };
         let training = training(&frames, split);
         let (weighting, _) = weighting.refine(&training, &all, reference);
-        let mut system = LinearSystem::new(&training, all, weighting, &views);
+        let mut system = LinearSystem::new(&training, all, &weighting, &views);
         system.pose_sigmas = drift.together_with(system.pose_sigmas);
         Ok(Self { model, measurements, nuisances, frames, system })
     }
@@ -127,7 +127,7 @@ impl LinearizedRecording {
 }
 
 /// Returns a part of the picture's width, pixels.
-pub(super) fn search_px(recording: &Recording<'_>, part: f64) -> f64 {
+pub(crate) fn search_px(recording: &Recording<'_>, part: f64) -> f64 {
     part * f64::from(recording.sequence.setup.camera.width)
 }
 

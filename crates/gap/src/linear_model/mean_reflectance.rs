@@ -6,8 +6,8 @@ use reality_sim_sensor::Chain;
 
 use crate::{
     frame_index::PerFrame,
-    measurement::frame::FrameMeasurements,
-    recording::Recording,
+    measurement::{carpet::CarpetBlock, frame::FrameMeasurements, lines::Line},
+    recording::{Frame, Recording},
     thresholds::{NuisanceThresholds, Thresholds},
 };
 
@@ -48,34 +48,53 @@ impl MeanReflectance {
         let nominal = |linear_rgb: Option<[f64; 3]>, [sigma, color_sigma]: [f64; 2]| {
             linear_rgb.map(|linear_rgb| SurfaceReflectance { linear_rgb, sigma, color_sigma })
         };
-        let frames = || recording.frames.iter().zip(measurements.iter());
-        let lines = || {
-            frames().flat_map(|(frame, measured)| {
-                measured.lines.iter().filter_map(|line| {
-                    let light = chain.light(frame.time_s, line.pixel, Some(line.ground));
-                    Some((line.profile.level?, light))
-                })
-            })
-        };
-        let blocks = || {
-            frames().flat_map(|(frame, measured)| {
-                let light = |block: &crate::measurement::carpet::CarpetBlock| {
-                    chain.light(frame.time_s, block.pixel, Some(block.ground))
-                };
-                measured.blocks.iter().map(move |block| (block.level, light(block)))
-            })
-        };
+        let line = nominal(photometry.and_then(|given| given.line_linear_rgb), THRESHOLDS.line_level);
+        let carpet = nominal(photometry.and_then(|given| given.carpet_linear_rgb), THRESHOLDS.carpet_level);
         Self {
-            line: nominal(photometry.and_then(|given| given.line_linear_rgb), THRESHOLDS.line_level)
-                .unwrap_or_else(|| shown(chain, lines().collect())),
-            carpet: nominal(photometry.and_then(|given| given.carpet_linear_rgb), THRESHOLDS.carpet_level)
-                .unwrap_or_else(|| shown(chain, blocks().collect())),
+            line: line.unwrap_or_else(|| shown(chain, &lines(recording, measurements, chain))),
+            carpet: carpet.unwrap_or_else(|| shown(chain, &blocks(recording, measurements, chain))),
+        }
+    }
+
+    /// Returns the reflectance at which the model predicts the medians of what was measured.
+    pub(crate) fn shown(
+        recording: &Recording<'_>,
+        measurements: &PerFrame<FrameMeasurements>,
+        chain: &Chain,
+    ) -> Self {
+        Self {
+            line: shown(chain, &lines(recording, measurements, chain)),
+            carpet: shown(chain, &blocks(recording, measurements, chain)),
         }
     }
 }
 
+fn lines(
+    recording: &Recording<'_>,
+    measurements: &PerFrame<FrameMeasurements>,
+    chain: &Chain,
+) -> Vec<Piece> {
+    let of_frame = |(frame, measured): (&Frame, &FrameMeasurements)| -> Vec<Piece> {
+        let light = |line: &Line| chain.light(frame.time_s, line.pixel, Some(line.ground));
+        measured.lines.iter().filter_map(|line| Some((line.profile.level?, light(line)))).collect()
+    };
+    recording.frames.iter().zip(measurements.iter()).flat_map(of_frame).collect()
+}
+
+fn blocks(
+    recording: &Recording<'_>,
+    measurements: &PerFrame<FrameMeasurements>,
+    chain: &Chain,
+) -> Vec<Piece> {
+    let of_frame = |(frame, measured): (&Frame, &FrameMeasurements)| -> Vec<Piece> {
+        let light = |block: &CarpetBlock| chain.light(frame.time_s, block.pixel, Some(block.ground));
+        measured.blocks.iter().map(|block| (block.level, light(block))).collect()
+    };
+    recording.frames.iter().zip(measurements.iter()).flat_map(of_frame).collect()
+}
+
 /// Returns the reflectance at which a model predicts the median of these pieces.
-fn shown(chain: &Chain, pieces: Vec<Piece>) -> SurfaceReflectance {
+fn shown(chain: &Chain, pieces: &[Piece]) -> SurfaceReflectance {
     let every = pieces.len().div_ceil(MOST_PIECES).max(1);
     let reflectance = |color: usize| {
         let of_piece = |(level, light): &Piece| chain.linear_of(level[color]) / light[color].max(1e-6);

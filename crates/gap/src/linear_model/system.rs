@@ -60,12 +60,12 @@ impl LinearSystem {
     pub(crate) fn new(
         frames: &[&LinearizedFrame],
         columns: Columns,
-        weighting: Weighting,
+        weighting: &Weighting,
         views: &[ViewIndex],
     ) -> Self {
         let field = ReflectanceField { variances: weighting.variances.clone(), ..columns.field };
         let columns = Columns { field: field.of_shared_brightness(), ..columns };
-        Self::with_each_surface(frames, &weighting, &columns, views)
+        Self::with_each_surface(frames, weighting, &columns, views)
     }
 
     /// Assembles the normal equations with these weights, and those without the levels of each surface.
@@ -317,7 +317,7 @@ mod tests {
         let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
         let (frames, columns): (Vec<_>, _) = (frames.iter().collect(), parameters(2));
         let (weighting, _) = Weighting::estimate(&frames, &columns, ReferenceKind::Whole);
-        LinearSystem::new(&frames, columns, weighting, &views)
+        LinearSystem::new(&frames, columns, &weighting, &views)
     }
 
     /// Returns the dense sum of normal equations.
@@ -375,7 +375,7 @@ mod tests {
         let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
         let (frames, columns): (Vec<_>, _) = (frames.iter().collect(), parameters(1));
         let (weighting, _) = Weighting::estimate(&frames, &columns, ReferenceKind::Whole);
-        let system = LinearSystem::new(&frames, columns, weighting, &views);
+        let system = LinearSystem::new(&frames, columns, &weighting, &views);
         let delta = solve(&system.frames, &system.columns).0;
         assert!((delta[0] - truth).abs() < 0.1, "{delta}");
     }

@@ -5,5 +5,6 @@ pub(crate) mod coarse_alignment;
 mod fixed_values;
 mod input_mistakes;
 pub(crate) mod selection;
+pub(crate) mod shown_photometry;
 mod stopped;
 pub(crate) mod verdict;

@@ -120,7 +120,7 @@ impl World {
         let views: Vec<ViewIndex> = (0..frames.len()).map(ViewIndex).collect();
         let columns = parameters(self.columns.len());
         let (weighting, _) = Weighting::estimate(frames, &columns, ReferenceKind::Whole);
-        LinearSystem::new(frames, columns, weighting, &views)
+        LinearSystem::new(frames, columns, &weighting, &views)
     }
 
     /// Returns a model in the columns' coordinates.
