@@ -44,8 +44,7 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
     let progress = stages()?;
     progress.set_message("reading the pictures");
     let options = Options { seed: args.seed, without: args.without.clone() };
-    let earlier =
-        args.reference.as_deref().map(|folder| Earlier::new(args, folder, &options)).transpose()?;
+    let earlier = args.reference.as_deref().map(|folder| Earlier::new(args, folder, &options)).transpose()?;
     if let Some(earlier) = &earlier {
         given.clone_from(&earlier.model);
         sequence.setup.photometry = Some(earlier.photometry);

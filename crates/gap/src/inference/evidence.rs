@@ -14,6 +14,9 @@ use crate::{
     thresholds::Thresholds,
 };
 
+/// Degrees of freedom from which on more do not change a p-value.
+const MOST_DEGREES: f64 = 1e4;
+
 /// Linear system with the present model as its origin.
 #[derive(Debug)]
 pub(crate) struct Evidence<'a> {
@@ -33,9 +36,10 @@ pub(crate) struct Evidence<'a> {
 pub(crate) struct ReducedRecording {
     pub(crate) frames: Vec<ProjectedEquations>,
     pub(crate) cells: Vec<ProjectedEquations>,
-    /// Equations that the priors of nuisance parameters and reflectance add to the sum of all frames. Their information is also
-    /// the scatter of the scores that these priors make.
+    /// Equations that the priors of nuisance parameters and reflectance add to the sum of all frames.
     pub(crate) priors: ProjectedEquations,
+    /// Scatter of the scores that the priors of nuisance parameters make, and of that by the reflectance.
+    pub(crate) prior_scatter: [DMatrix<f64>; 2],
 }
 
 impl<'a> Evidence<'a> {
@@ -71,6 +75,9 @@ impl<'a> Evidence<'a> {
             frames: self.total.projected(&self.system.frames),
             cells: self.cells.clone(),
             priors: self.total.nuisance_priors(),
+            prior_scatter: self
+                .total
+                .prior_scatter(&ColumnIndex::first(self.total.parameters()).collect::<Vec<_>>()),
         }
     }
 
@@ -97,14 +104,20 @@ impl<'a> Evidence<'a> {
             clusters.iter().map(|cluster| cluster.score(fit)).collect()
         };
         let sandwich = |scatter: DMatrix<f64>| &fit.inverse * scatter * &fit.inverse;
-        let of_priors =
-            sandwich(self.total.nuisance_scatter(&fit.free) + self.system.prior_scatter(&fit.free));
+        let [of_nuisances, of_reflectance] = self.total.prior_scatter(&fit.free);
+        let [given_of_nuisances, given_of_reflectance] = self.system.prior_scatter(&fit.free);
+        let of_priors = sandwich(of_nuisances + given_of_nuisances);
+        let of_reflectance = sandwich(of_reflectance + given_of_reflectance);
         let size = fit.free.len();
         let scatter = [
             cluster_covariance::of_neighbours(&scores(&self.views), size),
             cluster_covariance::of_independent(&scores(&self.cells), size),
         ];
-        scatter.map(|scatter| Covariance { sampled: sandwich(scatter), of_priors: of_priors.clone() })
+        scatter.map(|scatter| Covariance {
+            sampled: sandwich(scatter),
+            of_reflectance: of_reflectance.clone(),
+            of_priors: of_priors.clone(),
+        })
     }
 
     /// P-value of Wald's test that the effect vanishes in the columns `tested`, a subset of the free ones: the larger of the
@@ -155,7 +168,7 @@ impl<'a> Evidence<'a> {
         let number = places.len();
         let part = covariance.of(&places);
         let value = DVector::from_fn(number, |i, _| self.base[tested[i].0] + fit.delta[tested[i].0]);
-        hotelling_p_value(&part.total(), &value, part.effective_count(count))
+        hotelling_p_value(&part.total(), &value, part.effective_count(count, self.system.cells.len()))
     }
 
     /// Standard deviation of a free column, of which 1.96 make a 95 % interval although the clusters are few. A column held only by
@@ -168,8 +181,9 @@ impl<'a> Evidence<'a> {
             by_views * bartlett_interval_factor(self.views()).powi(2),
             by_cells * independent_interval_factor(self.system.cells.len()).powi(2),
         ];
-        let of_priors =
-            PRIOR * fit.inverse.column(place).norm_squared() + covariances[0].of_priors[(place, place)];
+        let of_priors = PRIOR * fit.inverse.column(place).norm_squared()
+            + covariances[0].of_reflectance[(place, place)]
+            + covariances[0].of_priors[(place, place)];
         (variances.into_iter().fold(0.0, f64::max) + of_priors).sqrt()
     }
 
@@ -183,17 +197,18 @@ impl<'a> Evidence<'a> {
     }
 }
 
-/// Covariance of estimates: what the clusters scatter by, and what the priors of nuisance parameters and reflectance allow, which
-/// is the same in all of them.
+/// Covariance of estimates: what clusters scatter by, what the reflectance of places makes, and what the priors of nuisance
+/// parameters allow, which is the same in all clusters.
 #[derive(Debug, Clone)]
 struct Covariance {
     sampled: DMatrix<f64>,
+    of_reflectance: DMatrix<f64>,
     of_priors: DMatrix<f64>,
 }
 
 impl Covariance {
     fn total(&self) -> DMatrix<f64> {
-        &self.sampled + &self.of_priors
+        &self.sampled + &self.of_reflectance + &self.of_priors
     }
 
     /// Returns the covariance of some of the estimates.
@@ -201,25 +216,30 @@ impl Covariance {
         let part = |of: &DMatrix<f64>| {
             DMatrix::from_fn(places.len(), places.len(), |i, j| of[(places[i], places[j])])
         };
-        Self { sampled: part(&self.sampled), of_priors: part(&self.of_priors) }
+        Self {
+            sampled: part(&self.sampled),
+            of_reflectance: part(&self.of_reflectance),
+            of_priors: part(&self.of_priors),
+        }
     }
 
     /// Returns the number of clusters that would give a covariance as sure as this one: the sampled part was estimated from
-    /// `count`, the other is known (Satterthwaite, Biometrics Bulletin 2, 1946; for several estimates with the mean square of the
-    /// sampled part's share).
-    fn effective_count(&self, count: usize) -> usize {
+    /// `count` clusters and that of the reflectance from `places`; what nominal values are trusted is known (Satterthwaite,
+    /// Biometrics Bulletin 2, 1946; for several estimates with the mean squares of the parts' shares).
+    fn effective_count(&self, count: usize, places: usize) -> usize {
         let size = self.sampled.nrows();
         let scale = self.total().diagonal().map(|variance| variance.max(f64::MIN_POSITIVE).sqrt());
         let scaled =
             |of: &DMatrix<f64>| DMatrix::from_fn(size, size, |i, j| of[(i, j)] / (scale[i] * scale[j]));
         // As in Hotelling's test, nearly equal parameters are kept apart.
         let total = scaled(&self.total()) + DMatrix::identity(size, size) * 1e-9;
-        let Some(share) = total.cholesky().map(|total| total.solve(&scaled(&self.sampled))) else {
-            return count;
+        let Some(total) = total.cholesky() else { return count };
+        let over_degrees = |part: &DMatrix<f64>, count: usize| {
+            let share = total.solve(&scaled(part));
+            (&share * &share).trace() / size.max(1) as f64 / count.saturating_sub(1).max(1) as f64
         };
-        let mean_square = (&share * &share).trace() / size.max(1) as f64;
-        let degrees = count.saturating_sub(1) as f64 / mean_square.clamp(1e-3, 1.0);
-        degrees.round() as usize + 1
+        let inverse = over_degrees(&self.sampled, count) + over_degrees(&self.of_reflectance, places);
+        inverse.max(1.0 / MOST_DEGREES).recip().round() as usize + 1
     }
 }
 

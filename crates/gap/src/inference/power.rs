@@ -115,8 +115,9 @@ struct Simulation<'a> {
     /// Residual scores of frames and of cells.
     errors: [Vec<DVector<f64>>; 2],
     views: &'a [ViewIndex],
-    /// Scatter of the sum of all scores by the nuisance parameters' priors, and its root.
-    scatter: DMatrix<f64>,
+    /// Scatter of the sum of all scores by the priors of nuisance parameters and by that of reflectance.
+    scatter: [DMatrix<f64>; 2],
+    /// Root of both together.
     root: DMatrix<f64>,
 }
 
@@ -140,10 +141,13 @@ impl<'a> Simulation<'a> {
         let system = LinearSystem::of_equations(size, equations.collect(), Vec::new(), views);
         let fit = Evidence::new(&system, base.clone()).fit(&ColumnIndex::first(size).collect::<Vec<_>>())?;
         let scores = |parts: &[ProjectedEquations]| parts.iter().map(|part| part.score(&fit)).collect();
-        let scatter = priors.with_share_of(priors, 0.0, chosen).a;
+        let of_chosen =
+            |scatter: &DMatrix<f64>| DMatrix::from_fn(size, size, |i, j| scatter[(chosen[i].0, chosen[j].0)]);
+        let scatter = recording.prior_scatter.each_ref().map(of_chosen);
+        let both = &scatter[0] + &scatter[1];
         // A sum of squares is positive semidefinite: a little on the diagonal makes it definite.
-        let ridge = 1e-12 * scatter.trace().max(f64::MIN_POSITIVE);
-        let root = (&scatter + DMatrix::identity(size, size) * ridge).cholesky()?.unpack();
+        let ridge = 1e-12 * both.trace().max(f64::MIN_POSITIVE);
+        let root = (both + DMatrix::identity(size, size) * ridge).cholesky()?.unpack();
         Some(Self { errors: [scores(&frames), scores(&cells)], frames, cells, views, scatter, root })
     }
 

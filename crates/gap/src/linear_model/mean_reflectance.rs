@@ -69,11 +69,7 @@ impl MeanReflectance {
     }
 }
 
-fn lines(
-    recording: &Recording<'_>,
-    measurements: &PerFrame<FrameMeasurements>,
-    chain: &Chain,
-) -> Vec<Piece> {
+fn lines(recording: &Recording<'_>, measurements: &PerFrame<FrameMeasurements>, chain: &Chain) -> Vec<Piece> {
     let of_frame = |(frame, measured): (&Frame, &FrameMeasurements)| -> Vec<Piece> {
         let light = |line: &Line| chain.light(frame.time_s, line.pixel, Some(line.ground));
         measured.lines.iter().filter_map(|line| Some((line.profile.level?, light(line)))).collect()

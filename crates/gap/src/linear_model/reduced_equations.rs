@@ -96,12 +96,20 @@ impl ReducedEquations {
         }
     }
 
+    /// Returns the number of fitted parameters.
+    pub(crate) fn parameters(&self) -> usize {
+        self.columns.parameters
+    }
+
     /// Returns the equations that the priors of nuisance parameters and reflectance add to those of all parts, as
     /// [`Self::projected`] makes them.
     pub(crate) fn nuisance_priors(&self) -> ProjectedEquations {
         let all: Vec<ColumnIndex> = ColumnIndex::first(self.columns.parameters).collect();
-        let score = all.iter().map(|column| self.prior_product(self.of_column(*column), self.y.as_slice()));
-        ProjectedEquations { a: self.nuisance_scatter(&all), g: DVector::from_iterator(all.len(), score) }
+        let score = all.iter().map(|column| {
+            self.prior_products(self.of_column(*column), self.y.as_slice()).into_iter().sum::<f64>()
+        });
+        let [of_nuisances, of_reflectance] = self.prior_scatter(&all);
+        ProjectedEquations { a: of_nuisances + of_reflectance, g: DVector::from_iterator(all.len(), score) }
     }
 
     /// Estimates the variances of the reflectance's increments from a fit to these equations.
@@ -171,12 +179,19 @@ impl ReducedEquations {
         some.par_iter().map(project).collect()
     }
 
-    /// Returns the contribution of the priors of nuisance parameters and reflectance to the scatter of scores, which no frame
-    /// shows.
-    pub(crate) fn nuisance_scatter(&self, free: &[ColumnIndex]) -> DMatrix<f64> {
-        let product =
-            |a: ColumnIndex, b: ColumnIndex| self.prior_product(self.of_column(a), self.of_column(b));
-        DMatrix::from_fn(free.len(), free.len(), |i, j| product(free[i.min(j)], free[i.max(j)]))
+    /// Returns the contributions of the priors of nuisance parameters and of reflectance to the scatter of scores, which no
+    /// frame shows.
+    pub(crate) fn prior_scatter(&self, free: &[ColumnIndex]) -> [DMatrix<f64>; 2] {
+        let mut scatter = [DMatrix::zeros(free.len(), free.len()), DMatrix::zeros(free.len(), free.len())];
+        for (i, &one) in free.iter().enumerate() {
+            for (j, &other) in free.iter().enumerate().skip(i) {
+                let products = self.prior_products(self.of_column(one), self.of_column(other));
+                for (scatter, product) in scatter.iter_mut().zip(products) {
+                    (scatter[(i, j)], scatter[(j, i)]) = (product, product);
+                }
+            }
+        }
+        scatter
     }
 
     /// Returns the column of `X` that belongs to a fitted parameter.
@@ -185,11 +200,11 @@ impl ReducedEquations {
         &self.x.as_slice()[column.0 * rows..(column.0 + 1) * rows]
     }
 
-    /// Returns `aᵀ Q b` for values of all nuisance parameters and patches.
-    fn prior_product(&self, a: &[f64], b: &[f64]) -> f64 {
+    /// Returns `aᵀ Q b` for values of all nuisance parameters and patches, the part of the former and that of the latter.
+    fn prior_products(&self, a: &[f64], b: &[f64]) -> [f64; 2] {
         let [(a, of_patches), (b, others)] = [a, b].map(|values| values.split_at(self.columns.nuisances));
         let nuisances: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
-        PRIOR * nuisances + self.columns.field.prior_product(of_patches, others)
+        [PRIOR * nuisances, self.columns.field.prior_product(of_patches, others)]
     }
 }
 

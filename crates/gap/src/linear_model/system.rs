@@ -48,9 +48,9 @@ pub(crate) struct LinearSystem {
     pub(crate) pose_sigmas: [f64; 6],
     /// Weights of the measurements of each frame; 0 for outliers and missing residuals.
     pub(crate) weights: Vec<Vec<f64>>,
-    /// Scatter of the sum of all scores by priors that are the same in all frames, beside that of the columns' own; None where
-    /// there are no others.
-    pub(crate) prior_scatter: Option<DMatrix<f64>>,
+    /// Scatter of the sum of all scores by the priors of nuisance parameters and of reflectance that are no columns of this
+    /// system; None where there are no others.
+    pub(crate) prior_scatter: Option<[DMatrix<f64>; 2]>,
     /// The same system without the levels of lines, and without those of carpet; empty in these systems themselves.
     pub(crate) of_one_surface: Vec<Self>,
 }
@@ -105,11 +105,14 @@ impl LinearSystem {
     }
 
     /// Returns the part of [`Self::prior_scatter`] that belongs to these columns.
-    pub(crate) fn prior_scatter(&self, free: &[ColumnIndex]) -> DMatrix<f64> {
-        let entry = |scatter: &DMatrix<f64>, i: usize, j: usize| scatter[(free[i].0, free[j].0)];
-        DMatrix::from_fn(free.len(), free.len(), |i, j| {
-            self.prior_scatter.as_ref().map_or(0.0, |scatter| entry(scatter, i, j))
-        })
+    pub(crate) fn prior_scatter(&self, free: &[ColumnIndex]) -> [DMatrix<f64>; 2] {
+        let size = free.len();
+        match &self.prior_scatter {
+            Some(scatter) => scatter
+                .each_ref()
+                .map(|scatter| DMatrix::from_fn(size, size, |i, j| scatter[(free[i].0, free[j].0)])),
+            None => [DMatrix::zeros(size, size), DMatrix::zeros(size, size)],
+        }
     }
 
     /// Assembles the normal equations with these weights.
