@@ -108,7 +108,7 @@ pub(crate) fn light_pattern(recording: &Recording<'_>, found: &SelectedModel) ->
     let columns = Columns { parameters: kept.len() + SHAPES.len(), ..linearized.system.columns.clone() };
     let views = recording.views();
     let views: Vec<ViewIndex> = found.split.training().map(|frame| views[frame]).collect();
-    let system = linearized.system.with_columns(&frames.iter().collect::<Vec<_>>(), columns, &views);
+    let system = linearized.system.with_columns(&frames.iter().collect::<Vec<_>>(), &columns, &views);
     let of_effects = kept.iter().map(|column| fits.evidence.base[column.0]);
     let base =
         DVector::from_iterator(kept.len() + SHAPES.len(), of_effects.chain(SHAPES.iter().map(|_| 0.0)));

@@ -143,7 +143,7 @@ impl LinearSystem {
     pub(crate) fn with_columns(
         &self,
         frames: &[&LinearizedFrame],
-        columns: Columns,
+        columns: &Columns,
         views: &[ViewIndex],
     ) -> Self {
         let weighting = Weighting {
@@ -152,7 +152,7 @@ impl LinearSystem {
             pose_sigmas: self.pose_sigmas,
             variances: columns.field.variances.clone(),
         };
-        Self::with_each_surface(frames, &weighting, &columns, views)
+        Self::with_each_surface(frames, &weighting, columns, views)
     }
 
     /// Returns the values of nuisance parameters that fit the levels of these frames beside the reflectance of all places.
