@@ -49,6 +49,27 @@ fn a_focus_ring_that_moved_between_two_recordings_is_named_without_a_nominal_sha
 }
 
 #[test]
+fn a_report_is_not_written_into_the_earlier_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let [before, after] = ["before", "after"].map(|name| folder.path().join(name));
+    record(&before, 131, &[]);
+    record(&after, 132, &[]);
+    let camera = fs::read_to_string(before.join("camera.toml")).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_reality-sim"))
+        .arg("gap")
+        .arg(&after)
+        .arg("--reference")
+        .arg(&before)
+        .arg("--out")
+        .arg(&before)
+        .output()
+        .unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && message.contains("holds the input"), "{message}");
+    assert_eq!(fs::read_to_string(before.join("camera.toml")).unwrap(), camera);
+}
+
+#[test]
 fn an_effect_of_both_recordings_has_not_changed() {
     let vignetting = Hidden::Vignetting { strength: 0.6, falloff: Falloff::Quadratic };
     let report = since(&[vignetting], &[vignetting]);

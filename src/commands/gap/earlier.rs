@@ -1,7 +1,5 @@
 //! `gap --reference`: an earlier recording, against which a later one is compared.
 
-use std::path::Path;
-
 use reality_sim::{
     Sequence,
     gap::{
@@ -35,10 +33,9 @@ pub struct Told {
 
 impl Earlier {
     /// Analyses the earlier recording, whose poses are found in the same way as the later one's.
-    pub fn new(args: &GapArgs, folder: &Path, options: &Options) -> anyhow::Result<Self> {
-        let sequence = Sequence::open(folder)?;
-        let poses = poses::reference(args, &sequence)?;
-        let recording = Recording::new(&sequence, &poses.poses, poses.source, None)?;
+    pub fn new(args: &GapArgs, sequence: &Sequence, options: &Options) -> anyhow::Result<Self> {
+        let poses = poses::reference(args, sequence)?;
+        let recording = Recording::new(sequence, &poses.poses, poses.source, None)?;
         let analysis = analyse(&recording, &Model::default(), options, &|_| ())?;
         let photometry = shown_photometry(&recording, &analysis.model)?;
         let told = Told {

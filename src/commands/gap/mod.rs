@@ -39,12 +39,15 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
         Chain::new(&sequence.setup, &sequence.field, &given).map_err(|error| error.in_file(path))?;
     }
     let pictures = sequence.frames.first().map(|_| sequence.image_path(0)).transpose()?;
-    create_output_folder(&args.out, &[sequence.files.clone(), Vec::from_iter(pictures)].concat())?;
+    let earlier = args.reference.as_deref().map(Sequence::open).transpose()?;
+    let of_earlier = earlier.as_ref().map_or_else(Vec::new, |earlier| earlier.files.clone());
+    let inputs = [sequence.files.clone(), of_earlier, Vec::from_iter(pictures)].concat();
+    create_output_folder(&args.out, &inputs)?;
     let poses = poses::reference(args, &sequence)?;
     let progress = stages()?;
     progress.set_message("reading the pictures");
     let options = Options { seed: args.seed, without: args.without.clone() };
-    let earlier = args.reference.as_deref().map(|folder| Earlier::new(args, folder, &options)).transpose()?;
+    let earlier = earlier.map(|sequence| Earlier::new(args, &sequence, &options)).transpose()?;
     if let Some(earlier) = &earlier {
         given.clone_from(&earlier.model);
         sequence.setup.photometry = Some(earlier.photometry);

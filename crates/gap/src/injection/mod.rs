@@ -4,58 +4,18 @@
 //! mount, the field and the clock in the files, which then lack what the pictures show; those of the odometry in its steps. Which of
 //! these it is follows from the effect's own hooks.
 
+mod error;
 mod pictures;
 
 use reality_sim_core::{
     pose::Pose2,
-    sequence::{FrameRecord, Sequence, SequenceError},
+    sequence::{FrameRecord, Sequence},
 };
-use reality_sim_sensor::{Chain, CorrectionError, Effect, Model, ModelError, Parameter, Redevelopment, Role};
+use reality_sim_sensor::{Chain, Effect, Model, Parameter, Redevelopment, Role};
 use tempfile::TempDir;
 
+pub use self::error::InjectionError;
 use crate::{linear_model::initial_values::starting_values, recording::Recording};
-
-/// Reason why an effect cannot be hidden in a recording.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum InjectionError {
-    /// The effect acts while a picture is exposed: neither files nor finished pictures can be given it.
-    #[error("{id} cannot be hidden in finished pictures: it acts while they are exposed")]
-    WhileExposed {
-        /// Id of the effect.
-        id: &'static str,
-    },
-    /// The size is outside the range of the effect's parameter, or neutral.
-    #[error("{id}: {parameter} has to be from {} to {} and other than {neutral}", .range[0], .range[1])]
-    Size {
-        /// Id of the effect.
-        id: &'static str,
-        /// Name of the parameter.
-        parameter: &'static str,
-        /// Smallest and largest value.
-        range: [f64; 2],
-        /// Value at which the effect vanishes.
-        neutral: f64,
-    },
-    /// The recording does not have what the effect changes.
-    #[error("{id}: the recording has nothing that it would change")]
-    NothingToChange {
-        /// Id of the effect.
-        id: &'static str,
-    },
-    /// The size leaves no valid camera or field.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// The files cannot be changed by the effect.
-    #[error(transparent)]
-    Correction(#[from] CorrectionError),
-    /// A picture cannot be read or written.
-    #[error(transparent)]
-    Sequence(#[from] SequenceError),
-    /// There is no room for pictures.
-    #[error("no folder for pictures can be made: check the temporary folder")]
-    Folder(#[source] std::io::Error),
-}
 
 /// Recording in which an effect is hidden. Its pictures, where they are changed, lie in a temporary folder, which is removed
 /// with it.

@@ -9,7 +9,7 @@ use reality_sim_core::{
 use reality_sim_sensor::Redevelopment;
 use tempfile::TempDir;
 
-use super::InjectionError;
+use super::error::InjectionError;
 use crate::measurement::quantization::luma_steps;
 
 /// Seed of the noise that is added.
