@@ -45,7 +45,7 @@ impl Redevelopment<'_> {
     /// Returns a recorded picture as the other camera would have recorded it. `seed` is that of the noise that it adds.
     pub fn picture(&self, picture: &RgbImage, pose: CameraPose, time_s: f64, seed: u64) -> RgbImage {
         let (width, height) = picture.dimensions();
-        let light = self.magnified(&self.light_of(picture));
+        let light = self.magnified(self.light_of(picture));
         let light = self.lit(light, pose, time_s);
         let added_px2 = |pixel: DVec2| {
             (self.other.psf_variance_px2(pixel) - self.recorded.psf_variance_px2(pixel)).max(0.0)
@@ -92,10 +92,10 @@ impl Redevelopment<'_> {
     }
 
     /// Magnifies the colours as the other camera does, about the principal point.
-    fn magnified(&self, light: &Light) -> Light {
+    fn magnified(&self, light: Light) -> Light {
         let [recorded, other] = [self.recorded, self.other].map(Chain::magnification);
         if recorded == other {
-            return light.clone();
+            return light;
         }
         let camera = self.recorded.camera();
         let mut magnified = Light::dark([camera.width, camera.height]);
@@ -104,7 +104,7 @@ impl Redevelopment<'_> {
                 let from_middle = DVec2::new(u as f64 - camera.cx, v as f64 - camera.cy);
                 *to = Vec3::from_array([0, 1, 2].map(|channel| {
                     let from = from_middle * recorded[channel] / other[channel];
-                    interpolated(light, from + DVec2::new(camera.cx, camera.cy))[channel]
+                    interpolated(&light, from + DVec2::new(camera.cx, camera.cy))[channel]
                 }));
             }
         });

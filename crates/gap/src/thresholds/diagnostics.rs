@@ -154,8 +154,9 @@ pub(crate) struct PatternThresholds {
     pub(crate) least_score: f64,
     /// Material size of patterns of the geometry, pixels. Chosen; no measurement.
     pub(crate) material_geometry_px: f64,
-    /// The same of the photometry, natural logarithm of light. Chosen: a little more than a patch of carpet,
-    /// [`super::NuisanceThresholds::patch_level`]. Doubling it changes a report, see `docs/figures/gap_thresholds.md`.
+    /// The same of the photometry, natural logarithm of light. Chosen: a little less than the carpet's nominal brightness is
+    /// trusted, [`super::NuisanceThresholds::carpet_level`]. Doubling it changes a report, see
+    /// `docs/figures/gap_thresholds.md`.
     pub(crate) material_photometry: f64,
     /// The same of the sharpness, pixels squared. Chosen; no measurement.
     pub(crate) material_sharpness_px2: f64,

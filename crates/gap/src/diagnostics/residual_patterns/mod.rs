@@ -1,7 +1,8 @@
 //! Patterns of residuals: in the picture, on the field, over time, or by the speed of the picture.
 //!
 //! Residuals are binned by where and when they were measured. A pattern is significant if the bins' means in some parts of the
-//! recording predict the residuals in the others (cross-validation), or if the mean of a single bin is significant.
+//! recording predict the residuals in the others (cross-validation), or if the mean of a single bin is significant. Light that
+//! the reflectance of places has taken up is found by [`crate::inference::light_pattern`], and reported where no bin tells of it.
 
 mod bins;
 mod locus;
