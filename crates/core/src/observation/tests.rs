@@ -98,11 +98,12 @@ proptest! {
         }
     }
 
-    /// Compares the sum with one written out in double precision.
+    /// Compares the sum with one written out in double precision. Values rise and fall by at most 28 from column to
+    /// column and 12 from row to row, so the 0.01 px that the loop may be off change a sample by at most 0.31.
     #[test]
     fn the_loop_sums_what_lies_along_the_lines(pose in any_pose(), seed in any::<u32>()) {
         let picture = GrayImage::from_fn(640, 480, |u, v| {
-            image::Luma([((u * 7 + v * 3 + seed % 97) % 61 * 4) as u8])
+            image::Luma([((u * 7 + v * 3 + seed % 97) % 122).abs_diff(61) as u8 * 4])
         });
         let samples = sample_lines(&test_scene::field(), 0.05);
         let (texture, points) = (Texture::pack(&picture), ground_points(&samples, 0.0));
@@ -116,7 +117,7 @@ proptest! {
             }
         }
         prop_assert!((f64::from(seen) - count).abs() <= 2.0);
-        let allowed = 1e-3 * expected + 1.0 * count + 2.0 * 255.0 * (f64::from(seen) - count).abs();
+        let allowed = 1e-5 * expected + 0.31 * count + 2.0 * 255.0 * (f64::from(seen) - count).abs();
         prop_assert!((f64::from(sum) - expected).abs() <= allowed, "{sum} instead of {expected}, {seen} and {count} seen");
     }
 }
