@@ -71,16 +71,23 @@ pub fn parameters(hidden: &Hidden) -> Vec<(&'static str, f64)> {
         Hidden::TangentialDistortion { p1, p2 } => vec![("p1", p1), ("p2", p2)],
         Hidden::OdometryDelay { delay_s } | Hidden::ImuDelay { delay_s } => vec![("delay_s", delay_s)],
         Hidden::ClockJump { jump_s } => vec![("jump_s", jump_s)],
+        Hidden::Sharpening { amount, .. } => vec![("amount", amount)],
+        Hidden::VeilingGlare { share } => vec![("share", share)],
+        Hidden::CarpetReflectance { change } | Hidden::LineReflectance { change } => vec![("change", change)],
         // The other effects have other parameters than those of the library.
         _ => Vec::new(),
     }
 }
 
 /// Whether the library's effect with the true parameters makes exactly the same pictures. It does not for blur by a disc,
-/// nor for a cos⁴ falloff, which the library does not have.
+/// for another radius of the sharpening, nor for a cos⁴ falloff, which the library does not have.
 pub fn has_the_librarys_form(hidden: &Hidden) -> bool {
-    let is_other =
-        matches!(hidden, Hidden::Defocus { .. } | Hidden::Vignetting { falloff: Falloff::Cos4, .. });
+    let is_other = matches!(
+        hidden,
+        Hidden::Defocus { .. }
+            | Hidden::Sharpening { .. }
+            | Hidden::Vignetting { falloff: Falloff::Cos4, .. }
+    );
     !is_other && !parameters(hidden).is_empty()
 }
 

@@ -83,13 +83,13 @@ impl Nominal {
     pub fn photometry(&self) -> Photometry {
         let light = &self.light;
         Photometry {
-            gamma: light.gamma,
             line_linear_rgb: Some(light.line_rgb),
             carpet_linear_rgb: Some(light.carpet_rgb),
             black_level: Some(0.0),
             noise_shot: Some(light.noise_shot),
             noise_read: Some(light.noise_read),
             psf_sigma_px: Some(light.psf_sigma_px),
+            ..Photometry::of_gamma(light.gamma)
         }
     }
 

@@ -13,6 +13,8 @@ use crate::{
     effects::{BLACK_LEVEL, library},
     model::{Model, ModelError, ModelFault, Used},
     noise::Noise,
+    sharpening::{sharpened_amplitude, sharpened_variance_px2},
+    surface::Surface,
     tone::Tone,
     trajectory::Trajectory,
 };
@@ -43,6 +45,8 @@ pub struct Chain {
     camera: Camera,
     clock_s: f64,
     exposure_s: f64,
+    glare: f64,
+    sharpening: f64,
     /// Whether rows are exposed at different times.
     has_row_times: bool,
     magnification: [f64; 3],
@@ -79,6 +83,8 @@ impl Chain {
         chain.exposure_s = motion.iter().map(|used| used.effect.exposure_s(&used.values)).sum();
         chain.has_row_times = delay_s(&motion, 0.0) != delay_s(&motion, 1.0);
         chain.camera = changed_camera(&lens, &setup.camera)?;
+        chain.glare = lens.iter().map(|used| used.effect.glare(&used.values)).sum();
+        chain.sharpening = encoding.iter().map(|used| used.effect.sharpening(&used.values)).sum();
         chain.magnification = product(&lens, |used| used.effect.magnification(&used.values));
         chain.noise = sensor.iter().fold(chain.noise, |noise, used| used.effect.noise(&used.values, noise));
         chain.sensor.extend(sensor);
@@ -104,6 +110,8 @@ impl Chain {
             camera: setup.camera.clone(),
             clock_s: 0.0,
             exposure_s: 0.0,
+            glare: 0.0,
+            sharpening: 0.0,
             has_row_times: false,
             magnification: [1.0; 3],
             psf_variance_px2: sampled_variance_px2(value(|p| p.psf_sigma_px)),
@@ -212,6 +220,16 @@ impl Chain {
         self.world.iter().map(light).product()
     }
 
+    /// Returns the factor of a surface's reflectance.
+    pub fn reflectance(&self, surface: Surface) -> f64 {
+        self.world.iter().map(|used| used.effect.reflectance(&used.values, surface)).product()
+    }
+
+    /// Returns the share of the picture's mean light that the lens adds everywhere.
+    pub fn glare(&self) -> f64 {
+        self.glare
+    }
+
     /// Whether effects change the light on the ground from place to place.
     pub(crate) fn has_uneven_light(&self) -> bool {
         !self.world.is_empty()
@@ -239,6 +257,23 @@ impl Chain {
         let radius = self.radius(pixel);
         let added = |used: &Used| used.effect.blur_variance_px2(&used.values, radius);
         self.psf_variance_px2 + self.lens.iter().map(added).sum::<f64>()
+    }
+
+    /// Returns the variance along an axis, in pixels², of the Gaussian blur that looks like one of this variance in the encoded
+    /// picture, which may be sharpened: its edges are as steep.
+    pub fn encoded_variance_px2(&self, variance_px2: f64) -> f64 {
+        sharpened_variance_px2(variance_px2, self.sharpening)
+    }
+
+    /// Returns the factor of the encoding on the amplitude of waves with these angular frequencies along rows and columns, radians
+    /// per pixel.
+    pub fn encoded_amplitude(&self, frequency_rad_px: [f64; 2]) -> f64 {
+        sharpened_amplitude(frequency_rad_px, self.sharpening)
+    }
+
+    /// Returns the amount by which encoded pictures are sharpened.
+    pub(crate) fn sharpening(&self) -> f64 {
+        self.sharpening
     }
 
     /// Returns the sensor's linear output for a linear value that includes noise.

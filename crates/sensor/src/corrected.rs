@@ -12,6 +12,7 @@ use reality_sim_core::{
 use crate::{
     chain::Chain,
     model::{Model, ModelError},
+    surface::Surface,
     trajectory::{Trajectory, TrajectoryError},
 };
 
@@ -181,20 +182,24 @@ impl Corrected {
         let gains = [0.0, 1.0, 1e6].map(|time_s| self.chain.gain(time_s));
         let is_constant = gains.iter().all(|gain| *gain == gains[0]);
         let gain = if is_constant { gains[0] } else { [1.0; 3] };
-        let brightened = |rgb: [f64; 3]| std::array::from_fn(|channel| rgb[channel] * gain[channel]);
+        let brightened = |rgb: [f64; 3], surface: Surface| {
+            let factor = self.chain.reflectance(surface);
+            std::array::from_fn(|channel| rgb[channel] * gain[channel] * factor)
+        };
         let black_level = self.chain.respond(0.0);
         let center = DVec2::new(self.chain.camera().cx, self.chain.camera().cy);
         let blur = sampled_sigma_px(self.chain.psf_variance_px2(center));
         let known =
             |stated: Option<f64>, value: f64| stated.map(|_| value).or((value > 0.0).then_some(value));
         Photometry {
-            gamma: self.chain.tone().gamma,
-            line_linear_rgb: stated.line_linear_rgb.map(brightened),
-            carpet_linear_rgb: stated.carpet_linear_rgb.map(brightened),
+            line_linear_rgb: stated.line_linear_rgb.map(|rgb| brightened(rgb, Surface::Line)),
+            carpet_linear_rgb: stated.carpet_linear_rgb.map(|rgb| brightened(rgb, Surface::Carpet)),
             black_level: known(stated.black_level, black_level),
             noise_shot: known(stated.noise_shot, noise.shot),
             noise_read: known(stated.noise_read, noise.read_variance.max(0.0).sqrt()),
             psf_sigma_px: known(stated.psf_sigma_px, blur),
+            gamma: self.chain.tone().gamma,
+            trust: stated.trust,
         }
     }
 }

@@ -23,6 +23,7 @@ pub use self::{
 };
 use crate::{
     noise::Noise,
+    surface::Surface,
     tone::{InvalidTone, Tone},
 };
 
@@ -45,6 +46,11 @@ pub trait Effect: Sync + Debug {
 
     /// World: returns the factor of the light on the ground at a point, metres.
     fn light(&self, _p: &[f64], _point_in_world: DVec2, _field: &FieldDimensions) -> f64 {
+        1.0
+    }
+
+    /// World: returns the factor of a surface's reflectance.
+    fn reflectance(&self, _p: &[f64], _surface: Surface) -> f64 {
         1.0
     }
 
@@ -106,6 +112,11 @@ pub trait Effect: Sync + Debug {
         0.0
     }
 
+    /// Lens: returns the share of the picture's mean light that is added everywhere.
+    fn glare(&self, _p: &[f64]) -> f64 {
+        0.0
+    }
+
     /// Exposure: returns the gain of red, green and blue in the frame with this timestamp.
     fn gain(&self, _p: &[f64], _time_s: f64) -> [f64; 3] {
         [1.0; 3]
@@ -124,6 +135,11 @@ pub trait Effect: Sync + Debug {
     /// Encoding: returns the true tone curve for the nominal one. Fails where the values leave no valid curve.
     fn tone(&self, _p: &[f64], tone: Tone) -> Result<Tone, InvalidTone> {
         Ok(tone)
+    }
+
+    /// Encoding: returns the amount of an unsharp mask of 1 pixel on encoded values; negative amounts smooth.
+    fn sharpening(&self, _p: &[f64]) -> f64 {
+        0.0
     }
 
     /// Odometry: returns the delay in seconds of the odometry after the pictures.

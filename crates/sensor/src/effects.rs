@@ -6,6 +6,7 @@ mod black_level;
 mod camera_height;
 mod camera_offset;
 mod camera_yaw;
+mod carpet_reflectance;
 mod chromatic_aberration;
 mod clock_jump;
 mod defocus;
@@ -14,6 +15,7 @@ mod field_dimensions;
 mod focal_length;
 mod gait_sway;
 mod imu_delay;
+mod line_reflectance;
 mod motion_blur;
 mod mount_pitch;
 mod mount_roll;
@@ -26,10 +28,12 @@ mod principal_point;
 mod radial_distortion;
 mod rolling_shutter;
 mod sensor_noise;
+mod sharpening;
 mod tangential_distortion;
 mod time_offset;
 mod tone_curve;
 mod uneven_illumination;
+mod veiling_glare;
 mod vignetting;
 mod white_balance;
 
@@ -39,6 +43,8 @@ use crate::effect::Effect;
 const LIBRARY: &[&dyn Effect] = &[
     &field_dimensions::FieldSize,
     &uneven_illumination::UnevenIllumination,
+    &carpet_reflectance::CarpetReflectance,
+    &line_reflectance::LineReflectance,
     &time_offset::TimeOffset,
     &clock_jump::ClockJump,
     &gait_sway::GaitSway,
@@ -55,12 +61,14 @@ const LIBRARY: &[&dyn Effect] = &[
     &principal_point::PrincipalPoint,
     &chromatic_aberration::ChromaticAberration,
     &vignetting::Vignetting,
+    &veiling_glare::VeilingGlare,
     &defocus::Defocus,
     &white_balance::WhiteBalance,
     &exposure_drift::ExposureDrift,
     &black_level::BlackLevel,
     &sensor_noise::SensorNoise,
     &tone_curve::ToneCurve,
+    &sharpening::Sharpening,
     &odometry_scale::OdometryScale,
     &odometry_yaw_drift::OdometryYawDrift,
     &odometry_lateral_slip::OdometryLateralSlip,

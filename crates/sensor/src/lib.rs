@@ -65,6 +65,8 @@ mod renderer;
 mod scene;
 mod sensor;
 mod shading;
+mod sharpening;
+mod surface;
 pub mod text;
 mod tone;
 mod trajectory;
@@ -83,6 +85,7 @@ pub use self::{
     redevelopment::Redevelopment,
     renderer::{RenderError, Renderer},
     shading::Shading,
+    surface::Surface,
     tone::{InvalidTone, Tone},
     trajectory::{Trajectory, TrajectoryError, Twist},
 };

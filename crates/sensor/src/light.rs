@@ -1,6 +1,6 @@
 //! The light on the sensor: a picture in linear values, before it is recorded.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 /// Linear RGB of every pixel, row by row.
@@ -21,6 +21,16 @@ impl Light {
 
     pub(crate) fn rows_mut(&mut self) -> impl IndexedParallelIterator<Item = &mut [Vec3]> {
         self.pixels.par_chunks_exact_mut(self.width)
+    }
+
+    /// Adds a share of the mean light to every pixel.
+    pub(crate) fn veiled(mut self, share: f32) -> Self {
+        if share != 0.0 {
+            let sum = self.pixels.iter().fold(DVec3::ZERO, |sum, light| sum + light.as_dvec3());
+            let veil = share * (sum / self.pixels.len().max(1) as f64).as_vec3();
+            self.pixels.iter_mut().for_each(|light| *light += veil);
+        }
+        self
     }
 
     /// Returns the row at `v`, or the nearest one if `v` is outside the picture.

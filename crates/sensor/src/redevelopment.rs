@@ -9,7 +9,7 @@ use reality_sim_core::{
     pose::CameraPose,
 };
 
-use crate::{Chain, blur::blurred, light::Light};
+use crate::{Chain, blur::blurred, light::Light, sharpening::sharpened};
 
 /// Places at which two cameras are compared, as fractions of the picture's size.
 const COMPARED: [[f64; 2]; 4] = [[0.5, 0.5], [0.0, 0.0], [0.9, 0.1], [0.3, 0.8]];
@@ -37,7 +37,9 @@ impl Redevelopment<'_> {
         let differs = |place: [f64; 2]| {
             times_s.iter().any(|time_s| at(self.recorded, place, *time_s) != at(self.other, place, *time_s))
         };
+        let of_picture = |chain: &Chain| [chain.glare(), chain.sharpening()];
         self.recorded.noise() != self.other.noise()
+            || of_picture(self.recorded) != of_picture(self.other)
             || self.recorded.magnification() != self.other.magnification()
             || COMPARED.into_iter().any(differs)
     }
@@ -54,6 +56,9 @@ impl Redevelopment<'_> {
             added_px2(DVec2::from(*place) * DVec2::new(f64::from(width), f64::from(height))) > 0.0
         });
         let light = if is_blurred { blurred(light, added_px2) } else { light };
+        // The mean light has the first camera's share already.
+        let [recorded_share, other_share] = [self.recorded, self.other].map(Chain::glare);
+        let light = light.veiled(((other_share - recorded_share) / (1.0 + recorded_share)) as f32);
         let bits = time_s.to_bits();
         let stream = Stream::new(seed, Purpose::Picture, (bits ^ (bits >> 32)) as u32, 0);
         let mut made = RgbImage::new(width, height);
@@ -74,7 +79,8 @@ impl Redevelopment<'_> {
             })
             .collect();
         made.pixels_mut().zip(rows.into_iter().flatten()).for_each(|(to, from)| *to = from);
-        made
+        let amount = self.other.sharpening() - self.recorded.sharpening();
+        if amount == 0.0 { made } else { sharpened(&made, amount) }
     }
 
     /// Returns the light of which the first camera recorded a picture.
@@ -179,13 +185,10 @@ mod tests {
     fn setup() -> CameraSetup {
         let camera = Camera::new([64, 48], [50.0, 50.0, 31.5, 23.5], Distortion::Pinhole).unwrap();
         let photometry = Photometry {
-            gamma: 2.2,
-            line_linear_rgb: None,
-            carpet_linear_rgb: None,
-            black_level: None,
             noise_shot: Some(0.001),
             noise_read: Some(0.004),
             psf_sigma_px: Some(0.5),
+            ..Photometry::of_gamma(2.2)
         };
         CameraSetup { camera, mount_height_m: 0.5, photometry: Some(photometry) }
     }

@@ -15,6 +15,8 @@ use crate::{
     projected_scene::ProjectedScene,
     scene::Scene,
     sensor::Sensor,
+    sharpening::sharpened,
+    surface::Surface,
 };
 
 /// Default number of parts along each side of a pixel that an edge crosses.
@@ -68,6 +70,12 @@ impl Renderer {
     }
 
     fn through(chain: Chain, colors: SceneColors) -> Self {
+        let [line, carpet] = Surface::ALL.map(|surface| chain.reflectance(surface) as f32);
+        let colors = SceneColors {
+            line_linear_rgb: line * colors.line_linear_rgb,
+            carpet_linear_rgb: carpet * colors.carpet_linear_rgb,
+            ..colors
+        };
         let camera = chain.camera();
         let [red, green, blue] = chain.magnification();
         let magnifications = if red == green && green == blue { vec![green] } else { vec![red, green, blue] };
@@ -122,8 +130,11 @@ impl Renderer {
         noise_seed: Option<u64>,
     ) -> Result<RgbImage, RenderError> {
         let light = self.light(&Motion::new(&self.chain, trajectory, time_s))?;
-        let light = blurred(light, |pixel| self.chain.psf_variance_px2(pixel));
-        Ok(self.recorded(&light, &Sensor::new(&self.chain, time_s, noise_seed)))
+        let light =
+            blurred(light, |pixel| self.chain.psf_variance_px2(pixel)).veiled(self.chain.glare() as f32);
+        let picture = self.recorded(&light, &Sensor::new(&self.chain, time_s, noise_seed));
+        let amount = self.chain.sharpening();
+        Ok(if amount == 0.0 { picture } else { sharpened(&picture, amount) })
     }
 
     /// Returns the light that falls through the lens while each row is exposed.

@@ -95,15 +95,7 @@ mod tests {
 
     fn chain(model: &Model) -> Chain {
         let camera = Camera::new([64, 48], [40.0, 40.0, 31.5, 23.5], Distortion::Pinhole).unwrap();
-        let photometry = Photometry {
-            gamma: 2.2,
-            line_linear_rgb: None,
-            carpet_linear_rgb: None,
-            black_level: Some(0.02),
-            noise_shot: None,
-            noise_read: None,
-            psf_sigma_px: None,
-        };
+        let photometry = Photometry { black_level: Some(0.02), ..Photometry::of_gamma(2.2) };
         let setup = CameraSetup { camera, mount_height_m: 0.5, photometry: Some(photometry) };
         Chain::new(&setup, &FieldDimensions::preset("spl").unwrap(), model).unwrap()
     }

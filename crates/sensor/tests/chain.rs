@@ -189,13 +189,11 @@ proptest! {
 /// Camera with complete photometry.
 fn measured_setup() -> CameraSetup {
     let photometry = Photometry {
-        gamma: 2.0,
-        line_linear_rgb: None,
-        carpet_linear_rgb: None,
         black_level: Some(0.1),
         noise_shot: Some(0.002),
         noise_read: Some(0.01),
         psf_sigma_px: Some(0.6),
+        ..Photometry::of_gamma(2.0)
     };
     CameraSetup { photometry: Some(photometry), ..common::linear_setup(pinhole()) }
 }

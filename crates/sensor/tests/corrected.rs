@@ -21,13 +21,9 @@ fn with(id: &str, values: &[f64]) -> Model {
 fn walk() -> Sequence {
     let camera = Camera::new([320, 240], [160.0, 160.0, 159.5, 119.5], Distortion::Pinhole).unwrap();
     let photometry = Photometry {
-        gamma: 1.0,
         line_linear_rgb: Some([0.8; 3]),
         carpet_linear_rgb: Some([0.1, 0.3, 0.1]),
-        black_level: None,
-        noise_shot: None,
-        noise_read: None,
-        psf_sigma_px: None,
+        ..Photometry::of_gamma(1.0)
     };
     let pose = |i: u32| {
         let angle_rad = 0.05 * f64::from(i);

@@ -13,7 +13,7 @@ use reality_sim_core::{
     camera::{Camera, Distortion},
     pose::{CameraPose, Motion2},
 };
-use reality_sim_sensor::{Effect, Growth, Noise, Role, Tone, effect, library};
+use reality_sim_sensor::{Effect, Growth, Noise, Role, Surface, Tone, effect, library};
 
 #[test]
 fn the_library_has_the_effects_that_reports_name() {
@@ -21,7 +21,8 @@ fn the_library_has_the_effects_that_reports_name() {
         rolling_shutter time_offset motion_blur defocus chromatic_aberration vignetting tone_curve black_level \
         white_balance exposure_drift uneven_illumination sensor_noise field_dimensions odometry_scale \
         odometry_yaw_drift odometry_lateral_slip camera_yaw camera_offset tangential_distortion \
-        odometry_delay imu_delay clock_jump gait_sway";
+        odometry_delay imu_delay clock_jump gait_sway carpet_reflectance line_reflectance veiling_glare \
+        sharpening";
     let known: BTreeSet<&str> = library().iter().map(|effect| effect.id()).collect();
     assert_eq!(known, expected.split_whitespace().collect());
     assert_eq!(library().len(), known.len());
@@ -195,6 +196,15 @@ fn light_and_gain_follow_their_formulas() {
     assert_eq!(known("white_balance").gain(&[0.2, -0.1], 3.0), [1.2, 1.0, 0.9]);
     assert_eq!(known("chromatic_aberration").magnification(&[0.002, -0.001]), [1.002, 1.0, 0.999]);
     assert_eq!(known("defocus").blur_variance_px2(&[1.5], 0.3), 2.25);
+    assert_eq!(known("veiling_glare").glare(&[0.03]), 0.03);
+    assert_eq!(
+        Surface::ALL.map(|surface| known("line_reflectance").reflectance(&[0.2], surface)),
+        [1.2, 1.0]
+    );
+    assert_eq!(
+        Surface::ALL.map(|surface| known("carpet_reflectance").reflectance(&[-0.3], surface)),
+        [1.0, 0.7]
+    );
     let field = common::field();
     let corner = DVec2::new(field.length_m, field.width_m) / 2.0;
     let uneven = known("uneven_illumination");
@@ -239,6 +249,7 @@ fn sensor_and_encoding_follow_their_formulas() {
     let tone = known("tone_curve").tone(&[-0.2, 0.4], Tone { gamma: 2.2, contrast: 0.0 }).unwrap();
     assert!((tone.gamma - 2.0).abs() < 1e-15);
     assert!((tone.encode(0.0625) - (0.25 - 0.4 * 0.25 * 0.75 * 0.5)).abs() < 1e-12);
+    assert_eq!(known("sharpening").sharpening(&[0.4]), 0.4);
     assert_eq!([tone.encode(-1.0), tone.encode(0.25), tone.encode(7.0)], [0.0, 0.5, 1.0]);
 }
 

@@ -15,7 +15,7 @@ use reality_sim_core::{
     camera::Camera,
     pose::{CameraPose, Motion2},
 };
-use reality_sim_sensor::{Effect, Model, Noise, Parameter, Renderer, Role, Stage, Tone, library};
+use reality_sim_sensor::{Effect, Model, Noise, Parameter, Renderer, Role, Stage, Surface, Tone, library};
 
 /// Start and end of the recording that fixed parameters state, seconds.
 const RECORDING_S: [f64; 2] = [-10.0, 80.0];
@@ -75,7 +75,9 @@ fn changed_stages(effect: &dyn Effect, p: &[f64], probe: &Probe) -> BTreeSet<Sta
     let hooks = [
         (
             Stage::World,
-            effect.field(p, field.clone()) == field && effect.light(p, probe.point, &field) == 1.0,
+            effect.field(p, field.clone()) == field
+                && effect.light(p, probe.point, &field) == 1.0
+                && Surface::ALL.into_iter().all(|surface| effect.reflectance(p, surface) == 1.0),
         ),
         (
             Stage::Motion,
@@ -92,6 +94,7 @@ fn changed_stages(effect: &dyn Effect, p: &[f64], probe: &Probe) -> BTreeSet<Sta
                 && effect.shift_px(p, &probe.camera, probe.point.extend(2.0)) == DVec2::ZERO
                 && effect.magnification(p) == [1.0; 3]
                 && effect.falloff(p, probe.radius) == 1.0
+                && effect.glare(p) == 0.0
                 && effect.blur_variance_px2(p, probe.radius) == 0.0,
         ),
         (Stage::Exposure, effect.gain(p, probe.time_s) == [1.0; 3]),
@@ -99,7 +102,7 @@ fn changed_stages(effect: &dyn Effect, p: &[f64], probe: &Probe) -> BTreeSet<Sta
             Stage::Sensor,
             effect.respond(p, probe.linear) == probe.linear && effect.noise(p, probe.noise) == probe.noise,
         ),
-        (Stage::Encoding, effect.tone(p, probe.tone) == Ok(probe.tone)),
+        (Stage::Encoding, effect.tone(p, probe.tone) == Ok(probe.tone) && effect.sharpening(p) == 0.0),
         (
             Stage::Odometry,
             effect.odometry(p, probe.motion, 0.2) == probe.motion
@@ -191,6 +194,10 @@ fn outputs(effect: &dyn Effect, p: &[f64], probe: &Probe) -> Vec<f64> {
         effect.attitude_delay_s(p),
         effect.falloff(p, probe.radius),
         effect.blur_variance_px2(p, probe.radius),
+        effect.reflectance(p, Surface::Line),
+        effect.reflectance(p, Surface::Carpet),
+        effect.glare(p),
+        effect.sharpening(p),
         effect.respond(p, probe.linear),
         1e3 * noise.variance(probe.linear),
         effect.tone(p, probe.tone).unwrap().encode(probe.linear),

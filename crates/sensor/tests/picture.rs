@@ -16,7 +16,7 @@ use reality_sim_core::{
     pose::CameraPose,
     sequence::Sequence,
 };
-use reality_sim_sensor::{RenderError, Renderer, SceneColors};
+use reality_sim_sensor::{Model, RenderError, Renderer, SceneColors, effect};
 
 fn draw(camera: &Camera, field: &FieldDimensions, pose: CameraPose) -> RgbImage {
     let setup = common::linear_setup(camera.clone());
@@ -217,6 +217,41 @@ fn colors_are_those_of_the_camera_and_of_the_field() {
     let photometry = setup.photometry.as_mut().unwrap();
     photometry.carpet_linear_rgb = Some([0.1, 0.2, 0.3]);
     assert_eq!(SceneColors::new(&setup, &field).carpet_linear_rgb, glam::Vec3::new(0.1, 0.2, 0.3));
+}
+
+/// Returns the mean linear green of a picture drawn with a gamma of 1.
+fn mean_green(picture: &RgbImage) -> f64 {
+    let sum: f64 = picture.pixels().map(|pixel| f64::from(pixel.0[1])).sum();
+    sum / (255.0 * f64::from(picture.width() * picture.height()))
+}
+
+#[test]
+fn stray_light_adds_a_share_of_the_mean_and_a_surface_is_as_bright_as_its_reflectance() {
+    let setup = common::linear_setup(common::pinhole([160, 120], 90.0));
+    let drawn = |id: &str, value: f64| {
+        let model = Model::default().with(effect(id).unwrap(), [value]);
+        Renderer::with_model(&setup, &common::field(), common::colors(), &model)
+            .unwrap()
+            .draw(pose())
+            .unwrap()
+    };
+    let (plain, veiled) = (drawn("veiling_glare", 0.0), drawn("veiling_glare", 0.2));
+    assert!((mean_green(&veiled) - 1.2 * mean_green(&plain)).abs() < 2e-3);
+    let darkest =
+        |picture: &RgbImage| f64::from(picture.pixels().map(|pixel| pixel.0[1]).min().unwrap()) / 255.0;
+    assert!((darkest(&veiled) - darkest(&plain) - 0.2 * mean_green(&plain)).abs() < 4e-3);
+    let (line, carpet) = (drawn("line_reflectance", -0.5), drawn("carpet_reflectance", 1.0));
+    let ratios = |changed: &RgbImage| -> Vec<f64> {
+        let pairs = changed.pixels().zip(plain.pixels());
+        pairs.map(|(to, from)| f64::from(to.0[1]) / f64::from(from.0[1].max(1))).collect()
+    };
+    let share = |changed: &RgbImage, ratio: f64| {
+        let ratios = ratios(changed);
+        ratios.iter().filter(|found| (*found - ratio).abs() < 0.02).count() as f64 / ratios.len() as f64
+    };
+    // Lines are a small part of the picture, and carpet most of it.
+    assert!((0.002..0.2).contains(&share(&line, 0.5)), "{}", share(&line, 0.5));
+    assert!(share(&carpet, 2.0) > 0.2 && share(&carpet, 1.0) > share(&line, 0.5), "{}", share(&carpet, 2.0));
 }
 
 #[test]

@@ -50,6 +50,48 @@ pub struct Photometry {
     /// Standard deviation of the blur by lens and sensor, pixels, as a Gaussian sampled at the pixels' centres.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub psf_sigma_px: Option<f64>,
+    /// How far the values above are trusted; `None` for what a person's measurement is worth.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trust: Option<Trust>,
+}
+
+/// Trust in nominal values of [`Photometry`], `[photometry.trust]`: standard deviations of their errors, as fractions of the
+/// values.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Trust {
+    /// Brightness of white lines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line: Option<f64>,
+    /// Brightness of the carpet.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub carpet: Option<f64>,
+    /// Standard deviation of the noise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise: Option<f64>,
+    /// Standard deviation of the blur.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blur: Option<f64>,
+}
+
+impl Photometry {
+    /// Returns the photometry of a camera of which nothing but the gamma is known.
+    pub fn of_gamma(gamma: f64) -> Self {
+        Self {
+            gamma,
+            line_linear_rgb: None,
+            carpet_linear_rgb: None,
+            black_level: None,
+            noise_shot: None,
+            noise_read: None,
+            psf_sigma_px: None,
+            trust: None,
+        }
+    }
+
+    /// Returns the trust in its values, as far as it is stated.
+    pub fn trust(&self) -> Trust {
+        self.trust.unwrap_or_default()
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -242,6 +284,17 @@ fn check_photometry(path: &Path, text: &str, photometry: &Photometry) -> Result<
         ("psf_sigma_px", photometry.psf_sigma_px),
     ] {
         numbers.check(key, value.unwrap_or(0.0), |value| value >= 0.0, "0 or more")?;
+    }
+    let trust = NumberCheck { table: "photometry.trust", ..numbers };
+    let Trust { line, carpet, noise, blur } = photometry.trust();
+    for (key, value) in [("line", line), ("carpet", carpet), ("noise", noise), ("blur", blur)] {
+        let in_range = |value| value > 0.0 && value <= 1.0;
+        trust.check(
+            key,
+            value.unwrap_or(1.0),
+            in_range,
+            "a fraction above 0 and at most 1, the standard deviation of the value's error",
+        )?;
     }
     Ok(())
 }

@@ -29,7 +29,7 @@ use image::RgbImage;
 
 pub use self::{
     atomic::write_atomically,
-    camera_file::{CameraSetup, Photometry, read_camera, read_mounting},
+    camera_file::{CameraSetup, Photometry, Trust, read_camera, read_mounting},
     corrected_by::{camera_with_model, model_of_camera},
     error::{Fault, SequenceError},
     field_file::read_field,

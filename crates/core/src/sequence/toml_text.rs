@@ -52,7 +52,7 @@ pub(super) struct NumberCheck<'a> {
     pub path: &'a Path,
     /// Whole text of the file.
     pub text: &'a str,
-    /// Table that contains the keys; empty for the top-level table.
+    /// Table that contains the keys, as in its header: `mount.correction`; empty for the top-level table.
     pub table: &'a str,
 }
 
@@ -68,7 +68,7 @@ impl NumberCheck<'_> {
         if value.is_finite() && valid(value) {
             return Ok(());
         }
-        let keys: Vec<&str> = [self.table, key].into_iter().filter(|key| !key.is_empty()).collect();
+        let keys: Vec<&str> = self.table.split('.').chain([key]).filter(|key| !key.is_empty()).collect();
         let line = line_of_key(self.text, &keys);
         Err(SequenceError::at(self.path, line, Fault::BadValue { key, value, rule }))
     }

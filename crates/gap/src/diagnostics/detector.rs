@@ -45,8 +45,9 @@ pub(crate) struct FitResiduals<'a> {
     pub(crate) model_error: &'a ModelError,
     /// Most significant pattern of light, beside the reflectance of all places.
     pub(crate) light: Option<LightPattern>,
-    /// Gap of each channel on held-out frames.
-    pub(crate) gaps: &'a BTreeMap<Channel, ChannelGap>,
+    /// Gap of each channel that is left on held-out frames, of the measurements that the extended model explains: those that
+    /// the model as given explains, too, may be of other lines.
+    pub(crate) left: &'a BTreeMap<Channel, ChannelGap>,
 }
 
 /// Residuals of a frame after the fit.

@@ -5,9 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use reality_sim_core::field::{Curve, FieldDimensions};
 
 use crate::{
-    diagnostics::detector::{Detector, FitResiduals},
+    diagnostics::detector::{Detector, FitResiduals, FrameResiduals},
     diagnostics::finding::{FieldLine, Finding},
-    measurement::{curve_index::CurveIndex, frame::FrameMeasurements, lines::Line},
+    measurement::{
+        curve_index::CurveIndex, frame::FrameMeasurements, lines::Line, quantity::Quantity, scalar::Subject,
+    },
     thresholds::{MissingLineThresholds, Thresholds},
 };
 
@@ -18,7 +20,43 @@ pub(crate) struct MissingLines;
 
 impl Detector for MissingLines {
     fn detect(&self, fit: &FitResiduals<'_>) -> Vec<Finding> {
-        missing_lines(&fit.measurements, &fit.recording.sequence.field)
+        let frames: Vec<Seen<'_>> = fit
+            .measurements
+            .iter()
+            .zip(&fit.frames)
+            .map(|(measured, fitted)| Seen::new(measured, fitted))
+            .collect();
+        missing_lines(&frames, &fit.recording.sequence.field)
+    }
+}
+
+/// Lines of a frame, with how far each was found from its place.
+struct Seen<'a> {
+    measured: &'a FrameMeasurements,
+    /// Offset of each line that was found, after the fit of the frame's pose; pixels. Errors of a reference pose displace short
+    /// lines by more than their width.
+    offsets_px: Vec<f64>,
+}
+
+impl<'a> Seen<'a> {
+    fn new(measured: &'a FrameMeasurements, fitted: &FrameResiduals<'_>) -> Self {
+        let mut offsets_px: Vec<f64> = measured.lines.iter().map(|line| line.profile.offset_px).collect();
+        for (measurement, &value) in fitted.measurements.iter().zip(&fitted.values) {
+            if let (Subject::Line(index), Quantity::LineOffset, true) =
+                (measurement.subject, measurement.quantity, value.is_finite())
+            {
+                offsets_px[index] = value;
+            }
+        }
+        Self { measured, offsets_px }
+    }
+
+    /// Iterates over the lines that were found at their places.
+    fn at_their_places(&self) -> impl Iterator<Item = &Line> {
+        let lines = self.measured.lines.iter().zip(&self.offsets_px);
+        lines
+            .filter(|(line, offset_px)| line.is_expected && offset_px.abs() < THRESHOLDS.near_px)
+            .map(|(line, _)| line)
     }
 }
 
@@ -31,7 +69,7 @@ struct Count {
 
 /// Returns the lines of which clearly fewer pieces are found than of other lines. Thin lines are found less often than broad
 /// ones, so pieces are compared with those of other lines that are as wide in the picture.
-fn missing_lines(frames: &[&FrameMeasurements], field: &FieldDimensions) -> Vec<Finding> {
+fn missing_lines(frames: &[Seen<'_>], field: &FieldDimensions) -> Vec<Finding> {
     let counts = Counts::of(frames);
     let curves = field.curves();
     let often = counts
@@ -60,21 +98,19 @@ struct Counts {
 }
 
 impl Counts {
-    fn of(frames: &[&FrameMeasurements]) -> Self {
+    fn of(frames: &[Seen<'_>]) -> Self {
         let mut counts = Self::default();
         frames.iter().for_each(|frame| counts.add(frame));
         counts
     }
 
-    fn add(&mut self, frame: &FrameMeasurements) {
+    fn add(&mut self, frame: &Seen<'_>) {
         // A hidden piece is no evidence that the line is missing.
-        let in_sight = || frame.expected_lines.iter().filter(|piece| !piece.is_hidden);
+        let in_sight = || frame.measured.expected_lines.iter().filter(|piece| !piece.is_hidden);
         for piece in in_sight() {
             self.pieces.entry((piece.curve, width(piece.half_width_px))).or_default().expected += 1.0;
         }
-        let is_at_its_place =
-            |line: &&Line| line.is_expected && line.profile.offset_px.abs() < THRESHOLDS.near_px;
-        for line in frame.lines.iter().filter(is_at_its_place) {
+        for line in frame.at_their_places() {
             self.pieces.entry((line.curve, width(line.half_width_px))).or_default().found += 1.0;
         }
         let seen: BTreeSet<CurveIndex> = in_sight().map(|piece| piece.curve).collect();
@@ -121,7 +157,10 @@ mod tests {
     use reality_sim_core::field::preset_names;
 
     use super::*;
-    use crate::{measurement::line_profile::Profile, measurement::lines::ExpectedLine};
+    use crate::{
+        measurement::line_profile::Profile, measurement::lines::ExpectedLine,
+        measurement::scalar::Measurement, testing::measurement,
+    };
 
     const HALF_WIDTH_PX: f64 = 2.0;
 
@@ -164,12 +203,14 @@ mod tests {
             lines: (0..3).flat_map(|curve| vec![found(CurveIndex(curve)); pieces[curve]]).collect(),
             expected_lines: (0..24).map(|index| expected(index / 8, index % 8)).collect(),
             blocks: Vec::new(),
-            noise_steps: Vec::new(),
+            ..FrameMeasurements::default()
         }
     }
 
     fn missing_of(frame: &FrameMeasurements, pictures: usize) -> Vec<Finding> {
-        missing_lines(&vec![frame; pictures], &field())
+        let offsets_px = frame.lines.iter().map(|line| line.profile.offset_px).collect::<Vec<_>>();
+        let seen = || Seen { measured: frame, offsets_px: offsets_px.clone() };
+        missing_lines(&Vec::from_iter((0..pictures).map(|_| seen())), &field())
     }
 
     #[test]
@@ -179,6 +220,31 @@ mod tests {
         let found = missing_of(&frame([0, 8, 7], false), 6);
         assert_eq!(found, [Finding::MissingLine { line, found_share: 0.0, usual_share }]);
         assert_eq!(found[0].size(), 1.0);
+    }
+
+    #[test]
+    fn a_line_that_an_error_of_the_pose_displaces_is_not_missing() {
+        let mut displaced = frame([8, 8, 7], false);
+        for line in displaced.lines.iter_mut().filter(|line| line.curve == CurveIndex(0)) {
+            line.profile.offset_px = 4.0;
+        }
+        let fitted = |residual_px: f64| {
+            let of_line = |index: usize| Measurement {
+                subject: Subject::Line(index),
+                ..measurement(Quantity::LineOffset)
+            };
+            let measurements: Vec<Measurement> = (0..displaced.lines.len()).map(of_line).collect();
+            let fitted = FrameResiduals {
+                values: vec![residual_px; measurements.len()],
+                measurements: &measurements,
+                time_s: 0.0,
+                camera: DVec2::ZERO,
+                size: [640, 480],
+            };
+            missing_lines(&Vec::from_iter((0..6).map(|_| Seen::new(&displaced, &fitted))), &field())
+        };
+        assert_eq!(fitted(0.3), []);
+        assert_eq!(fitted(f64::NAN).len(), 1);
     }
 
     #[test]

@@ -116,6 +116,8 @@ fn offset_of(quantity: Quantity, sigma: f64) -> Option<NominalValue> {
 
 #[cfg(test)]
 mod tests {
+    use reality_sim_core::sequence::Photometry;
+
     use super::*;
     use crate::{
         linear_model::{
@@ -129,9 +131,10 @@ mod tests {
     /// Returns the findings if the picked nominal values are `value` standard deviations off and the others half a standard
     /// deviation.
     fn findings(value: f64, model_error: &ModelError, picked: impl Fn(&Nominal) -> bool) -> Vec<Finding> {
-        let given = SurfaceReflectance { linear_rgb: [0.5; 3], sigma: 0.05, color_sigma: 0.02 };
-        let mean = MeanReflectance { line: given, carpet: given };
-        let nuisances = nuisances(&mean, &CarpetTexture::default(), Some(0.5));
+        let surface = SurfaceReflectance { linear_rgb: [0.5; 3], sigma: 0.05, color_sigma: 0.02 };
+        let mean = MeanReflectance { line: surface, carpet: surface };
+        let given = Photometry { psf_sigma_px: Some(0.5), ..Photometry::of_gamma(2.2) };
+        let nuisances = nuisances(&mean, &CarpetTexture::default(), &given);
         let off = |nuisance| if Nominal::of(nuisance).is_some_and(|n| picked(&n)) { value } else { 0.5 };
         inconsistent(&nuisances, &nuisances.iter().map(off).collect::<Vec<_>>(), model_error)
     }

@@ -22,7 +22,7 @@ impl Detector for Scatter {
     /// Reports nothing for poses estimated from the pictures, which scatter themselves.
     fn detect(&self, fit: &FitResiduals<'_>) -> Vec<Finding> {
         match fit.recording.source {
-            ReferenceSource::Measured => Vec::from_iter(scatter(fit.gaps, fit.model_error)),
+            ReferenceSource::Measured => Vec::from_iter(scatter(fit.left, fit.model_error)),
             ReferenceSource::Tagged => Vec::new(),
         }
     }

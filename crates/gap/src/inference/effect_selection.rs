@@ -1,10 +1,12 @@
 //! Choice of effects to add to a model, to replace in it, or to name as confusable, by tests of the linearised model.
 
+use std::cmp::Ordering;
+
 use rayon::prelude::*;
 use reality_sim_sensor::EffectIndex;
 
 use crate::{
-    inference::effect_test::{EffectTest, EffectTests},
+    inference::effect_test::{EffectTest, EffectTests, is_reflectance},
     recording::LEAST_VIEWS,
     thresholds::{InferenceThresholds, Thresholds},
 };
@@ -12,7 +14,8 @@ use crate::{
 const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
 
 impl EffectTests<'_> {
-    /// Returns the sets of effects to try adding. The first is the supported effect with the largest gain. Its alternatives
+    /// Returns the sets of effects to try adding. The first is the supported effect with the largest gain, and one of
+    /// brightness against stated values only where there is no other. Its alternatives
     /// follow, because a linearised model cannot tell reliably which of several large effects fits best. If no effect is
     /// supported alone, returns a pair that is supported, if there is one.
     pub(crate) fn next_additions(&self, named: &[EffectIndex]) -> Vec<Vec<EffectIndex>> {
@@ -23,7 +26,9 @@ impl EffectTests<'_> {
             self.fits.effects().into_iter().filter(|effect| !named.contains(effect)).collect();
         let tested = self.tests_of(&others, named);
         let mut supported: Vec<&EffectTest> = tested.iter().filter(|test| test.is_supported()).collect();
-        supported.sort_by(|a, b| b.gain.value.total_cmp(&a.gain.value));
+        // Whatever else changes brightness changes that of surfaces against what is stated, too.
+        let order = |test: &EffectTest| (is_reflectance(test.effect), -test.gain.value);
+        supported.sort_by(|a, b| order(a).partial_cmp(&order(b)).unwrap_or(Ordering::Equal));
         let Some(best) = supported.first() else {
             return Vec::from_iter(self.pair_of(&tested, &others, named).map(Vec::from));
         };

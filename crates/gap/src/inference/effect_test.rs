@@ -1,7 +1,7 @@
 //! Tests of single effects: whether the training frames support one beside others.
 
 use rayon::prelude::*;
-use reality_sim_sensor::{Covariate, EffectIndex};
+use reality_sim_sensor::{Covariate, EffectIndex, Need, Stage};
 
 use crate::{
     inference::cross_validation::{CrossValidation, FoldKind},
@@ -70,6 +70,7 @@ impl<'a> EffectTests<'a> {
         let sizes = self.fits.sizes_of(effect);
         let [held_out, others] = self.held_out_gains([&with, &without])?;
         let gain = held_out.over(&others);
+        let gain = if is_reflectance(effect) { gain.by_priors() } else { gain };
         let p_value = if self.is_possible(&fit, &sizes) {
             let together = Some(self.fits.evidence.p_value(&fit, &sizes));
             // An effect that is fixed to the field is predicted as well by the reflectance of carpet patches, which are
@@ -80,7 +81,7 @@ impl<'a> EffectTests<'a> {
                 self.predicted_p_value(held_out.score_over(&others)).max(by_priors)
             });
             let best = best_of([together, self.single_size_p_value(&without, &sizes), predicted]);
-            let is_confirmed = !is_light(effect) || self.is_seen_on_both_surfaces(&without, &sizes);
+            let is_confirmed = !acts_on_light(effect) || self.is_seen_on_both_surfaces(&without, &sizes);
             if is_confirmed { best } else { 1.0 }
         } else {
             1.0
@@ -195,10 +196,18 @@ fn best_of(tests: [Option<f64>; 3]) -> f64 {
     made.clone().count() as f64 * made.fold(1.0, |least: f64, p_value| least.min(*p_value))
 }
 
-/// Whether an effect changes the light on the field, which lines and carpet reflect alike.
-pub(crate) fn is_light(effect: EffectIndex) -> bool {
-    let covariates = effect.effect().covariates();
-    covariates.contains(&Covariate::FieldPosition) && covariates.contains(&Covariate::Intensity)
+/// Whether an effect changes the light on its way from the field to the sensor, that of lines and of carpet alike.
+pub(crate) fn acts_on_light(effect: EffectIndex) -> bool {
+    let about = effect.effect().about();
+    let is_before_the_sensor = matches!(about.stage, Stage::World | Stage::Lens | Stage::Exposure);
+    is_before_the_sensor && about.covariates.contains(&Covariate::Intensity)
+}
+
+/// Whether an effect is an error of a surface's nominal brightness. Nuisance parameters predict held-out frames as well as the
+/// effect does, but far from their priors.
+pub(crate) fn is_reflectance(effect: EffectIndex) -> bool {
+    let about = effect.effect().about();
+    about.stage == Stage::World && about.needs.contains(&Need::NominalReflectance)
 }
 
 /// Whether one of these effects varies over time.

@@ -5,7 +5,10 @@ use nalgebra::DVector;
 use crate::{
     inference::cluster_covariance::{self, LAG},
     linear_model::column::Columns,
+    thresholds::Thresholds,
 };
+
+const LEAST_SCORE: f64 = Thresholds::DEFAULT.inference.least_gain_score;
 
 /// Gain in log-likelihood on frames that the fit has not seen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -16,6 +19,8 @@ pub(crate) struct Gain {
     pub(crate) sigma: f64,
     /// Score of a rank test that the gain is above zero, in standard deviations.
     rank_score: f64,
+    /// Part of the gain by which nuisance parameters and reflectance come nearer to their priors.
+    of_priors: f64,
 }
 
 /// Gains of a set of effects over the present model, on held-out frames.
@@ -38,7 +43,8 @@ impl HeldOutGains {
     /// Returns the gain of this set over another one.
     pub(crate) fn over(&self, other: &Self) -> Gain {
         let gain = sum_of(&self.differences(other));
-        Gain { value: gain.value + other.nuisance_penalty - self.nuisance_penalty, ..gain }
+        let of_priors = other.nuisance_penalty - self.nuisance_penalty;
+        Gain { value: gain.value + of_priors, of_priors, ..gain }
     }
 
     /// Returns the score of the gain of this set over another one, in standard deviations. It uses the signed roots of the
@@ -57,6 +63,15 @@ impl HeldOutGains {
 }
 
 impl Gain {
+    /// Returns the part by the priors alone, unless held-out frames are predicted clearly worse. Its standard deviation is that
+    /// of half a squared normal variable far from zero.
+    pub(crate) fn by_priors(self) -> Self {
+        if self.value - self.of_priors < -LEAST_SCORE * self.sigma {
+            return self;
+        }
+        Self { value: self.of_priors, sigma: (2.0 * self.of_priors.max(0.0)).sqrt(), rank_score: 0.0, ..self }
+    }
+
     /// Returns the number of standard deviations by which the gain is above zero. A few frames may contribute most of a
     /// gain, such as those in which the camera turns quickly: then the sum scatters strongly, but its sign does not, and the
     /// rank test is more powerful.
@@ -73,7 +88,7 @@ pub(crate) fn sum_of(frames: &[f64]) -> Gain {
     let deviations: Vec<DVector<f64>> =
         frames.iter().map(|frame| DVector::from_element(1, frame - value / count)).collect();
     let sigma = cluster_covariance::of_neighbours(&deviations, 1)[(0, 0)].max(0.0).sqrt();
-    Gain { value, sigma, rank_score: rank_score(frames) }
+    Gain { value, sigma, rank_score: rank_score(frames), of_priors: 0.0 }
 }
 
 /// Score of Wilcoxon's signed-rank test on sums over short runs of successive frames, in standard deviations.

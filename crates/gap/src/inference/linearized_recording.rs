@@ -1,5 +1,6 @@
 //! Recording measured and linearised at a model, with the normal equations of the training frames.
 
+use reality_sim_core::sequence::Photometry;
 use reality_sim_sensor::{Chain, Model};
 
 use crate::{
@@ -75,7 +76,7 @@ impl LinearizedRecording {
         let mut nuisances = nuisances(
             &MeanReflectance::new(recording, &measurements, &chain),
             &CarpetTexture::new(&measurements, &chain, recording.gamma()),
-            setup.photometry.and_then(|photometry| photometry.psf_sigma_px),
+            &setup.photometry.unwrap_or(Photometry::of_gamma(recording.gamma())),
         );
         let sigma_s = chain.clock_s().abs();
         let clocks = [Nuisance::OdometryClock { sigma_s }, Nuisance::AttitudeClock { sigma_s }];

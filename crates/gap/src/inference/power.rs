@@ -12,7 +12,7 @@ use crate::{
     inference::{
         cluster_covariance::LAG,
         effect_fit::EffectFits,
-        effect_test::{EffectTest, EffectTests, is_light},
+        effect_test::{EffectTest, EffectTests, acts_on_light},
         evidence::{Evidence, ReducedRecording},
     },
     linear_model::{
@@ -56,7 +56,7 @@ impl<'a> PowerAnalysis<'a> {
         let base = chosen.iter().map(|column| self.fits.evidence.base[column.0]);
         let base = DVector::from_iterator(chosen.len(), base);
         // Only light is tested by one surface at a time.
-        let of_one_surface = if is_light(effect) { self.of_one_surface.as_slice() } else { &[] };
+        let of_one_surface = if acts_on_light(effect) { self.of_one_surface.as_slice() } else { &[] };
         let simulate = |recording| Simulation::new(recording, &chosen, &base, &self.views);
         Some(SimulatedEffect {
             columns: chosen.iter().map(|column| self.fits.columns[column.0]).collect(),

@@ -3,11 +3,12 @@
 //! Where it is given, the gap is the error of a simulator that uses it. Where it is not, no simulator could know it: each model is
 //! compared with what it makes of the training frames, so that the gap shows the light and the camera alone.
 
+use reality_sim_sensor::Surface;
+
 use crate::{
     frame_index::PerFrame,
     inference::split::HeldOutSplit,
     linear_model::{column::Columns, linearized_frame::LinearizedFrame, system::LinearSystem},
-    measurement::quantity::Surface,
     recording::Recording,
 };
 

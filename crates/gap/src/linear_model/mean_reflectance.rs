@@ -1,7 +1,7 @@
 //! Mean reflectance of lines and carpet that predictions start from: the nominal one or, where none is given, that which the
 //! recording shows.
 
-use reality_sim_core::statistics::median;
+use reality_sim_core::{sequence::Photometry, statistics::median};
 use reality_sim_sensor::Chain;
 
 use crate::{
@@ -44,12 +44,13 @@ impl MeanReflectance {
         measurements: &PerFrame<FrameMeasurements>,
         chain: &Chain,
     ) -> Self {
-        let photometry = recording.sequence.setup.photometry;
-        let nominal = |linear_rgb: Option<[f64; 3]>, [sigma, color_sigma]: [f64; 2]| {
+        let given = recording.sequence.setup.photometry.unwrap_or(Photometry::of_gamma(recording.gamma()));
+        let nominal = |linear_rgb: Option<[f64; 3]>, trust: Option<f64>, usual: [f64; 2]| {
+            let [sigma, color_sigma] = trusted(usual, trust);
             linear_rgb.map(|linear_rgb| SurfaceReflectance { linear_rgb, sigma, color_sigma })
         };
-        let line = nominal(photometry.and_then(|given| given.line_linear_rgb), THRESHOLDS.line_level);
-        let carpet = nominal(photometry.and_then(|given| given.carpet_linear_rgb), THRESHOLDS.carpet_level);
+        let line = nominal(given.line_linear_rgb, given.trust().line, THRESHOLDS.line_level);
+        let carpet = nominal(given.carpet_linear_rgb, given.trust().carpet, THRESHOLDS.carpet_level);
         Self {
             line: line.unwrap_or_else(|| shown(chain, &lines(recording, measurements, chain))),
             carpet: carpet.unwrap_or_else(|| shown(chain, &blocks(recording, measurements, chain))),
@@ -67,6 +68,11 @@ impl MeanReflectance {
             carpet: shown(chain, &blocks(recording, measurements, chain)),
         }
     }
+}
+
+/// Returns the standard deviations of a surface's brightness and colours, in the proportion that is usual.
+fn trusted([sigma, color_sigma]: [f64; 2], trust: Option<f64>) -> [f64; 2] {
+    trust.map_or([sigma, color_sigma], |stated| [stated, stated * color_sigma / sigma])
 }
 
 fn lines(recording: &Recording<'_>, measurements: &PerFrame<FrameMeasurements>, chain: &Chain) -> Vec<Piece> {

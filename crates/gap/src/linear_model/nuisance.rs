@@ -1,11 +1,14 @@
 //! Nuisance parameters: errors of nominal values, which are free in every fit and have a normal prior.
 
+use reality_sim_core::sequence::Photometry;
+use reality_sim_sensor::Surface;
+
 use crate::{
     linear_model::mean_reflectance::MeanReflectance,
     linear_model::texture::{self, CarpetTexture},
     measurement::{
         luma::LUMA,
-        quantity::{ColorChannel, Quantity, Surface},
+        quantity::{ColorChannel, Quantity},
         scalar::{Measurement, Subject},
     },
     thresholds::{NuisanceThresholds, Thresholds},
@@ -106,25 +109,29 @@ const COMMON: [Nuisance; 7] = [
     Nuisance::Pile { axis: 1, sigma: THRESHOLDS.pile },
 ];
 
-/// Returns the nuisance parameters of a recording, whose nominal values are trusted as far as `mean` says. `psf_sigma_px` is the
-/// nominal width of the point spread function.
+/// Returns the nuisance parameters of a recording, whose nominal brightness is trusted as far as `mean` says, and whose noise and
+/// point spread function as far as the camera's file does.
 pub(crate) fn nuisances(
     mean: &MeanReflectance,
     texture: &CarpetTexture,
-    psf_sigma_px: Option<f64>,
+    given: &Photometry,
 ) -> Vec<Nuisance> {
     let offset = |quantity: Quantity, sigma: f64| Nuisance::Offset { quantity, sigma };
     let lines = ColorChannel::ALL.map(|color| offset(Quantity::LineLevel(color), mean.line.color_sigma));
     let carpet = ColorChannel::ALL.map(|color| offset(Quantity::CarpetLevel(color), mean.carpet.color_sigma));
     let gain = |surface, sigma| Nuisance::Gain { surface: Some(surface), sigma };
     let gains = [gain(Surface::Line, mean.line.sigma), gain(Surface::Carpet, mean.carpet.sigma)];
-    let blur_px2 = psf_sigma_px.map_or(THRESHOLDS.free_blur_px2, |sigma_px| {
-        THRESHOLDS.blur_px2.hypot(THRESHOLDS.blur_share * sigma_px * sigma_px)
+    // A variance is off by twice the part that the standard deviation is.
+    let of_variance = |trust: Option<f64>, usual: f64| trust.map_or(usual, |stated| 2.0 * stated);
+    let blur_px2 = given.psf_sigma_px.map_or(THRESHOLDS.free_blur_px2, |sigma_px| {
+        let share = of_variance(given.trust().blur, THRESHOLDS.blur_share);
+        THRESHOLDS.blur_px2.hypot(share * sigma_px * sigma_px)
     });
+    let noise = of_variance(given.trust().noise, THRESHOLDS.noise_variance);
     let luma: f64 = mean.carpet.linear_rgb.iter().zip(LUMA).map(|(value, weight)| value * weight).sum();
     let others = [
         offset(Quantity::LineBlur, blur_px2),
-        offset(Quantity::NoiseVariance, THRESHOLDS.noise_variance),
+        offset(Quantity::NoiseVariance, noise),
         Nuisance::NoiseExponent { log_reference: luma.max(1e-6).ln(), sigma: THRESHOLDS.noise_exponent },
     ];
     let textures = (0..texture::OCTAVES).map(|octave| Nuisance::Texture {

@@ -5,17 +5,17 @@
 
 use glam::DVec2;
 use reality_sim_core::pose::Motion2;
-use reality_sim_sensor::{Chain, Stage};
+use reality_sim_sensor::{Chain, Stage, Surface};
 
 use crate::{
     linear_model::{mean_reflectance::MeanReflectance, rounding::Rounding},
     measurement::{
         camera::FrameCamera,
-        carpet::CarpetBlock,
+        carpet::{CarpetBlock, Spectrum},
         frame::{FrameMeasurements, log_linear},
         lines::{APERTURE_PX2, Line},
         luma::LUMA,
-        quantity::{ColorChannel, Quantity, Surface},
+        quantity::{ColorChannel, Quantity},
         scalar::{Measurement, Subject, component},
     },
 };
@@ -33,8 +33,11 @@ pub(crate) struct Nominal {
 /// Whether an effect of this stage changes the prediction of a quantity.
 pub(crate) fn changes(stage: Stage, quantity: Quantity) -> bool {
     match quantity {
-        Quantity::LineOffset | Quantity::LineBlur | Quantity::RedOffset | Quantity::BlueOffset => {
+        Quantity::LineOffset | Quantity::RedOffset | Quantity::BlueOffset => {
             matches!(stage, Stage::World | Stage::Motion | Stage::Mount | Stage::Lens)
+        }
+        Quantity::LineBlur => {
+            matches!(stage, Stage::World | Stage::Motion | Stage::Mount | Stage::Lens | Stage::Encoding)
         }
         Quantity::LineLevel(_) | Quantity::CarpetLevel(_) => {
             matches!(stage, Stage::World | Stage::Lens | Stage::Exposure | Stage::Sensor | Stage::Encoding)
@@ -135,8 +138,19 @@ impl Predictor<'_> {
             Surface::Line => &self.nominal.reflectance.line,
             Surface::Carpet => &self.nominal.reflectance.carpet,
         };
-        let linear = reflectance.linear_rgb[color as usize] * light[color as usize];
+        let light = chain.reflectance(surface) * light[color as usize];
+        let linear = reflectance.linear_rgb[color as usize] * light + self.veil(color);
         log_linear(mean_encoded(chain, linear), self.nominal.gamma)
+    }
+
+    /// Returns the light that is scattered over the picture, of which the mean has its share already.
+    fn veil(&self, color: ColorChannel) -> f64 {
+        let share = self.camera.chain.glare();
+        if share == 0.0 {
+            return 0.0;
+        }
+        let encoded = self.frame.mean_linear_rgb[color as usize].powf(1.0 / self.nominal.gamma);
+        share / (1.0 + share) * self.camera.chain.linear_of(encoded)
     }
 
     /// Predicts the geometry of a piece of line. None if the model does not show it in the picture.
@@ -162,10 +176,9 @@ impl Predictor<'_> {
             offset_px: luma,
             red_offset_px: red - luma,
             blue_offset_px: blue - luma,
-            variance_px2: chain.psf_variance_px2(line.pixel)
-                + APERTURE_PX2
-                + apart_px2
-                + smear_px * smear_px / 12.0,
+            variance_px2: chain.encoded_variance_px2(
+                chain.psf_variance_px2(line.pixel) + APERTURE_PX2 + apart_px2 + smear_px * smear_px / 12.0,
+            ),
         })
     }
 
@@ -239,7 +252,7 @@ pub(crate) fn log_noise(chain: &Chain, rounding: &Rounding, block: &CarpetBlock)
         (weight * sigma).powi(2)
     };
     let variance: f64 = block.level.iter().zip(LUMA).map(of_color).sum();
-    rounding.mean_square(variance.sqrt()).ln()
+    rounding.mean_square(variance.sqrt() * Spectrum::amplitude(chain)).ln()
 }
 
 /// Returns the standard deviation of encoded values in grey levels: half the difference between the encoded values one

@@ -9,6 +9,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
+use reality_sim_sensor::Surface;
+
 use crate::{
     frame_index::ViewIndex,
     linear_model::{
@@ -22,7 +24,7 @@ use crate::{
         reflectance::{IncrementVariances, ReflectanceField},
         robust_weights::{first_residuals, sigmas_by_quantity, weigh, with_residuals},
     },
-    measurement::quantity::{Quantity, Surface},
+    measurement::quantity::Quantity,
     recording::ReferenceKind,
     thresholds::Thresholds,
 };

@@ -6,6 +6,7 @@ use glam::DVec2;
 use image::RgbImage;
 
 use reality_sim_core::statistics::median;
+use reality_sim_sensor::Chain;
 
 use crate::{
     measurement::{
@@ -57,6 +58,17 @@ impl Spectrum {
             .collect();
         let kept = chosen.iter().map(|&(row, column)| steps[row][column]).collect();
         Self { cosines: cosines(), chosen, steps: kept }
+    }
+
+    /// Returns the factor of a camera's encoding on noise at these frequencies, root mean square.
+    pub(crate) fn amplitude(chain: &Chain) -> f64 {
+        let [lowest, highest] = THRESHOLDS.noise_frequencies;
+        let all = (0..BLOCK).flat_map(|row| (0..BLOCK).map(move |column| [row, column]));
+        let measured = all.filter(|[row, column]| (lowest..=highest).contains(&(row + column)));
+        let frequency = |index: usize| std::f64::consts::PI * index as f64 / BLOCK as f64;
+        let squares = measured.map(|place| chain.encoded_amplitude(place.map(frequency)).powi(2));
+        let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+        f64::sqrt(sum / count)
     }
 
     /// Returns the sum of squares of the chosen coefficients of 8 × 8 pixels.

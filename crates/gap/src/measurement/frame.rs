@@ -32,6 +32,8 @@ pub(crate) struct FrameMeasurements {
     pub(crate) blocks: Vec<CarpetBlock>,
     /// Quantisation steps of the coefficients in which noise was measured, grey levels.
     pub(crate) noise_steps: Vec<f64>,
+    /// Mean over the picture of the nominally linear values of red, green and blue.
+    pub(crate) mean_linear_rgb: [f64; 3],
 }
 
 /// Pieces of one curve that were found closer together than this are the same piece, pixels: the distance of pieces.
@@ -62,7 +64,18 @@ pub(crate) fn measure_frame(
         expected_lines,
         blocks,
         noise_steps: spectrum.steps,
+        mean_linear_rgb: mean_linear_rgb(picture, config.gamma),
     }
+}
+
+/// Returns the mean over a picture of the nominally linear values of its colours.
+fn mean_linear_rgb(picture: &RgbImage, gamma: f64) -> [f64; 3] {
+    let linear: Vec<f64> = (0..=u8::MAX).map(|value| (f64::from(value) / 255.0).powf(gamma)).collect();
+    let mut sum = [0.0; 3];
+    for pixel in picture.pixels() {
+        pixel.0.iter().zip(&mut sum).for_each(|(value, sum)| *sum += linear[usize::from(*value)]);
+    }
+    sum.map(|sum| sum / f64::from(picture.width() * picture.height()).max(1.0))
 }
 
 impl FrameMeasurements {

@@ -1,5 +1,6 @@
 //! Quantities that are measured and compared with a model.
 
+use reality_sim_sensor::Surface;
 use serde::{Deserialize, Serialize};
 
 /// Group of quantities that reports combine. Maps by channel are in the order of the channels' names.
@@ -46,20 +47,6 @@ impl Channel {
             Self::Motion => "m or rad",
         }
     }
-}
-
-/// Surface with a reflectance of its own.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) enum Surface {
-    /// Painted line.
-    Line,
-    /// Carpet.
-    Carpet,
-}
-
-impl Surface {
-    /// Both surfaces.
-    pub(crate) const ALL: [Self; 2] = [Self::Line, Self::Carpet];
 }
 
 /// Colour channel of a picture, in the order in which pixels store them.

@@ -67,7 +67,8 @@ pub fn analyse(
     let in_model = effect_reports(recording, &tests, &found, (&found.given, model))?;
     let delta = nuisance_fit(&found);
     let model_error = ModelError::new(&found, &before, &after);
-    let fit = fit_residuals(recording, &found, &delta, (&channels, &model_error));
+    let left = compared(recording, &found, &found.linearized.model)?;
+    let fit = fit_residuals(recording, &found, &delta, (&left, &model_error));
     // A pattern in a single view may be due to that place.
     let has_views = tests.fits.evidence.views() >= LEAST_VIEWS;
     let unexplained = if has_views { findings(&fit) } else { Vec::new() };
@@ -267,7 +268,7 @@ fn fit_residuals<'a>(
     recording: &'a Recording<'a>,
     found: &'a SelectedModel,
     delta: &'a DVector<f64>,
-    (gaps, model_error): (&'a BTreeMap<Channel, ChannelGap>, &'a ModelError),
+    (left, model_error): (&'a BTreeMap<Channel, ChannelGap>, &'a ModelError),
 ) -> FitResiduals<'a> {
     let linearized = &found.linearized;
     FitResiduals {
@@ -281,7 +282,7 @@ fn fit_residuals<'a>(
         nuisance_values: &delta.as_slice()[found.columns.len()..linearized.system.columns.dense()],
         model_error,
         light: light_pattern(recording, found),
-        gaps,
+        left,
     }
 }
 

@@ -32,15 +32,7 @@ pub fn shown_photometry(recording: &Recording<'_>, model: &Model) -> Result<Phot
             .map(|(_, value)| *value)
     });
     let more_px2: Vec<f64> = more_px2.collect();
-    let stated = setup.photometry.unwrap_or(Photometry {
-        gamma: recording.gamma(),
-        line_linear_rgb: None,
-        carpet_linear_rgb: None,
-        black_level: None,
-        noise_shot: None,
-        noise_read: None,
-        psf_sigma_px: None,
-    });
+    let stated = setup.photometry.unwrap_or(Photometry::of_gamma(recording.gamma()));
     let stated_px2 = sampled_variance_px2(stated.psf_sigma_px.unwrap_or(0.0));
     let is_known = |rgb: [f64; 3]| rgb.iter().all(|value| value.is_finite()).then_some(rgb);
     Ok(Photometry {

@@ -65,13 +65,13 @@ pub fn photometry(
     let noise = (NOISE * random.normal()).exp();
     let blur = (BLUR * random.normal()).exp();
     Photometry {
-        gamma: light.gamma,
         line_linear_rgb: given.reflectance.then_some(line),
         carpet_linear_rgb: given.reflectance.then_some(carpet),
         black_level: given.reflectance.then_some(0.0),
         noise_shot: given.noise.then(|| rounded(light.noise_shot * noise * noise, 1e6)),
         noise_read: given.noise.then(|| rounded(light.noise_read * noise, 1e6)),
         psf_sigma_px: given.sharpness.then(|| rounded(blur * edge_sigma_px(psf), 1e3)),
+        ..Photometry::of_gamma(light.gamma)
     }
 }
 

@@ -40,15 +40,7 @@ fn camera([width, height]: [u32; 2], focal_px: f64, distortion: Distortion) -> C
 
 /// Camera whose pixel values are 255 times the linear ones.
 pub fn linear_setup(camera: Camera) -> CameraSetup {
-    let photometry = Photometry {
-        gamma: 1.0,
-        line_linear_rgb: None,
-        carpet_linear_rgb: None,
-        black_level: None,
-        noise_shot: None,
-        noise_read: None,
-        psf_sigma_px: None,
-    };
+    let photometry = Photometry::of_gamma(1.0);
     CameraSetup { camera, mount_height_m: 0.5, photometry: Some(photometry) }
 }
 
@@ -86,13 +78,11 @@ pub fn walk() -> Trajectory {
 /// Camera with realistic shot and read noise, black level and blur.
 pub fn measured_setup(camera: Camera) -> CameraSetup {
     let photometry = Photometry {
-        gamma: 2.2,
-        line_linear_rgb: None,
-        carpet_linear_rgb: None,
         black_level: Some(0.02),
         noise_shot: Some(0.002),
         noise_read: Some(0.005),
         psf_sigma_px: Some(0.7),
+        ..Photometry::of_gamma(2.2)
     };
     CameraSetup { photometry: Some(photometry), ..linear_setup(camera) }
 }

@@ -119,7 +119,7 @@ fn camera_model_and_coefficients() {
 
 #[test]
 fn camera_numbers() {
-    let cases: [([&str; 2], usize, &str); 22] = [
+    let cases: [([&str; 2], usize, &str); 24] = [
         (["fx = 5.5", "fx = nan"], 4, "fx"),
         (["fx = 5.5", "fx = -1"], 4, "fx"),
         (["fy = 5.25", "fy = 0.0"], 5, "fy"),
@@ -142,6 +142,8 @@ fn camera_numbers() {
         (["noise_read = 0.004", "noise_read = -0.004"], 21, "noise_read"),
         (["psf_sigma_px = 0.5", "psf_sigma_px = inf"], 22, "psf_sigma_px"),
         (["black_level = 0.0", "black_level = nan"], 19, "black_level"),
+        (["psf_sigma_px = 0.5", "psf_sigma_px = 0.5\n[photometry.trust]\nline = 0"], 24, "line"),
+        (["psf_sigma_px = 0.5", "psf_sigma_px = 0.5\n[photometry.trust]\nnoise = 1.5"], 24, "noise"),
     ];
     for (change, line, part) in cases {
         refuses_change("camera.toml", CAMERA, change, Some(line), &[part]);

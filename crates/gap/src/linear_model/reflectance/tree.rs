@@ -4,8 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec2;
 
+use reality_sim_sensor::Surface;
+
 use crate::{
-    measurement::quantity::{Quantity, Surface},
+    measurement::quantity::Quantity,
     thresholds::{ReflectanceThresholds, Thresholds},
 };
 

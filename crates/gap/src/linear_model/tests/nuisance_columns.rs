@@ -1,6 +1,7 @@
 //! Columns of the nuisance parameters against central differences of a prediction with each of them.
 
-use reality_sim_sensor::{Chain, Model};
+use reality_sim_core::sequence::Photometry;
+use reality_sim_sensor::{Chain, Model, Surface};
 
 use super::{recording, sequence};
 use crate::{
@@ -10,10 +11,7 @@ use crate::{
         nuisance::{Nuisance, nuisances},
         texture::CarpetTexture,
     },
-    measurement::{
-        quantity::{Quantity, Surface},
-        scalar::Measurement,
-    },
+    measurement::{quantity::Quantity, scalar::Measurement},
 };
 
 /// Half the width of a central difference, in standard deviations of the nuisance parameter.
@@ -89,7 +87,7 @@ fn every_nuisance_column_is_the_derivative_of_the_prediction() {
     let nuisances = nuisances(
         &MeanReflectance::new(&recording, &measurements, &chain),
         &CarpetTexture::default(),
-        Some(0.5),
+        &Photometry { psf_sigma_px: Some(0.5), ..Photometry::of_gamma(2.2) },
     );
     let patches = measured_patches(&measurements);
     let others = Others { nuisances: &nuisances, patches: &patches };

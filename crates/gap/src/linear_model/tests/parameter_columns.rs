@@ -188,6 +188,7 @@ fn during_a_steady_walk_the_columns_of_the_odometry_are_the_derivatives_of_its_o
         expected_lines: Vec::new(),
         blocks: Vec::new(),
         noise_steps: Vec::new(),
+        mean_linear_rgb: [0.0; 3],
     };
     for frame in FrameIndex::first(recording.frames.len()) {
         recording.frames[frame].stated_attitude_rad = None;
