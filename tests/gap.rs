@@ -18,7 +18,6 @@ use reality_sim::{
         },
     },
     sensor::{Model, library},
-    sequence::Trust,
 };
 use reality_sim_hidden::{Course, Falloff, Hidden, Recipe, Walk};
 use serde_json::Value;
@@ -77,62 +76,6 @@ fn without_a_hidden_effect_nothing_is_named_and_every_effect_has_a_detection_lim
         assert_eq!(told, library().len(), "seed {seed}");
         assert_eq!(report.gap.before, report.gap.after, "seed {seed}");
     }
-}
-
-/// Records a drawn world, with these effects, and reports on it.
-fn reported_of_drawn(seed: u64, effects: &[Hidden]) -> Report {
-    let recipe = Recipe { effects: effects.to_vec(), frames: 60, size: [640, 480], ..Recipe::drawn(seed) };
-    let (_folder, sequence) = recorded(&recipe);
-    reported(&sequence)
-}
-
-/// In this world the carpet is brighter by up to a tenth where the camera looks at it from another side, and the paint is not.
-#[test]
-fn what_the_carpet_alone_shows_is_no_drift_of_the_exposure() {
-    let report = reported_of_drawn(101_160_000, &[]);
-    assert_eq!((report.verdict, named(&report)), (Verdict::None, Vec::new()), "{}", summary(&report));
-}
-
-/// Pictures in which the nominal camera took other lines for those that it expected.
-#[test]
-fn wrong_matches_of_the_camera_as_given_do_not_count_as_scatter() {
-    let report = reported_of_drawn(101_220_000, &[Hidden::CameraYaw { angle_rad: -0.0232 }]);
-    assert_eq!(
-        (report.verdict, named(&report)),
-        (Verdict::Named, vec!["camera_yaw"]),
-        "{}",
-        summary(&report)
-    );
-}
-
-#[test]
-fn stray_light_is_told_from_a_black_level() {
-    let report = reported_of_drawn(101_280_000, &[Hidden::VeilingGlare { share: 0.15 }]);
-    assert_eq!(
-        (report.verdict, named(&report)),
-        (Verdict::Named, vec!["veiling_glare"]),
-        "{}",
-        summary(&report)
-    );
-    assert_size(&report, "veiling_glare", "share", 0.15);
-}
-
-/// A person's measurement is trusted to 5 %; one that is trusted to 50 % may be off by that much.
-#[test]
-fn lines_brighter_than_stated_are_named_unless_the_files_trust_their_brightness_less() {
-    let recipe = Recipe {
-        effects: vec![Hidden::LineReflectance { change: 0.8 }],
-        frames: 60,
-        size: [640, 480],
-        ..Recipe::drawn(101_300_000)
-    };
-    let (_folder, mut sequence) = recorded(&recipe);
-    let report = reported(&sequence);
-    assert_eq!(named(&report), ["line_reflectance"], "{}", summary(&report));
-    assert_size(&report, "line_reflectance", "change", 0.8);
-    let photometry = sequence.setup.photometry.as_mut().unwrap();
-    photometry.trust = Some(Trust { line: Some(0.5), ..Trust::default() });
-    assert_eq!(named(&reported(&sequence)), Vec::<&str>::new());
 }
 
 #[test]
@@ -324,8 +267,8 @@ fn an_effect_that_is_not_in_the_library_is_called_unknown_in_the_channel_that_it
     ];
     for (hidden, channel) in cases {
         let (_folder, sequence) = record(51, &[hidden]);
-        // Of a robot that walks ahead, a clock that is off puts the camera ahead and its IMU late.
-        let without = [hidden.id(), "camera_offset", "imu_delay"].map(str::to_owned).to_vec();
+        // Of a robot that walks ahead, a clock that is off puts the camera ahead, its IMU late, and its sway in another phase.
+        let without = [hidden.id(), "camera_offset", "imu_delay", "gait_sway"].map(str::to_owned).to_vec();
         let options = Options { without, ..Options::default() };
         let report = analysed(&sequence, &Model::default(), &options).report;
         assert_eq!(report.verdict, Verdict::Unknown, "{}: {}", hidden.id(), summary(&report));

@@ -32,9 +32,11 @@ impl EffectTests<'_> {
         let Some(best) = supported.first() else {
             return Vec::from_iter(self.pair_of(&tested, &others, named).map(Vec::from));
         };
+        // With more sizes a large effect may add to a simpler one that, once both have converged, explains as much.
+        let sizes = |test: &EffectTest| self.fits.sizes_of(test.effect).len();
         let stands_for = |test: &&&EffectTest| {
             test.gain.value > THRESHOLDS.least_gain_ratio * best.gain.value
-                && !self.adds(best.effect, test.effect, named, others.len())
+                && (sizes(test) < sizes(best) || !self.adds(best.effect, test.effect, named, others.len()))
         };
         let alternatives = supported[1..].iter().filter(stands_for).take(THRESHOLDS.most_alternatives);
         std::iter::once(best).chain(alternatives).map(|test| vec![test.effect]).collect()

@@ -196,11 +196,12 @@ fn best_of(tests: [Option<f64>; 3]) -> f64 {
     made.clone().count() as f64 * made.fold(1.0, |least: f64, p_value| least.min(*p_value))
 }
 
-/// Whether an effect changes the light on its way from the field to the sensor, that of lines and of carpet alike.
+/// Whether an effect changes the light of places or of frames, that of lines and of carpet alike. What changes with the place in
+/// the picture is not taken for a carpet's look by the direction of view.
 pub(crate) fn acts_on_light(effect: EffectIndex) -> bool {
     let about = effect.effect().about();
-    let is_before_the_sensor = matches!(about.stage, Stage::World | Stage::Lens | Stage::Exposure);
-    is_before_the_sensor && about.covariates.contains(&Covariate::Intensity)
+    let is_of_place_or_frame = matches!(about.stage, Stage::World | Stage::Exposure);
+    is_of_place_or_frame && about.covariates.contains(&Covariate::Intensity)
 }
 
 /// Whether an effect is an error of a surface's nominal brightness. Nuisance parameters predict held-out frames as well as the

@@ -7,6 +7,7 @@ use crate::{
     inference::cluster_covariance,
     inference::hypothesis_test::{
         bartlett_degrees, bartlett_interval_factor, hotelling_p_value, independent_interval_factor,
+        multiple_p_value,
     },
     linear_model::column::ColumnIndex,
     linear_model::reduced_equations::{Fit, MOST_PRIOR_SHARE, ProjectedEquations, ReducedEquations},
@@ -123,6 +124,19 @@ impl<'a> Evidence<'a> {
     /// P-value of Wald's test that the effect vanishes in the columns `tested`, a subset of the free ones: the larger of the
     /// p-values by the two covariances.
     pub(crate) fn p_value(&self, fit: &Fit, tested: &[ColumnIndex]) -> f64 {
+        self.larger_p_value(fit, tested, |seen, covariance, count| {
+            hotelling_p_value(covariance, &self.values(fit, seen), count)
+        })
+    }
+
+    /// Larger of the p-values by the two covariances of those of the tested columns that are seen. `test` takes these, their
+    /// covariance and the number of clusters that it is as sure as.
+    fn larger_p_value(
+        &self,
+        fit: &Fit,
+        tested: &[ColumnIndex],
+        test: impl Fn(&[ColumnIndex], &DMatrix<f64>, usize) -> f64,
+    ) -> f64 {
         // Columns that cannot be seen have no scatter either.
         let tested: Vec<ColumnIndex> =
             tested.iter().copied().filter(|&column| fit.prior_share(column) < MOST_PRIOR_SHARE).collect();
@@ -140,7 +154,17 @@ impl<'a> Evidence<'a> {
             on_field.fold(0.0, f64::max) > Thresholds::DEFAULT.inference.least_field_variance_ratio
         };
         let with_counts = covariances.iter().zip(counts).filter(|(covariance, _)| seen(covariance));
-        with_counts.map(|(covariance, count)| self.p_of(fit, tested, covariance, count)).fold(0.0, f64::max)
+        let places: Vec<usize> = tested.iter().filter_map(place).collect();
+        let p_of = |(covariance, count): (&Covariance, usize)| {
+            let part = covariance.of(&places);
+            test(tested, &part.total(), part.effective_count(count, self.system.cells.len()))
+        };
+        with_counts.map(p_of).fold(0.0, f64::max)
+    }
+
+    /// Returns the fitted values of these columns.
+    fn values(&self, fit: &Fit, columns: &[ColumnIndex]) -> DVector<f64> {
+        DVector::from_fn(columns.len(), |i, _| self.base[columns[i].0] + fit.delta[columns[i].0])
     }
 
     /// P-value of Wald's test by the fit's own covariance, which holds the priors of nuisance parameters and reflectance: they
@@ -149,26 +173,23 @@ impl<'a> Evidence<'a> {
         let places: Vec<usize> = tested.iter().filter_map(|&column| fit.position(column)).collect();
         let number = places.len();
         let part = DMatrix::from_fn(number, number, |i, j| fit.inverse[(places[i], places[j])]);
-        let value = DVector::from_fn(number, |i, _| self.base[tested[i].0] + fit.delta[tested[i].0]);
+        let value = self.values(fit, tested);
         let Some(solved) = part.cholesky().map(|factor| factor.solve(&value)) else { return 1.0 };
         ChiSquared::new(number.max(1) as f64).map_or(1.0, |distribution| distribution.sf(value.dot(&solved)))
     }
 
-    /// Largest p-value of Wald's test by the levels of lines and by those of carpet, each without the other's. Light acts on
-    /// both alike; the reflectance of paint and that of carpet have nothing to do with each other (intersection-union test:
-    /// Berger 1982).
+    /// Largest p-value by the levels of lines and by those of carpet, each without the other's, that the tested columns are
+    /// some multiple above zero of what both together tell. Light acts on both alike; the reflectance of paint and that of
+    /// carpet have nothing to do with each other (intersection-union test: Berger 1982).
     pub(crate) fn p_value_of_both_surfaces(&self, free: &[ColumnIndex], tested: &[ColumnIndex]) -> f64 {
-        let p_value = |alone: &Self| alone.fit(free).map_or(1.0, |fit| alone.p_value(&fit, tested));
+        let Some(together) = self.fit(free) else { return 1.0 };
+        let p_value = |alone: &Self| {
+            let Some(fit) = alone.fit(free) else { return 1.0 };
+            alone.larger_p_value(&fit, tested, |seen, covariance, count| {
+                multiple_p_value(covariance, &alone.values(&fit, seen), &self.values(&together, seen), count)
+            })
+        };
         self.of_one_surface.iter().map(p_value).fold(0.0, f64::max)
-    }
-
-    /// P-value of the tested columns by one covariance, which was estimated from `count` clusters.
-    fn p_of(&self, fit: &Fit, tested: &[ColumnIndex], covariance: &Covariance, count: usize) -> f64 {
-        let places: Vec<usize> = tested.iter().filter_map(|&column| fit.position(column)).collect();
-        let number = places.len();
-        let part = covariance.of(&places);
-        let value = DVector::from_fn(number, |i, _| self.base[tested[i].0] + fit.delta[tested[i].0]);
-        hotelling_p_value(&part.total(), &value, part.effective_count(count, self.system.cells.len()))
     }
 
     /// Standard deviation of a free column, of which 1.96 make a 95 % interval although the clusters are few. A column held only by

@@ -69,17 +69,43 @@ pub(crate) fn hotelling_p_value(covariance: &DMatrix<f64>, estimates: &DVector<f
     }
 }
 
-/// Squared Mahalanobis distance `vᵀ C⁻¹ v`. The covariance of parameters with nearly the same effect is almost singular, so
-/// 1e-9 is added to the diagonal of the correlation matrix.
+/// P-value of estimates that are a multiple of these `wanted` numbers, above zero, beside no multiple of them: their projection in
+/// the metric of the covariance, which was estimated from `count` clusters.
+pub(crate) fn multiple_p_value(
+    covariance: &DMatrix<f64>,
+    estimates: &DVector<f64>,
+    wanted: &DVector<f64>,
+    count: usize,
+) -> f64 {
+    let Some((projected, squared)) =
+        product(covariance, estimates, wanted).zip(squared_distance(covariance, wanted))
+    else {
+        return 1.0;
+    };
+    let score = projected / squared.sqrt();
+    if score > 0.0 {
+        hotelling_p_value(&DMatrix::identity(1, 1), &DVector::from_element(1, score), count)
+    } else {
+        1.0
+    }
+}
+
+/// Squared Mahalanobis distance `vᵀ C⁻¹ v`.
 fn squared_distance(covariance: &DMatrix<f64>, value: &DVector<f64>) -> Option<f64> {
+    product(covariance, value, value)
+}
+
+/// Product `aᵀ C⁻¹ b`. The covariance of parameters with nearly the same effect is almost singular, so 1e-9 is added to the
+/// diagonal of the correlation matrix.
+fn product(covariance: &DMatrix<f64>, a: &DVector<f64>, b: &DVector<f64>) -> Option<f64> {
     let scale = covariance.diagonal().map(|variance| variance.max(f64::MIN_POSITIVE).sqrt());
-    let size = value.len();
+    let size = a.len();
     let correlation = DMatrix::from_fn(size, size, |i, j| {
         let both = 0.5 * (covariance[(i, j)] + covariance[(j, i)]) / (scale[i] * scale[j]);
         if i == j { both + 1e-9 } else { both }
     });
-    let scaled = value.component_div(&scale);
-    Some(scaled.dot(&correlation.cholesky()?.solve(&scaled)))
+    let [a, b] = [a, b].map(|value| value.component_div(&scale));
+    Some(a.dot(&correlation.cholesky()?.solve(&b)))
 }
 
 #[cfg(test)]
@@ -141,5 +167,19 @@ mod tests {
         assert_eq!(hotelling_p_value(&covariance, &DVector::from_element(3, 9.0), 4), 1.0);
         assert!(hotelling_p_value(&covariance, &DVector::from_element(3, 9.0), 9) < 0.01);
         assert_eq!(hotelling_p_value(&DMatrix::zeros(0, 0), &DVector::zeros(0), 9), 1.0);
+    }
+
+    #[test]
+    fn estimates_are_tested_along_what_is_wanted_and_above_zero_only() {
+        let covariance = DMatrix::from_row_slice(2, 2, &[0.04, 0.01, 0.01, 0.09]);
+        let wanted = DVector::from_vec(vec![1.0, -0.5]);
+        let p_value = |estimates: DVector<f64>| multiple_p_value(&covariance, &estimates, &wanted, 200);
+        // Along what is wanted the test is that of one number, which is more powerful than that of two.
+        let along = 0.6 * &wanted;
+        assert!(p_value(along.clone()) < 0.7 * hotelling_p_value(&covariance, &along, 200));
+        assert_eq!(p_value(-along), 1.0);
+        // An estimate that is orthogonal to it in the metric of the covariance says nothing.
+        let across = &covariance * DVector::from_vec(vec![0.5, 1.0]) * 30.0;
+        assert!(p_value(across.clone()) > 0.9 && hotelling_p_value(&covariance, &across, 200) < 1e-6);
     }
 }

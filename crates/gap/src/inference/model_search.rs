@@ -106,7 +106,8 @@ impl ModelSearch<'_> {
     }
 
     /// Fits each of several sets until it converges. Returns the best set first, followed by those that fit equally well.
-    /// Among sets whose fits are indistinguishable, the best one has the fewest sizes and then the best fit.
+    /// Among sets whose fits are indistinguishable, or whose effects are missed beside the best fit, the best one has the fewest
+    /// sizes and then the best fit.
     pub(crate) fn best_sets(
         &self,
         linearized: &LinearizedRecording,
@@ -125,13 +126,32 @@ impl ModelSearch<'_> {
         } else {
             indistinguishable_below(self.minus_log_likelihood(linearized, &linearized.system) - least)
         };
-        converged.retain(|(misfit, ..)| *misfit <= least + tie);
         let sizes = |set: &[EffectIndex]| {
             self.columns.iter().filter(|column| column.is_size() && set.contains(&column.effect)).count()
         };
+        let best = converged.iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        let missed: Vec<Vec<EffectIndex>> = best.map_or_else(Vec::new, |(_, best, model)| {
+            let simpler = converged.iter().map(|(_, set, _)| set).filter(|set| sizes(set) < sizes(best));
+            simpler.filter(|set| self.is_missed(set, best, model)).cloned().collect()
+        });
+        converged.retain(|(misfit, set, _)| *misfit <= least + tie || missed.contains(set));
         converged
             .sort_by(|a, b| (sizes(&a.1), a.0).partial_cmp(&(sizes(&b.1), b.0)).unwrap_or(Ordering::Equal));
         Ok(converged.into_iter().map(|(_, set, linearized)| (set, linearized)).collect())
+    }
+
+    /// Whether an effect of a set leads beside another one, whose fit has converged: the other one, however well it fits, does not
+    /// explain what this one does.
+    fn is_missed(
+        &self,
+        set: &[EffectIndex],
+        beside: &[EffectIndex],
+        converged: &LinearizedRecording,
+    ) -> bool {
+        let tests = converged.effect_tests(self.columns);
+        let effects = set.iter().filter(|effect| !beside.contains(effect));
+        let p_values = effects.filter_map(|&effect| self.p_value(&tests, beside, effect));
+        p_values.fold(1.0, f64::min) < THRESHOLDS.lead_p_value
     }
 
     /// Returns pairs of a named effect and an effect that it is confusable with. Candidates are effects that tied with the
