@@ -271,6 +271,11 @@ impl Chain {
         sharpened_amplitude(frequency_rad_px, self.sharpening)
     }
 
+    /// Whether encoded values depend on those of other pixels.
+    pub fn mixes_encoded_pixels(&self) -> bool {
+        self.sharpening != 0.0
+    }
+
     /// Returns the amount by which encoded pictures are sharpened.
     pub(crate) fn sharpening(&self) -> f64 {
         self.sharpening

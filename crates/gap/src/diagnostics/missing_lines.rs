@@ -42,8 +42,9 @@ impl<'a> Seen<'a> {
     fn new(measured: &'a FrameMeasurements, fitted: &FrameResiduals<'_>) -> Self {
         let mut offsets_px: Vec<f64> = measured.lines.iter().map(|line| line.profile.offset_px).collect();
         for (measurement, &value) in fitted.measurements.iter().zip(&fitted.values) {
-            if let (Subject::Line(index), Quantity::LineOffset, true) =
-                (measurement.subject, measurement.quantity, value.is_finite())
+            if let Subject::Line(index) = measurement.subject
+                && measurement.quantity == Quantity::LineOffset
+                && value.is_finite()
             {
                 offsets_px[index] = value;
             }

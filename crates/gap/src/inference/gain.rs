@@ -28,8 +28,8 @@ pub(crate) struct Gain {
 pub(crate) struct HeldOutGains {
     /// Gain in log-likelihood of each frame, by a fit to the other parts of the recording.
     frames: Vec<f64>,
-    /// Minus the logarithm of the prior density of the fitted nuisance parameters and reflectance. A set that needs nominal values far from their priors is less plausible, which no frame's gain
-    /// shows.
+    /// Minus the logarithm of the prior density of the fitted nuisance parameters and reflectance. A set that needs nominal
+    /// values far from their priors is less plausible, which no frame's gain shows.
     nuisance_penalty: f64,
 }
 
@@ -119,6 +119,17 @@ mod tests {
         let plain = wave.over(&nothing);
         let (score, plain) = (wave.score_over(&nothing), plain.value / plain.sigma);
         assert!(score > 1.2 * plain, "{score} {plain}");
+    }
+
+    #[test]
+    fn a_gain_by_the_priors_does_not_count_where_frames_are_predicted_worse() {
+        let far = HeldOutGains { frames: vec![0.0; 40], nuisance_penalty: 30.0 };
+        let gain = |frame: f64| {
+            let scattered = |i: u32| frame + f64::from(i % 2) - 0.5;
+            held_out((0..40).map(scattered).collect()).over(&far).by_priors()
+        };
+        assert!(gain(0.0).value == 30.0 && gain(0.0).score() > LEAST_SCORE, "{:?}", gain(0.0));
+        assert!(gain(-3.0).value < 0.0, "{:?}", gain(-3.0));
     }
 
     #[test]
