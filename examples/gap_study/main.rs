@@ -5,6 +5,7 @@
 //! are already there, and writes `FOLDER/study.md`. `--page docs/gap.md` also puts the tables between the page's marks.
 //! `--purpose development|validation|final` chooses worlds that the others do not have; the final ones need code that has
 //! not been changed since the last commit. Runs of different states of the code are not mixed.
+//! `--workflow` runs simpler workflows on the same recordings, too.
 //! `--part nulls|singles|removed|pairs|triples|foreign|unmeasured`, `--effect ID`, `--walks N` and `--budget-min N` select a
 //! part of the study: worlds come in turn over the effects, so that any part of it is a smaller study.
 
@@ -33,6 +34,7 @@ use clap::Parser;
 use plan::{Chosen, Part, Purpose, Task};
 use run::Outcome;
 use studio::Studio;
+use workflow::Workflow;
 
 /// Makes recordings with hidden effects and lets the workflow find them.
 #[derive(Debug, Parser)]
@@ -49,6 +51,9 @@ struct Args {
     /// Only runs in which one of these effects is hidden
     #[arg(long)]
     effect: Vec<String>,
+    /// Workflows that are run on every recording; sizes are in detection limits of the first
+    #[arg(long, value_enum, default_value = "gap")]
+    workflow: Vec<Workflow>,
     /// Number of worlds of each effect
     #[arg(long, default_value_t = plan::WALKS)]
     walks: u64,
@@ -86,7 +91,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Runs done, by the key of their task, and the file in which they are kept.
 struct Study {
-    outcomes: BTreeMap<String, Outcome>,
+    outcomes: BTreeMap<(String, Workflow), Outcome>,
     code: String,
     log: File,
     studio: Studio,
@@ -106,7 +111,7 @@ impl Study {
             )
             .into());
         }
-        let outcomes = outcomes.into_iter().map(|outcome| (outcome.task.key(), outcome)).collect();
+        let outcomes = outcomes.into_iter().map(|outcome| (outcome.key(), outcome)).collect();
         Ok(Self { outcomes, code, log, studio: Studio::default() })
     }
 
@@ -123,22 +128,25 @@ impl Study {
                 eprintln!("{done} of {} runs are done: the time is over", tasks.len());
                 break;
             }
-            if self.outcomes.contains_key(&task.key()) {
+            let is_new = |workflow: &Workflow| !self.outcomes.contains_key(&(task.key(), *workflow));
+            let workflows: Vec<Workflow> = args.workflow.iter().copied().filter(is_new).collect();
+            if workflows.is_empty() {
                 continue;
             }
             match self.chosen(task)? {
-                Some(chosen) => self.add(task, &chosen)?,
+                Some(chosen) => self.add(task, &chosen, &workflows)?,
                 None => eprintln!("{}: cannot be seen in this recording", task.key()),
             }
         }
         Ok(())
     }
 
-    fn add(&mut self, task: &Task, hidden: &[Chosen]) -> Result<(), Box<dyn Error>> {
-        let outcome = run::run(&mut self.studio, task, hidden, &self.code)?;
-        eprintln!("{}", outcome.line());
-        writeln!(self.log, "{}", serde_json::to_string(&outcome)?)?;
-        self.outcomes.insert(task.key(), outcome);
+    fn add(&mut self, task: &Task, hidden: &[Chosen], workflows: &[Workflow]) -> Result<(), Box<dyn Error>> {
+        for outcome in run::run(&mut self.studio, task, hidden, workflows, &self.code)? {
+            eprintln!("{}", outcome.line());
+            writeln!(self.log, "{}", serde_json::to_string(&outcome)?)?;
+            self.outcomes.insert(outcome.key(), outcome);
+        }
         Ok(())
     }
 
@@ -158,11 +166,12 @@ impl Study {
             return Ok(Some(all));
         }
         let nothing = task.with_nothing_hidden();
-        if !self.outcomes.contains_key(&nothing.key()) {
-            self.add(&nothing, &[])?;
+        let of_nothing = (nothing.key(), Workflow::Gap);
+        if !self.outcomes.contains_key(&of_nothing) {
+            self.add(&nothing, &[], &[Workflow::Gap])?;
         }
         for id in &task.effects {
-            let limits = &self.outcomes[&nothing.key()].limits;
+            let limits = &self.outcomes[&of_nothing].limits;
             let Some(chosen) = limits::chosen(task, id, task.size, limits)? else { return Ok(None) };
             all.push(chosen);
         }

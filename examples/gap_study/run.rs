@@ -18,7 +18,7 @@ use crate::{
     plan::{Chosen, Task},
     studio::{Studio, effects},
     truth::{has_the_librarys_form, main_size, parameters},
-    workflow,
+    workflow::{self, Workflow},
 };
 
 /// Detection limits by effect: name of the parameter and its size.
@@ -29,8 +29,7 @@ pub type Limits = BTreeMap<String, (String, f64)>;
 pub struct Outcome {
     /// Fingerprint of the code that was run.
     pub code: String,
-    /// Name of the workflow.
-    pub workflow: String,
+    pub workflow: Workflow,
     pub task: Task,
     pub world: World,
     pub hidden: Vec<Chosen>,
@@ -75,6 +74,11 @@ pub struct Compared {
 }
 
 impl Outcome {
+    /// Returns what tells this run from others.
+    pub fn key(&self) -> (String, Workflow) {
+        (self.task.key(), self.workflow)
+    }
+
     pub fn line(&self) -> String {
         let hidden: Vec<String> = self
             .hidden
@@ -84,8 +88,8 @@ impl Outcome {
             .collect();
         let named: Vec<&str> = self.named.iter().map(|(id, _)| id.as_str()).collect();
         format!(
-            "{:?} {} {hidden:?} -> {:?} {named:?} {:.1} s",
-            self.task.part, self.task.seed, self.verdict, self.seconds
+            "{:?} {} {:?} {hidden:?} -> {:?} {named:?} {:.1} s",
+            self.workflow, self.task.seed, self.task.part, self.verdict, self.seconds
         )
     }
 
@@ -95,27 +99,39 @@ impl Outcome {
     }
 }
 
-/// Runs a task with these effects hidden.
+/// Runs these workflows on a task's recording with these effects hidden.
 pub fn run(
     studio: &mut Studio,
     task: &Task,
     hidden: &[Chosen],
+    workflows: &[Workflow],
     code: &str,
-) -> Result<Outcome, Box<dyn Error>> {
+) -> Result<Vec<Outcome>, Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let effects = effects(task, hidden)?;
     let sequence = studio.record(task, &effects, folder.path())?;
+    workflows.iter().map(|&workflow| run_one(task, hidden, &effects, &sequence, workflow, code)).collect()
+}
+
+fn run_one(
+    task: &Task,
+    hidden: &[Chosen],
+    effects: &[Hidden],
+    sequence: &Sequence,
+    workflow: Workflow,
+    code: &str,
+) -> Result<Outcome, Box<dyn Error>> {
     let options = Options { seed: task.seed, without: task.without.iter().cloned().collect() };
     memory::reset();
     let before_mb = memory::now_and_peak_mb();
     let start = Instant::now();
-    let report = workflow::examine(&sequence, &options);
+    let report = workflow.examine(sequence, &options);
     let seconds = start.elapsed().as_secs_f64();
     let peak_mb = before_mb.zip(memory::now_and_peak_mb()).map(|([now, _], [_, peak])| peak - now);
     let facts = task.recipe().facts();
     let mut outcome = Outcome {
         code: code.to_owned(),
-        workflow: workflow::NAME.to_owned(),
+        workflow,
         task: task.clone(),
         world: World {
             lens: facts.lens.to_owned(),
@@ -139,8 +155,10 @@ pub fn run(
     };
     match report {
         Ok(report) => {
-            outcome.take(&report, &effects);
-            outcome.oracle = oracle(&sequence, &effects, &options)?;
+            outcome.take(&report, effects);
+            if workflow == Workflow::Gap {
+                outcome.oracle = oracle(sequence, effects, &options)?;
+            }
         }
         Err(error) => outcome.refused = Some(error.to_string()),
     }

@@ -52,6 +52,7 @@ mod measurement;
 mod progress;
 mod recording;
 pub mod report;
+mod simplification;
 #[cfg(test)]
 mod testing;
 mod thresholds;
@@ -65,6 +66,7 @@ pub use self::{
     progress::Progress,
     recording::{LEAST_FRAMES, Recording, RecordingError, ReferenceSource},
     report::{Analysis, Pictures, PicturesError, ReportError, ReportFault, html},
+    simplification::Simplification,
     workflow::{
         analysis::{analyse, gap_of},
         selection::Options,

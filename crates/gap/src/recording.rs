@@ -13,6 +13,7 @@ use reality_sim_sensor::{Trajectory, TrajectoryError};
 
 use crate::{
     frame_index::{PerFrame, ViewIndex},
+    simplification::Simplification,
     thresholds::{RecordingThresholds, Thresholds},
 };
 
@@ -127,6 +128,7 @@ pub struct Recording<'a> {
     pub(crate) searched: RwLock<BTreeMap<&'static str, f64>>,
     /// Picture files that are broken or missing; their frames are left out.
     pub(crate) left_out: Vec<PathBuf>,
+    pub(crate) simplification: Option<Simplification>,
 }
 
 impl<'a> Recording<'a> {
@@ -177,7 +179,13 @@ impl<'a> Recording<'a> {
                 .map(|bias| stated_attitude_rad(sequence, index_in_sequence, bias)),
         };
         let frames = posed.iter().step_by(every).map(frame).collect();
-        Ok(Self { sequence, trajectory, frames, source, left_out, searched: RwLock::default() })
+        let (searched, simplification) = Default::default();
+        Ok(Self { sequence, trajectory, frames, source, left_out, searched, simplification })
+    }
+
+    /// Returns the recording for an analysis in a simpler way.
+    pub fn simplified(self, simplification: Simplification) -> Self {
+        Self { simplification: Some(simplification), ..self }
     }
 
     /// Returns the view of each frame. Successive frames belong to one view while their poses differ so little that they may

@@ -2,6 +2,7 @@
 
 mod effects;
 mod rates;
+mod simpler;
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -14,10 +15,14 @@ use self::rates::{of_walks, quantile, rate};
 use crate::{
     plan::{CLEAR, Part},
     run::{Compared, Outcome},
+    workflow::Workflow,
 };
 
 /// Returns the tables of `docs/gap.md`.
-pub fn text(outcomes: &[&Outcome]) -> String {
+pub fn text(all: &[&Outcome]) -> String {
+    let outcomes: Vec<&Outcome> =
+        all.iter().copied().filter(|outcome| outcome.workflow == Workflow::Gap).collect();
+    let outcomes = outcomes.as_slice();
     let of = |part: Part| -> Vec<&Outcome> {
         outcomes.iter().copied().filter(|outcome| outcome.task.part == part).collect()
     };
@@ -37,6 +42,7 @@ pub fn text(outcomes: &[&Outcome]) -> String {
     unknowns(&mut text, "An effect taken out of the library", &of(Part::Removed));
     unknowns(&mut text, "Effects that no library has", &of(Part::Foreign));
     effects::sizes(&mut text, outcomes);
+    simpler::workflows(&mut text, all);
     costs(&mut text, outcomes);
     worlds(&mut text, outcomes);
     text

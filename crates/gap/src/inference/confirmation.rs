@@ -7,7 +7,7 @@ use nalgebra::DVector;
 use reality_sim_sensor::{EffectIndex, Model};
 
 use crate::{
-    inference::held_out::{Comparison, has_grown, refitted},
+    inference::held_out::{Comparison, refitted},
     inference::linearized_recording::LinearizedRecording,
     inference::model_search::{ConvergedSet, ModelSearch},
     linear_model::linearization::MeasureError,
@@ -45,7 +45,7 @@ impl ModelSearch<'_> {
     }
 
     /// Returns the named effect that held-out frames confirm least, if they do not confirm all: one without which they are
-    /// more likely, or, if the gap grew, the one to which this is mostly due.
+    /// more likely, or, if the gap did not shrink, the one to which this is mostly due.
     fn unconfirmed(
         &self,
         before: &Model,
@@ -72,11 +72,11 @@ impl ModelSearch<'_> {
             checks.iter().flat_map(|check| check.claimed.iter().copied()).collect();
         claims.sort_unstable();
         claims.dedup();
-        let grew = |channels: &[Channel]| {
+        let shrank = |channels: &[Channel]| {
             let [before, after] = whole.whole(channels);
-            has_grown(before, after)
+            after < before
         };
-        if !grew(&claims) && !grew(&all) {
+        if shrank(&claims) && shrank(&all) {
             return Ok(None);
         }
         let growth = |check: &Check| {

@@ -17,6 +17,7 @@ use crate::{
 
 /// Degrees of freedom from which on more do not change a p-value.
 const MOST_DEGREES: f64 = 1e4;
+const SURFACE_AGREEMENT: f64 = Thresholds::DEFAULT.inference.surface_agreement;
 
 /// Linear system with the present model as its origin.
 #[derive(Debug)]
@@ -186,7 +187,8 @@ impl<'a> Evidence<'a> {
         let p_value = |alone: &Self| {
             let Some(fit) = alone.fit(free) else { return 1.0 };
             alone.larger_p_value(&fit, tested, |seen, covariance, count| {
-                multiple_p_value(covariance, &alone.values(&fit, seen), &self.values(&together, seen), count)
+                let [alone, wanted] = [alone.values(&fit, seen), self.values(&together, seen)];
+                multiple_p_value(covariance, &alone, &wanted, SURFACE_AGREEMENT, count)
             })
         };
         self.of_one_surface.iter().map(p_value).fold(0.0, f64::max)

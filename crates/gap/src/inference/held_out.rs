@@ -91,18 +91,13 @@ impl ChannelGap {
 
     /// Whether the added effects make the size larger, by more than measuring the lines anew can.
     pub fn has_grown(&self) -> bool {
-        has_grown(self.before, self.after)
+        self.after > self.before && self.has_moved()
     }
 }
 
 /// Whether a gap has changed by more than measuring the lines anew can change it.
 pub(crate) fn has_moved(before: f64, after: f64) -> bool {
     (before - after).abs() > THRESHOLDS.least_gap_change * before
-}
-
-/// Whether a gap has grown by more than measuring the lines anew can change it.
-pub(crate) fn has_grown(before: f64, after: f64) -> bool {
-    after > before && has_moved(before, after)
 }
 
 /// Sizes of two models' residuals on held-out frames, at the reference poses and nominal values.

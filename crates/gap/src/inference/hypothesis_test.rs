@@ -69,12 +69,13 @@ pub(crate) fn hotelling_p_value(covariance: &DMatrix<f64>, estimates: &DVector<f
     }
 }
 
-/// P-value of estimates that are a multiple of these `wanted` numbers, above zero, beside no multiple of them: their projection in
-/// the metric of the covariance, which was estimated from `count` clusters.
+/// P-value of estimates that are about as large as these `wanted` numbers, beside no multiple of them: their projection in the
+/// metric of the covariance, which was estimated from `count` clusters. 1 if they are larger or smaller by more than this `factor`.
 pub(crate) fn multiple_p_value(
     covariance: &DMatrix<f64>,
     estimates: &DVector<f64>,
     wanted: &DVector<f64>,
+    factor: f64,
     count: usize,
 ) -> f64 {
     let Some((projected, squared)) =
@@ -83,7 +84,7 @@ pub(crate) fn multiple_p_value(
         return 1.0;
     };
     let score = projected / squared.sqrt();
-    if score > 0.0 {
+    if score > 0.0 && (projected / squared).ln().abs() < factor.ln() {
         hotelling_p_value(&DMatrix::identity(1, 1), &DVector::from_element(1, score), count)
     } else {
         1.0
@@ -173,11 +174,14 @@ mod tests {
     fn estimates_are_tested_along_what_is_wanted_and_above_zero_only() {
         let covariance = DMatrix::from_row_slice(2, 2, &[0.04, 0.01, 0.01, 0.09]);
         let wanted = DVector::from_vec(vec![1.0, -0.5]);
-        let p_value = |estimates: DVector<f64>| multiple_p_value(&covariance, &estimates, &wanted, 200);
+        let p_value = |estimates: DVector<f64>| multiple_p_value(&covariance, &estimates, &wanted, 1.5, 200);
         // Along what is wanted the test is that of one number, which is more powerful than that of two.
-        let along = 0.6 * &wanted;
-        assert!(p_value(along.clone()) < 0.7 * hotelling_p_value(&covariance, &along, 200));
+        let along = 0.7 * &wanted;
+        assert!(p_value(along.clone()) < 0.8 * hotelling_p_value(&covariance, &along, 200));
         assert_eq!(p_value(-along), 1.0);
+        // What is much larger or much smaller is something else, however significant.
+        assert!(p_value(1.4 * &wanted) < 1e-3);
+        assert_eq!([p_value(1.6 * &wanted), p_value(0.6 * &wanted)], [1.0; 2]);
         // An estimate that is orthogonal to it in the metric of the covariance says nothing.
         let across = &covariance * DVector::from_vec(vec![0.5, 1.0]) * 30.0;
         assert!(p_value(across.clone()) > 0.9 && hotelling_p_value(&covariance, &across, 200) < 1e-6);

@@ -31,6 +31,8 @@ pub(crate) struct ModelSearch<'a> {
     /// Effects that the model had from the start.
     pub(crate) given: &'a [EffectIndex],
     pub(crate) progress: &'a dyn Fn(Progress),
+    /// Whether effects that explain as much are tried and named beside each other.
+    pub(crate) settles_ties: bool,
 }
 
 /// Set of named effects whose fit has converged, with the recording linearised at the fitted model.
@@ -102,7 +104,14 @@ impl ModelSearch<'_> {
         }
         let with =
             |added: &[EffectIndex]| -> Vec<EffectIndex> { named.iter().chain(added).copied().collect() };
-        tests.next_additions(&all).iter().map(|added| with(added)).filter(|set| is_new(set)).collect()
+        let most = if self.settles_ties { usize::MAX } else { 1 };
+        tests
+            .next_additions(&all)
+            .iter()
+            .take(most)
+            .map(|added| with(added))
+            .filter(|set| is_new(set))
+            .collect()
     }
 
     /// Fits each of several sets until it converges. Returns the best set first, followed by those that fit equally well.
@@ -163,6 +172,9 @@ impl ModelSearch<'_> {
         named: &[EffectIndex],
         ties: &[(EffectIndex, EffectIndex)],
     ) -> Result<Vec<(EffectIndex, EffectIndex)>, MeasureError> {
+        if !self.settles_ties {
+            return Ok(Vec::new());
+        }
         let tests = linearized.effect_tests(self.columns);
         let all = self.all(named);
         let misfit =

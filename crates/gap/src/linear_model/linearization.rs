@@ -27,6 +27,7 @@ use crate::{
         scalar::{Measurement, component},
     },
     recording::{Frame, Recording},
+    simplification::Simplification,
     thresholds::Thresholds,
 };
 
@@ -161,7 +162,12 @@ pub(crate) fn linearise(
     let frames = recording.frames.as_slice().par_iter().zip(measurements.as_slice()).zip(&motions);
     let linearized: Vec<LinearizedFrame> =
         frames.map(|((frame, measured), motion)| linearization.frame(frame, measured, *motion)).collect();
-    Ok(PerFrame::from(linearized))
+    let simplified = |frame: LinearizedFrame| match recording.simplification {
+        Some(Simplification::ExactPoses) => frame.at_exact_pose(),
+        Some(Simplification::EvenSurfaces) => frame.on_even_surfaces(),
+        _ => frame,
+    };
+    Ok(linearized.into_iter().map(simplified).collect::<Vec<_>>().into())
 }
 
 /// Model with its perturbations, at which frames are linearised.

@@ -23,6 +23,18 @@ pub(crate) struct LinearizedFrame {
 }
 
 impl LinearizedFrame {
+    /// Returns the frame with a reference pose that has no error.
+    pub(crate) fn at_exact_pose(mut self) -> Self {
+        self.pose_gradients.fill(Vector6::zeros());
+        self
+    }
+
+    /// Returns the frame with one reflectance of carpet and one of paint.
+    pub(crate) fn on_even_surfaces(mut self) -> Self {
+        self.patches.fill(None);
+        self
+    }
+
     /// Marks the residuals of a channel as missing, so that they are not fitted.
     pub(crate) fn leave_out(&mut self, channel: Channel) {
         for (row, residual) in self.measurements.iter().zip(&mut self.residuals) {

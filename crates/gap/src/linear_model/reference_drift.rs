@@ -75,7 +75,8 @@ impl ReferenceDrift {
         let axes = (0..6).filter(|axis| is_measured || ![1, 3, 4].contains(axis));
         let mut terms = Vec::new();
         for axis in axes {
-            let calibration = THRESHOLDS.calibration[axis / 3];
+            let constant =
+                THRESHOLDS.calibration[axis / 3].hypot(THRESHOLDS.lasting_part * pose_sigmas[axis]);
             let process = SlowProcess::estimate(&of_axis(times_s, fits, axis), pose_sigmas[axis]);
             let most = THRESHOLDS.largest[axis / 3].powi(2);
             let process = process.filter(|_| duration_s > 0.0);
@@ -83,7 +84,7 @@ impl ReferenceDrift {
                 process.map(|process| SlowProcess { variance: process.variance.min(most), ..process });
             let lasting = process.map_or(0.0, |process| process.mean_variance(duration_s));
             let direction = Direction::Pose(axis);
-            terms.push(DriftTerm { direction, half_periods: 0, sigma: calibration.hypot(lasting.sqrt()) });
+            terms.push(DriftTerm { direction, half_periods: 0, sigma: constant.hypot(lasting.sqrt()) });
             terms.extend(process.into_iter().flat_map(|process| {
                 (1..=THRESHOLDS.half_periods).map(move |half_periods| {
                     let sigma = process.term_variance(duration_s, half_periods).sqrt();

@@ -6,5 +6,6 @@ mod fixed_values;
 mod input_mistakes;
 pub(crate) mod selection;
 pub(crate) mod shown_photometry;
+mod simpler_selection;
 mod stopped;
 pub(crate) mod verdict;

@@ -6,7 +6,7 @@ use reality_sim_sensor::{EffectIndex, Model};
 
 use crate::{
     inference::linearized_recording::LinearizedRecording,
-    inference::model_search::ModelSearch,
+    inference::model_search::{ConvergedSet, ModelSearch},
     inference::recording_source::FittedRecording,
     inference::selected_model::SelectedModel,
     inference::split::HeldOutSplit,
@@ -14,6 +14,7 @@ use crate::{
     linear_model::parameters::fitted_parameters,
     progress::Progress,
     recording::Recording,
+    simplification::Simplification,
     thresholds::Thresholds,
     workflow::coarse_alignment::coarsely_aligned,
     workflow::fixed_values::search_fixed_values,
@@ -43,16 +44,66 @@ pub(crate) fn find(
     let split = HeldOutSplit::new(recording.frames.len(), options.seed);
     let given = effects_of(model);
     let source = FittedRecording { recording, columns: &columns, split: &split };
-    let search = ModelSearch { source: &source, columns: &columns, split: &split, given: &given, progress };
-    let (as_given, mut linearized) = start(recording, model, &search)?;
+    let settles_ties = recording.simplification != Some(Simplification::LargestGain);
+    let search = ModelSearch {
+        source: &source,
+        columns: &columns,
+        split: &split,
+        given: &given,
+        progress,
+        settles_ties,
+    };
+    let (as_given, start) = start(recording, model, &search)?;
+    let added = match recording.simplification {
+        Some(Simplification::InformationCriterion) => search.by_information_criterion(start)?.into(),
+        Some(Simplification::CrossValidation) => search.by_cross_validation(start)?.into(),
+        _ => one_after_another(&search, start)?.confirmed(&search, model)?,
+    };
+    let Added { named, mut linearized, p_values, ties } = added;
+    if named.is_empty() && linearized.model != as_given {
+        linearized = LinearizedRecording::new(recording, as_given, &columns, &split, SEARCH_AGAIN)?;
+    }
+    let confusable = search.confusable(&linearized, &named, &ties)?;
+    Ok(SelectedModel { columns, split, linearized, given, named, p_values, confusable })
+}
+
+/// Effects that were added to a model.
+struct Added {
+    named: Vec<EffectIndex>,
+    linearized: LinearizedRecording,
+    /// P-values with which they were added.
+    p_values: BTreeMap<EffectIndex, f64>,
+    /// Effects with others that explained as much when they were added.
+    ties: Vec<(EffectIndex, EffectIndex)>,
+}
+
+impl From<ConvergedSet> for Added {
+    fn from((named, linearized): ConvergedSet) -> Self {
+        Self { named, linearized, p_values: BTreeMap::new(), ties: Vec::new() }
+    }
+}
+
+impl Added {
+    /// Returns the effects that held-out frames confirm.
+    fn confirmed(self, search: &ModelSearch<'_>, before: &Model) -> Result<Self, MeasureError> {
+        let (named, linearized) = search.confirmed(before, (self.named, self.linearized))?;
+        Ok(Self { named, linearized, ..self })
+    }
+}
+
+/// Adds effects one after another until no further one is supported.
+fn one_after_another(
+    search: &ModelSearch<'_>,
+    mut linearized: LinearizedRecording,
+) -> Result<Added, MeasureError> {
     let mut named: Vec<EffectIndex> = Vec::new();
     // Sets that were tried, so that replacements do not go round in circles.
     let mut tried: Vec<Vec<EffectIndex>> = vec![Vec::new()];
     let mut ties = Vec::new();
     let mut p_values = BTreeMap::new();
     while named.len() < Thresholds::DEFAULT.workflow.most_effects {
-        progress(Progress::Testing);
-        let tests = linearized.effect_tests(&columns);
+        (search.progress)(Progress::Testing);
+        let tests = linearized.effect_tests(search.columns);
         if let Some((set, converged)) = search.without_unsupported(&linearized, &tests, &named)? {
             (named, linearized) = (set, converged);
             continue;
@@ -78,12 +129,7 @@ pub(crate) fn find(
         p_values.extend(new.filter_map(|effect| Some((effect, search.p_value(&tests, &named, effect)?))));
         (named, linearized) = (set, converged);
     }
-    (named, linearized) = search.confirmed(model, (named, linearized))?;
-    if named.is_empty() && linearized.model != as_given {
-        linearized = LinearizedRecording::new(recording, as_given, &columns, &split, SEARCH_AGAIN)?;
-    }
-    let confusable = search.confusable(&linearized, &named, &ties)?;
-    Ok(SelectedModel { columns, split, linearized, given, named, p_values, confusable })
+    Ok(Added { named, linearized, p_values, ties })
 }
 
 /// Returns the model with its given effects fitted, and the recording linearised where the search for further effects starts:

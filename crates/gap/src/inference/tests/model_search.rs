@@ -47,8 +47,14 @@ fn with_search<T>(
     check: impl FnOnce(&ModelSearch<'_>, &LinearizedRecording) -> T,
 ) -> T {
     let split = split();
-    let search =
-        ModelSearch { source: world, columns: &world.columns, split: &split, given, progress: &|_| () };
+    let search = ModelSearch {
+        source: world,
+        columns: &world.columns,
+        split: &split,
+        given,
+        progress: &|_| (),
+        settles_ties: true,
+    };
     let all: Vec<EffectIndex> = given.iter().chain(named).copied().collect();
     let linearized = search.converge(world.linearize(Model::default()).unwrap(), &all).unwrap();
     check(&search, &linearized)
@@ -165,6 +171,7 @@ fn a_given_parameter_that_the_frames_do_not_constrain_keeps_its_value() {
         split: &split,
         given: &given,
         progress: &|_| (),
+        settles_ties: true,
     };
     let model = Model::default().with(pitch.effect(), vec![0.05]);
     let converged = search.converge(world.linearize(model).unwrap(), &[pitch, roll]).unwrap();
