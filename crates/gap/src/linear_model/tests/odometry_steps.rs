@@ -51,6 +51,7 @@ fn walk<'a>(sequence: &'a Sequence, steps_m: &[f64], gaps: &[usize]) -> Recordin
         source: ReferenceSource::Measured,
         left_out: Vec::new(),
         searched: Default::default(),
+        simplification: None,
     }
 }
 
