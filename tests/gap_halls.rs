@@ -5,7 +5,7 @@
 use reality_sim::{
     Sequence,
     gap::{
-        Options, Recording, ReferenceSource, analyse,
+        Options, Recording, ReferenceSource, Simplification, analyse,
         report::{Report, Verdict, text::summary},
     },
     sensor::Model,
@@ -18,10 +18,17 @@ fn drawn(seed: u64, effects: &[Hidden]) -> Recipe {
     Recipe { effects: effects.to_vec(), frames: 60, size: [640, 480], ..Recipe::drawn(seed) }
 }
 
-fn reported(sequence: &Sequence) -> Report {
+fn recording(sequence: &Sequence) -> Recording<'_> {
     let poses: Vec<_> = sequence.reference_poses().collect();
-    let recording = Recording::new(sequence, &poses, ReferenceSource::Measured, None).unwrap();
-    analyse(&recording, &Model::default(), &Options::default(), &|_| ()).unwrap().report
+    Recording::new(sequence, &poses, ReferenceSource::Measured, None).unwrap()
+}
+
+fn reported(sequence: &Sequence) -> Report {
+    report_of(&recording(sequence))
+}
+
+fn report_of(recording: &Recording<'_>) -> Report {
+    analyse(recording, &Model::default(), &Options::default(), &|_| ()).unwrap().report
 }
 
 fn reported_of(recipe: &Recipe) -> Report {
@@ -75,4 +82,21 @@ fn lines_brighter_than_stated_are_named_unless_the_files_trust_their_brightness_
     let photometry = sequence.setup.photometry.as_mut().unwrap();
     photometry.trust = Some(Trust { line: Some(0.5), ..Trust::default() });
     assert!(reported(&sequence).effects.is_empty());
+}
+
+/// A world in which nothing is hidden, of small pictures.
+#[test]
+fn simpler_workflows_see_effects_where_there_are_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let sequence = Recipe { frames: 40, size: [320, 240], ..drawn(1001, &[]) }.record(folder.path()).unwrap();
+    assert_eq!(reported(&sequence).verdict, Verdict::None);
+    for simplification in [
+        Simplification::ExactPoses,
+        Simplification::EvenSurfaces,
+        Simplification::InformationCriterion,
+        Simplification::CrossValidation,
+    ] {
+        let report = report_of(&recording(&sequence).simplified(simplification));
+        assert_ne!(report.verdict, Verdict::None, "{simplification:?}");
+    }
 }

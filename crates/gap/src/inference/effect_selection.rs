@@ -14,11 +14,15 @@ use crate::{
 const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
 
 impl EffectTests<'_> {
-    /// Returns the sets of effects to try adding. The first is the supported effect with the largest gain, and one of
+    /// Returns the sets of effects to try adding, of those that `is_new`. The first is the supported effect with the largest gain, and one of
     /// brightness against stated values only where there is no other. Its alternatives
     /// follow, because a linearised model cannot tell reliably which of several large effects fits best. If no effect is
     /// supported alone, returns a pair that is supported, if there is one.
-    pub(crate) fn next_additions(&self, named: &[EffectIndex]) -> Vec<Vec<EffectIndex>> {
+    pub(crate) fn next_additions(
+        &self,
+        named: &[EffectIndex],
+        is_new: impl Fn(&[EffectIndex]) -> bool,
+    ) -> Vec<Vec<EffectIndex>> {
         if self.fits.evidence.views() < LEAST_VIEWS {
             return Vec::new();
         }
@@ -26,12 +30,16 @@ impl EffectTests<'_> {
             self.fits.effects().into_iter().filter(|effect| !named.contains(effect)).collect();
         let tested = self.tests_of(&others, named);
         let mut supported: Vec<&EffectTest> = tested.iter().filter(|test| test.is_supported()).collect();
+        if supported.is_empty() {
+            let pair = self.pair_of(&tested, &others, named).filter(|pair| is_new(pair));
+            return Vec::from_iter(pair.map(Vec::from));
+        }
+        // What was tried and did not last leaves its place to others.
+        supported.retain(|test| is_new(&[test.effect]));
         // Whatever else changes brightness changes that of surfaces against what is stated, too.
         let order = |test: &EffectTest| (is_reflectance(test.effect), -test.gain.value);
         supported.sort_by(|a, b| order(a).partial_cmp(&order(b)).unwrap_or(Ordering::Equal));
-        let Some(best) = supported.first() else {
-            return Vec::from_iter(self.pair_of(&tested, &others, named).map(Vec::from));
-        };
+        let Some(best) = supported.first() else { return Vec::new() };
         // With more sizes a large effect may add to a simpler one that, once both have converged, explains as much.
         let sizes = |test: &EffectTest| self.fits.sizes_of(test.effect).len();
         let stands_for = |test: &&&EffectTest| {

@@ -105,13 +105,8 @@ impl ModelSearch<'_> {
         let with =
             |added: &[EffectIndex]| -> Vec<EffectIndex> { named.iter().chain(added).copied().collect() };
         let most = if self.settles_ties { usize::MAX } else { 1 };
-        tests
-            .next_additions(&all)
-            .iter()
-            .take(most)
-            .map(|added| with(added))
-            .filter(|set| is_new(set))
-            .collect()
+        let additions = tests.next_additions(&all, |added| is_new(&with(added)));
+        additions.iter().take(most).map(|added| with(added)).collect()
     }
 
     /// Fits each of several sets until it converges. Returns the best set first, followed by those that fit equally well.

@@ -67,7 +67,17 @@ fn p_values_are_corrected_for_the_number_of_effects_tested() {
 
 fn additions(world: &World, named: &[&str]) -> Vec<Vec<EffectIndex>> {
     let named: Vec<EffectIndex> = named.iter().map(|id| effect(id)).collect();
-    with_tests(world, |tests| tests.next_additions(&named))
+    with_tests(world, |tests| tests.next_additions(&named, |_| true))
+}
+
+#[test]
+fn an_effect_that_was_tried_leaves_its_place_to_the_next() {
+    let world = World::new(&[("mount_pitch", FIRST, 2.5), ("mount_roll", SECOND, 4.0)]);
+    let roll = effect("mount_roll");
+    let sets = with_tests(&world, |tests| tests.next_additions(&[], |added| added != [roll]));
+    assert_eq!(sets, [[effect("mount_pitch")]]);
+    let sets = with_tests(&world, |tests| tests.next_additions(&[], |_| false));
+    assert!(sets.is_empty(), "{sets:?}");
 }
 
 #[test]
