@@ -51,7 +51,7 @@ struct Args {
     /// Only runs in which one of these effects is hidden
     #[arg(long)]
     effect: Vec<String>,
-    /// Workflows that are run on every recording; sizes are in detection limits of the first
+    /// Workflows that are run on every recording; sizes are in detection limits of `gap` itself
     #[arg(long, value_enum, default_value = "gap")]
     workflow: Vec<Workflow>,
     /// Number of worlds of each effect

@@ -14,10 +14,10 @@ use crate::{
 const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
 
 impl EffectTests<'_> {
-    /// Returns the sets of effects to try adding, of those that `is_new`. The first is the supported effect with the largest gain, and one of
-    /// brightness against stated values only where there is no other. Its alternatives
-    /// follow, because a linearised model cannot tell reliably which of several large effects fits best. If no effect is
-    /// supported alone, returns a pair that is supported, if there is one.
+    /// Returns the sets of effects to try adding, of those for which `is_new`. The first is the supported effect with the largest
+    /// gain, and one of brightness against stated values only where there is no other. Its alternatives follow, because a
+    /// linearised model cannot tell reliably which of several large effects fits best. If no effect is supported alone, returns
+    /// a pair that is supported, if there is one.
     pub(crate) fn next_additions(
         &self,
         named: &[EffectIndex],

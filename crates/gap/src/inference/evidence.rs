@@ -180,7 +180,7 @@ impl<'a> Evidence<'a> {
     }
 
     /// Largest p-value by the levels of lines and by those of carpet, each without the other's, that the tested columns are
-    /// some multiple above zero of what both together tell. Light acts on both alike; the reflectance of paint and that of
+    /// about what both together tell. Light acts on both alike; the reflectance of paint and that of
     /// carpet have nothing to do with each other (intersection-union test: Berger 1982).
     pub(crate) fn p_value_of_both_surfaces(&self, free: &[ColumnIndex], tested: &[ColumnIndex]) -> f64 {
         let Some(together) = self.fit(free) else { return 1.0 };

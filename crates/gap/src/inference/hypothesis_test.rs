@@ -171,13 +171,13 @@ mod tests {
     }
 
     #[test]
-    fn estimates_are_tested_along_what_is_wanted_and_above_zero_only() {
+    fn estimates_are_tested_along_what_is_wanted_and_where_they_are_about_as_large() {
         let covariance = DMatrix::from_row_slice(2, 2, &[0.04, 0.01, 0.01, 0.09]);
         let wanted = DVector::from_vec(vec![1.0, -0.5]);
         let p_value = |estimates: DVector<f64>| multiple_p_value(&covariance, &estimates, &wanted, 1.5, 200);
         // Along what is wanted the test is that of one number, which is more powerful than that of two.
         let along = 0.7 * &wanted;
-        assert!(p_value(along.clone()) < 0.8 * hotelling_p_value(&covariance, &along, 200));
+        assert!(p_value(along.clone()) < 0.7 * hotelling_p_value(&covariance, &along, 200));
         assert_eq!(p_value(-along), 1.0);
         // What is much larger or much smaller is something else, however significant.
         assert!(p_value(1.4 * &wanted) < 1e-3);

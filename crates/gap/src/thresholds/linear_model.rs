@@ -129,8 +129,8 @@ pub(crate) struct ReferenceDriftThresholds {
     /// of a degree; not measured on a real system.
     pub(crate) calibration: [f64; 2],
     /// Part of the frames' own errors that lasts longer than the recording, at least: no variogram shows it. Chosen: half of their
-    /// variance. Motion capture is known to repeat itself better than it is right, so this is little. Without it, two of 120 drawn
-    /// worlds with nothing hidden (development) had a mount named that their reference poses were off by.
+    /// variance. Motion capture is known to repeat itself better than it is right, so this is little. Without it, three of 187
+    /// drawn worlds with nothing hidden (development) had a mount named that their reference poses were off by.
     pub(crate) lasting_part: f64,
     /// Largest slow errors that are believed, radians and metres. Chosen: twice [`PoseErrorThresholds::usual`], about; what is
     /// off by more is no motion capture, or lines that were taken for others.

@@ -44,7 +44,11 @@ pub(crate) fn find(
     let split = HeldOutSplit::new(recording.frames.len(), options.seed);
     let given = effects_of(model);
     let source = FittedRecording { recording, columns: &columns, split: &split };
-    let settles_ties = recording.simplification != Some(Simplification::LargestGain);
+    // Only the workflow's own selection asks what else explains as much.
+    let settles_ties = matches!(
+        recording.simplification,
+        None | Some(Simplification::ExactPoses | Simplification::EvenSurfaces)
+    );
     let search = ModelSearch {
         source: &source,
         columns: &columns,
@@ -53,11 +57,11 @@ pub(crate) fn find(
         progress,
         settles_ties,
     };
-    let (as_given, start) = start(recording, model, &search)?;
+    let (as_given, at_start) = start(recording, model, &search)?;
     let added = match recording.simplification {
-        Some(Simplification::InformationCriterion) => search.by_information_criterion(start)?.into(),
-        Some(Simplification::CrossValidation) => search.by_cross_validation(start)?.into(),
-        _ => one_after_another(&search, start)?.confirmed(&search, model)?,
+        Some(Simplification::InformationCriterion) => search.by_information_criterion(at_start)?.into(),
+        Some(Simplification::CrossValidation) => search.by_cross_validation(at_start)?.into(),
+        _ => one_after_another(&search, at_start)?.confirmed(&search, model)?,
     };
     let Added { named, mut linearized, p_values, ties } = added;
     if named.is_empty() && linearized.model != as_given {
