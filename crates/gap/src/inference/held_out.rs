@@ -13,7 +13,9 @@ use crate::{
     inference::split::HeldOutSplit,
     linear_model::linearization::{MeasureError, linearise},
     linear_model::{
-        fitted_residuals::FittedResiduals, linearized_frame::LinearizedFrame, robust_weights::weigh,
+        fitted_residuals::FittedResiduals,
+        linearized_frame::LinearizedFrame,
+        robust_weights::{sigmas_by_quantity, weigh},
         system::LinearSystem,
     },
     measurement::quantity::{Channel, Quantity},
@@ -22,6 +24,7 @@ use crate::{
 };
 
 const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
+const REWEIGHTING_ROUNDS: usize = Thresholds::DEFAULT.linear_model.reweighting_rounds;
 
 /// Residuals of all frames under a model.
 pub(crate) struct HeldOutResiduals {
@@ -51,21 +54,27 @@ fn at_reference(frame: &LinearizedFrame, linearized: &LinearizedRecording) -> Ve
     refitted(frame, &linearized.system, &nowhere, &[1e-12; 6]).residuals
 }
 
-/// Returns a frame's residuals after a change of the columns, with the pose refitted twice: what is an outlier is seen after the
-/// first time.
+/// Returns a frame's residuals after a change of the columns, with the pose refitted.
+///
+/// What is an outlier is judged anew in every round, first by the scatter of the frame's own residuals: at the reference pose
+/// most lines may be farther off than the noise of lines at the fitted one.
 pub(crate) fn refitted(
     frame: &LinearizedFrame,
     system: &LinearSystem,
     delta: &DVector<f64>,
     pose_sigmas: &[f64; 6],
 ) -> FittedResiduals {
-    let fit = |residuals: &[f64]| {
-        let weights = weigh(frame, residuals, &system.sigmas);
-        FittedResiduals::new(frame, &weights, delta, &system.columns, pose_sigmas)
-    };
-    let unweighted = vec![0.0; frame.residuals.len()];
-    let unposed = FittedResiduals::new(frame, &unweighted, delta, &system.columns, pose_sigmas);
-    fit(&fit(&unposed.residuals).residuals)
+    let fit = |weights: &[f64]| FittedResiduals::new(frame, weights, delta, &system.columns, pose_sigmas);
+    let mut fitted = fit(&vec![0.0; frame.residuals.len()]);
+    for _ in 0..REWEIGHTING_ROUNDS {
+        let mut sigmas = sigmas_by_quantity(frame.measurements.iter().zip(fitted.residuals.iter().copied()));
+        for (quantity, sigma) in &mut sigmas {
+            *sigma = sigma.max(system.sigmas.get(quantity).copied().unwrap_or(0.0));
+        }
+        sigmas.retain(|quantity, _| system.sigmas.contains_key(quantity));
+        fitted = fit(&weigh(frame, &fitted.residuals, &sigmas));
+    }
+    fitted
 }
 
 /// Root mean squares of one channel's residuals, in the channel's unit.
@@ -260,7 +269,7 @@ mod tests {
     use crate::{
         linear_model::column::ColumnIndex,
         measurement::scalar::Measurement,
-        testing::{measurement, system_of},
+        testing::{Noise, measurement, system_of},
     };
 
     const SIGMA: f64 = 0.1;
@@ -363,5 +372,33 @@ mod tests {
     fn an_effect_claims_the_channels_that_it_changes() {
         assert_eq!(compared(&[0.3, -0.3], &[0.0, 0.1]).claimed(), [Channel::Sharpness]);
         assert_eq!(compared(&[0.1, -0.1], &[0.1, -0.1]).claimed(), []);
+    }
+
+    #[test]
+    fn poses_are_refitted_where_most_lines_are_off_at_first() {
+        let mut noise = Noise(3);
+        let pose_error = Vector6::from_fn(|_, _| 0.01 * noise.next());
+        let lines = 60;
+        let pose_gradients: Vec<Vector6<f64>> =
+            (0..lines).map(|_| Vector6::from_fn(|_, _| 100.0 * noise.next())).collect();
+        let mut of_line = |gradient: &Vector6<f64>| gradient.dot(&pose_error) + 0.1 * SIGMA * noise.next();
+        let mut residuals: Vec<f64> = pose_gradients.iter().map(&mut of_line).collect();
+        let off_at_first = residuals.iter().filter(|residual| residual.abs() > 4.7 * SIGMA).count();
+        assert!(off_at_first > lines / 2, "{off_at_first}");
+        // Every fifth line is another thing.
+        residuals.iter_mut().step_by(5).for_each(|residual| *residual += 20.0);
+        let frame = LinearizedFrame {
+            measurements: residuals.iter().map(|_| measurement(Quantity::LineOffset)).collect(),
+            jacobian: vec![Vec::<(ColumnIndex, f64)>::new(); lines],
+            patches: vec![None; lines],
+            residuals,
+            pose_gradients,
+        };
+        let mut system = system_of(vec![(nalgebra::DMatrix::zeros(1, 1), DVector::zeros(1)); FRAMES]);
+        system.sigmas = BTreeMap::from([(Quantity::LineOffset, SIGMA)]);
+        let fitted = refitted(&frame, &system, &DVector::zeros(1), &[0.02; 6]);
+        let explained = fitted.residuals.iter().filter(|residual| residual.abs() < 4.7 * SIGMA).count();
+        assert_eq!(explained, lines - lines / 5);
+        assert!((fitted.pose_error - pose_error).norm() < 0.1 * pose_error.norm(), "{}", fitted.pose_error);
     }
 }

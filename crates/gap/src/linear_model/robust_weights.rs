@@ -65,7 +65,7 @@ pub(super) fn first_residuals(frames: &[&LinearizedFrame]) -> Vec<Vec<f64>> {
 }
 
 /// Returns the standard deviation of each quantity's residuals about zero, from their median absolute deviation.
-pub(super) fn sigmas_by_quantity<'a>(
+pub(crate) fn sigmas_by_quantity<'a>(
     residuals: impl Iterator<Item = (&'a Measurement, f64)>,
 ) -> BTreeMap<Quantity, f64> {
     let mut by_quantity: BTreeMap<Quantity, Vec<f64>> = BTreeMap::new();
