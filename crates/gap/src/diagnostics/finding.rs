@@ -74,6 +74,11 @@ pub enum Finding {
         /// P-value of the deviations of all nominal values of the channel together.
         p_value: f64,
     },
+    /// Lines that the pictures do not show where the model predicts them, although the poses are refitted.
+    UnexplainedLines {
+        /// Share of the lines' pieces in held-out frames, 0 to 1.
+        share: f64,
+    },
     /// Residuals far above the noise floor that form no pattern: they differ from picture to picture.
     Scatter {
         /// Channel of the residuals.
@@ -183,7 +188,9 @@ impl Finding {
         match self {
             Self::Pattern { channel, .. } | Self::Scatter { channel, .. } => *channel,
             Self::Flicker { .. } | Self::Obstruction { .. } => Channel::Photometry,
-            Self::MissingLine { .. } | Self::InputMistake { .. } => Channel::Geometry,
+            Self::MissingLine { .. } | Self::UnexplainedLines { .. } | Self::InputMistake { .. } => {
+                Channel::Geometry
+            }
             Self::Odometry { .. } => Channel::Motion,
             Self::NominalValue { value, .. } => value.channel(),
         }
@@ -196,7 +203,7 @@ impl Finding {
             | Self::Flicker { size, .. }
             | Self::Odometry { size, .. }
             | Self::Scatter { size, .. } => *size,
-            Self::Obstruction { share, .. } => *share,
+            Self::Obstruction { share, .. } | Self::UnexplainedLines { share } => *share,
             Self::MissingLine { found_share, usual_share, .. } => 1.0 - found_share / usual_share,
             Self::NominalValue { off_by, .. } => *off_by,
             Self::InputMistake { .. } => 1.0,
@@ -210,6 +217,7 @@ impl Finding {
             Self::Flicker { .. }
             | Self::Obstruction { .. }
             | Self::MissingLine { .. }
+            | Self::UnexplainedLines { .. }
             | Self::InputMistake { .. } => "1",
             Self::Odometry { component, .. } => component.unit(),
             Self::NominalValue { value, .. } => value.unit(),

@@ -13,11 +13,12 @@ mod obstruction;
 mod odometry;
 mod residual_patterns;
 mod scatter;
+mod unexplained_lines;
 
 use self::detector::Detector;
 
 /// All detectors, in the order in which their findings are reported.
-pub(crate) const DETECTORS: [&dyn Detector; 7] = [
+pub(crate) const DETECTORS: [&dyn Detector; 8] = [
     &residual_patterns::ResidualPatterns,
     &flicker::Flicker,
     &obstruction::Obstruction,
@@ -25,4 +26,5 @@ pub(crate) const DETECTORS: [&dyn Detector; 7] = [
     &nominal_consistency::NominalConsistency,
     &missing_lines::MissingLines,
     &scatter::Scatter,
+    &unexplained_lines::UnexplainedLines,
 ];

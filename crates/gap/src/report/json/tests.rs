@@ -43,6 +43,7 @@ fn all_findings() -> Vec<Finding> {
         odometry(OdometryComponent::Forward, Movement::Ahead),
         odometry(OdometryComponent::Left, Movement::Turn),
         odometry(OdometryComponent::Turn, Movement::Time),
+        Finding::UnexplainedLines { share: 0.39 },
         Finding::Scatter { channel: Channel::Geometry, size: 1.4, floor: 0.5 },
         Finding::InputMistake { mistake: InputMistake::PosesCameraFromWorld },
         Finding::InputMistake { mistake: InputMistake::FieldOfAnotherLeague(2) },

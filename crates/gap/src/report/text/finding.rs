@@ -38,6 +38,9 @@ pub fn finding_place(finding: &Finding) -> String {
             "in all pictures, most of all {}: farther from the value in camera.toml than its tolerance allows",
             nominal_value(*value)
         ),
+        Finding::UnexplainedLines { share } => {
+            format!("{} of the lines are not where they should be", percent(*share))
+        }
         Finding::Scatter { .. } => {
             "differently in each picture, by more than noise and errors of the poses cause".to_owned()
         }
@@ -53,7 +56,10 @@ pub fn finding_size(finding: &Finding) -> String {
 pub(super) fn place_has_size(finding: &Finding) -> bool {
     matches!(
         finding,
-        Finding::Obstruction { .. } | Finding::MissingLine { .. } | Finding::InputMistake { .. }
+        Finding::Obstruction { .. }
+            | Finding::MissingLine { .. }
+            | Finding::UnexplainedLines { .. }
+            | Finding::InputMistake { .. }
     )
 }
 
@@ -205,6 +211,11 @@ mod tests {
                 nominal(NominalValue::Blur, 0.2),
                 "in all pictures, most of all the blur: farther from the value in camera.toml than its tolerance allows",
                 "0.20 px²",
+            ),
+            (
+                Finding::UnexplainedLines { share: 0.39 },
+                "39 % of the lines are not where they should be",
+                "0.39",
             ),
             (
                 Finding::Scatter { channel: Channel::Geometry, size: 1.4, floor: 0.5 },
