@@ -24,7 +24,7 @@ use crate::{
 };
 
 const THRESHOLDS: InferenceThresholds = Thresholds::DEFAULT.inference;
-const REWEIGHTING_ROUNDS: usize = Thresholds::DEFAULT.linear_model.reweighting_rounds;
+const REFITTING_ROUNDS: usize = Thresholds::DEFAULT.linear_model.refitting_rounds;
 
 /// Residuals of all frames under a model.
 pub(crate) struct HeldOutResiduals {
@@ -66,7 +66,7 @@ pub(crate) fn refitted(
 ) -> FittedResiduals {
     let fit = |weights: &[f64]| FittedResiduals::new(frame, weights, delta, &system.columns, pose_sigmas);
     let mut fitted = fit(&vec![0.0; frame.residuals.len()]);
-    for _ in 0..REWEIGHTING_ROUNDS {
+    for _ in 0..REFITTING_ROUNDS {
         let mut sigmas = sigmas_by_quantity(frame.measurements.iter().zip(fitted.residuals.iter().copied()));
         for (quantity, sigma) in &mut sigmas {
             *sigma = sigma.max(system.sigmas.get(quantity).copied().unwrap_or(0.0));
@@ -202,6 +202,7 @@ impl<'a> Rows<'a> {
                 continue;
             }
             let sigma = system.sigmas.get(&measurement.quantity).copied().unwrap_or(0.0);
+            let sigma = sigma.hypot(measurement.sigma);
             let explains =
                 |model: usize| self.refitted[model][index].abs() < THRESHOLDS.outlying_sigmas * sigma;
             let squares = channels.entry(measurement.quantity.channel()).or_default();
