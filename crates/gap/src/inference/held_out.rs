@@ -15,7 +15,7 @@ use crate::{
     linear_model::{
         fitted_residuals::FittedResiduals,
         linearized_frame::LinearizedFrame,
-        robust_weights::{sigmas_by_quantity, weigh},
+        robust_weights::{sigmas_by_quantity, weigh_by_scale},
         system::LinearSystem,
     },
     measurement::quantity::{Channel, Quantity},
@@ -67,12 +67,11 @@ pub(crate) fn refitted(
     let fit = |weights: &[f64]| FittedResiduals::new(frame, weights, delta, &system.columns, pose_sigmas);
     let mut fitted = fit(&vec![0.0; frame.residuals.len()]);
     for _ in 0..REFITTING_ROUNDS {
-        let mut sigmas = sigmas_by_quantity(frame.measurements.iter().zip(fitted.residuals.iter().copied()));
-        for (quantity, sigma) in &mut sigmas {
-            *sigma = sigma.max(system.sigmas.get(quantity).copied().unwrap_or(0.0));
+        let mut scales = sigmas_by_quantity(frame.measurements.iter().zip(fitted.residuals.iter().copied()));
+        for (quantity, scale) in &mut scales {
+            *scale = scale.max(system.sigmas.get(quantity).copied().unwrap_or(0.0));
         }
-        sigmas.retain(|quantity, _| system.sigmas.contains_key(quantity));
-        fitted = fit(&weigh(frame, &fitted.residuals, &sigmas));
+        fitted = fit(&weigh_by_scale(frame, &fitted.residuals, &system.sigmas, &scales));
     }
     fitted
 }

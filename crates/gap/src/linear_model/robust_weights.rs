@@ -22,12 +22,24 @@ pub(crate) fn weigh(
     residuals: &[f64],
     sigmas: &BTreeMap<Quantity, f64>,
 ) -> Vec<f64> {
+    weigh_by_scale(frame, residuals, sigmas, sigmas)
+}
+
+/// Returns the same weights, with outliers told by other standard deviations than those of the noise: where the fit is still far
+/// off, by the residuals' own scale.
+pub(crate) fn weigh_by_scale(
+    frame: &LinearizedFrame,
+    residuals: &[f64],
+    sigmas: &BTreeMap<Quantity, f64>,
+    scales: &BTreeMap<Quantity, f64>,
+) -> Vec<f64> {
     let weight = |(measurement, residual): (&Measurement, &f64)| {
-        let Some(&sigma) = sigmas.get(&measurement.quantity) else { return 0.0 };
-        let variance = sigma * sigma + measurement.sigma * measurement.sigma;
-        let outlying = (residual * residual / (CUTOFF * CUTOFF * variance)).min(1.0);
-        let independent = if measurement.quantity.is_proprioceptive() { 1.0 } else { INDEPENDENT };
-        if residual.is_finite() { independent * (1.0 - outlying).powi(2) / variance } else { 0.0 }
+        let quantity = &measurement.quantity;
+        let (Some(&sigma), Some(&scale)) = (sigmas.get(quantity), scales.get(quantity)) else { return 0.0 };
+        let variance = |sigma: f64| sigma * sigma + measurement.sigma * measurement.sigma;
+        let outlying = (residual * residual / (CUTOFF * CUTOFF * variance(scale))).min(1.0);
+        let independent = if quantity.is_proprioceptive() { 1.0 } else { INDEPENDENT };
+        if residual.is_finite() { independent * (1.0 - outlying).powi(2) / variance(sigma) } else { 0.0 }
     };
     frame.measurements.iter().zip(residuals).map(weight).collect()
 }
