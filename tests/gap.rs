@@ -19,7 +19,7 @@ use reality_sim::{
     },
     sensor::{Model, library},
 };
-use reality_sim_hidden::{Course, Falloff, Hidden, Random, Recipe, Walk};
+use reality_sim_hidden::{Course, Falloff, Hidden, Recipe, Walk};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -109,23 +109,6 @@ fn a_hidden_effect_is_named_with_its_size_and_most_of_the_gap_above_the_noise_cl
         let closed = (gap.before - gap.after) / (gap.before - gap.floor);
         assert!(closed > 0.5, "{}: {closed} of {gap:?}", hidden.id());
     }
-}
-
-#[test]
-fn the_recording_of_the_readme_shows_what_the_readme_says() {
-    let effect = Hidden::of("mount_pitch", 10.0, &mut Random::new(77)).unwrap();
-    let recipe = Recipe { frames: 60, size: [640, 480], effects: vec![effect], ..Recipe::new(1) };
-    let (_folder, sequence) = recorded(&recipe);
-    let report = reported(&sequence);
-    assert_eq!(named(&report), ["mount_pitch"], "{}", summary(&report));
-    // Libraries of other machines may round the last digits of sizes otherwise.
-    let said = summary(&report).split(':').next().map(str::to_owned).unwrap();
-    let readme = include_str!("../README.md").split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(readme.contains(&format!("\"{said}:")), "{said}");
-    let size = report.effects[0].parameters["pitch_rad"].value.abs().to_degrees();
-    assert!((size - 1.0).abs() < 0.05, "{size}");
-    let geometry = &report.gap.channels[&Channel::Geometry];
-    assert!(geometry.left_out < 0.1, "{geometry:?}");
 }
 
 #[test]

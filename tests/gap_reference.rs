@@ -5,7 +5,7 @@
 use reality_sim::{
     CameraPose, Sequence, StampedPose,
     gap::{
-        Options, Recording, ReferenceSource, analyse,
+        Channel, Options, Recording, ReferenceSource, analyse,
         report::{Report, text::summary},
     },
     glam::{DQuat, DVec3},
@@ -65,6 +65,23 @@ fn a_rolling_shutter_of_twenty_milliseconds_is_named_by_reference_poses_between_
         assert_eq!(named(&report), ["rolling_shutter"], "{}", summary(&report));
         assert_size(&report, "rolling_shutter", "readout_s", truth);
     }
+}
+
+#[test]
+fn the_recording_of_the_readme_shows_what_the_readme_says() {
+    let effect = Hidden::of("mount_pitch", 10.0, &mut Random::new(77)).unwrap();
+    let recipe = Recipe { frames: 60, size: [640, 480], effects: vec![effect], ..Recipe::new(1) };
+    let (_folder, sequence) = recorded(&recipe);
+    let report = reported(&sequence);
+    assert_eq!(named(&report), ["mount_pitch"], "{}", summary(&report));
+    // Libraries of other machines may round the last digits of sizes otherwise.
+    let said = summary(&report).split(':').next().map(str::to_owned).unwrap();
+    let readme = include_str!("../README.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(readme.contains(&format!("\"{said}:")), "{said}");
+    let size = report.effects[0].parameters["pitch_rad"].value.abs().to_degrees();
+    assert!((size - 1.0).abs() < 0.05, "{size}");
+    let geometry = &report.gap.channels[&Channel::Geometry];
+    assert!(geometry.left_out < 0.1, "{geometry:?}");
 }
 
 #[test]
