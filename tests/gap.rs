@@ -119,7 +119,8 @@ fn the_hidden_effect_of_a_recording_by_another_renderer_is_named_and_nothing_is_
     assert_eq!(report.unexplained, [], "{}", summary(&report));
     assert_eq!(report.verdict, Verdict::Named);
     let gap = &report.gap.channels[&Channel::Geometry];
-    assert!(gap.before - gap.after > 0.7 * (gap.before - gap.floor), "{gap:?}");
+    assert!(gap.before - gap.after > 0.95 * (gap.before - gap.floor), "{gap:?}");
+    assert!(gap.left_out < 0.05, "{gap:?}");
 }
 
 #[test]

@@ -75,7 +75,8 @@ fn the_recording_of_the_readme_shows_what_the_readme_says() {
     let report = reported(&sequence);
     assert_eq!(named(&report), ["mount_pitch"], "{}", summary(&report));
     // Libraries of other machines may round the last digits of sizes otherwise.
-    let said = summary(&report).split(':').next().map(str::to_owned).unwrap();
+    let summary = summary(&report);
+    let (said, _) = summary.split_once(':').unwrap();
     let readme = include_str!("../README.md").split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(readme.contains(&format!("\"{said}:")), "{said}");
     let size = report.effects[0].parameters["pitch_rad"].value.abs().to_degrees();

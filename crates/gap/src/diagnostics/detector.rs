@@ -13,7 +13,7 @@ use crate::{
     measurement::frame::FrameMeasurements,
     measurement::quantity::{Channel, Quantity},
     measurement::scalar::Measurement,
-    recording::{Frame, Recording},
+    recording::{Frame, Recording, ReferenceSource},
     thresholds::Thresholds,
 };
 
@@ -48,6 +48,17 @@ pub(crate) struct FitResiduals<'a> {
     /// Gap of each channel that is left on held-out frames, of the measurements that the extended model explains: those that
     /// the model as given explains, too, may be of other lines.
     pub(crate) left: &'a BTreeMap<Channel, ChannelGap>,
+}
+
+impl FitResiduals<'_> {
+    /// Returns the gap that is left of the lines' positions. None at poses estimated from the pictures, which scatter themselves
+    /// and of which some may be lost.
+    pub(crate) fn geometry_at_measured_poses(&self) -> Option<&ChannelGap> {
+        match self.recording.source {
+            ReferenceSource::Measured => self.left.get(&Channel::Geometry),
+            ReferenceSource::Tagged => None,
+        }
+    }
 }
 
 /// Residuals of a frame after the fit.

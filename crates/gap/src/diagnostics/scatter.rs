@@ -1,14 +1,11 @@
 //! Offsets of lines that are far above noise and pose errors although they form no pattern.
 
-use std::collections::BTreeMap;
-
 use crate::{
     diagnostics::detector::{Detector, FitResiduals},
     diagnostics::finding::Finding,
     inference::held_out::ChannelGap,
     inference::model_error::ModelError,
     measurement::quantity::Channel,
-    recording::ReferenceSource,
     thresholds::Thresholds,
 };
 
@@ -19,19 +16,15 @@ const LEAST_RATIO: f64 = Thresholds::DEFAULT.diagnostics.least_scatter_ratio;
 pub(crate) struct Scatter;
 
 impl Detector for Scatter {
-    /// Reports nothing for poses estimated from the pictures, which scatter themselves.
     fn detect(&self, fit: &FitResiduals<'_>) -> Vec<Finding> {
-        match fit.recording.source {
-            ReferenceSource::Measured => Vec::from_iter(scatter(fit.left, fit.model_error)),
-            ReferenceSource::Tagged => Vec::new(),
-        }
+        let geometry = fit.geometry_at_measured_poses();
+        geometry.and_then(|gap| scatter(gap, fit.model_error)).into_iter().collect()
     }
 }
 
 /// Returns the scatter of the geometric residuals, if it is far above the noise floor.
-fn scatter(gaps: &BTreeMap<Channel, ChannelGap>, model_error: &ModelError) -> Option<Finding> {
+fn scatter(gap: &ChannelGap, model_error: &ModelError) -> Option<Finding> {
     let channel = Channel::Geometry;
-    let gap = gaps.get(&channel)?;
     let off = model_error.most_off(channel);
     (gap.after > LEAST_RATIO * gap.floor.hypot(off)).then_some(Finding::Scatter {
         channel,
@@ -47,7 +40,7 @@ mod tests {
 
     fn scatter_at(after: f64, model_error: &ModelError) -> Option<Finding> {
         let gap = ChannelGap { before: after, after, floor: 0.5, left_out: 0.0 };
-        scatter(&BTreeMap::from([(Channel::Geometry, gap)]), model_error)
+        scatter(&gap, model_error)
     }
 
     #[test]

@@ -132,7 +132,7 @@ fn log_likelihood(
     delta: &DVector<f64>,
     channels: &[Channel],
 ) -> f64 {
-    let fitted = refitted(frame, system, delta, &system.pose_sigmas);
+    let fitted = refitted(frame, system, delta);
     let rows = frame.measurements.iter().zip(&fitted.residuals);
     let most = THRESHOLDS.outlying_sigmas * THRESHOLDS.outlying_sigmas;
     let squares = rows.filter_map(|(measurement, residual)| {

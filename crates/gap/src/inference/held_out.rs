@@ -51,7 +51,13 @@ impl HeldOutResiduals {
 /// Returns a frame's residuals at its reference pose and nominal values.
 fn at_reference(frame: &LinearizedFrame, linearized: &LinearizedRecording) -> Vec<f64> {
     let nowhere = DVector::zeros(linearized.system.columns.len());
-    refitted(frame, &linearized.system, &nowhere, &[1e-12; 6]).residuals
+    at_pose(frame, &linearized.system, &nowhere).residuals
+}
+
+/// Returns a frame's residuals after a change of the columns, with the pose as it is: no measurement counts for it.
+fn at_pose(frame: &LinearizedFrame, system: &LinearSystem, delta: &DVector<f64>) -> FittedResiduals {
+    let unweighted = vec![0.0; frame.residuals.len()];
+    FittedResiduals::new(frame, &unweighted, delta, &system.columns, &system.pose_sigmas)
 }
 
 /// Returns a frame's residuals after a change of the columns, with the pose refitted.
@@ -62,16 +68,15 @@ pub(crate) fn refitted(
     frame: &LinearizedFrame,
     system: &LinearSystem,
     delta: &DVector<f64>,
-    pose_sigmas: &[f64; 6],
 ) -> FittedResiduals {
-    let fit = |weights: &[f64]| FittedResiduals::new(frame, weights, delta, &system.columns, pose_sigmas);
-    let mut fitted = fit(&vec![0.0; frame.residuals.len()]);
+    let mut fitted = at_pose(frame, system, delta);
     for _ in 0..REFITTING_ROUNDS {
         let mut scales = sigmas_by_quantity(frame.measurements.iter().zip(fitted.residuals.iter().copied()));
         for (quantity, scale) in &mut scales {
             *scale = scale.max(system.sigmas.get(quantity).copied().unwrap_or(0.0));
         }
-        fitted = fit(&weigh_by_scale(frame, &fitted.residuals, &system.sigmas, &scales));
+        let weights = weigh_by_scale(frame, &fitted.residuals, &system.sigmas, &scales);
+        fitted = FittedResiduals::new(frame, &weights, delta, &system.columns, &system.pose_sigmas);
     }
     fitted
 }
@@ -182,7 +187,7 @@ impl<'a> Rows<'a> {
     fn new(frames: [&'a LinearizedFrame; 2], linearized: &'a LinearizedRecording) -> Self {
         let system = &linearized.system;
         let nowhere = DVector::zeros(system.columns.len());
-        let [before, after] = frames.map(|frame| refitted(frame, system, &nowhere, &system.pose_sigmas));
+        let [before, after] = frames.map(|frame| refitted(frame, system, &nowhere));
         Self {
             frames,
             linearized,
@@ -383,7 +388,8 @@ mod tests {
             (0..lines).map(|_| Vector6::from_fn(|_, _| 100.0 * noise.next())).collect();
         let mut of_line = |gradient: &Vector6<f64>| gradient.dot(&pose_error) + 0.1 * SIGMA * noise.next();
         let mut residuals: Vec<f64> = pose_gradients.iter().map(&mut of_line).collect();
-        let off_at_first = residuals.iter().filter(|residual| residual.abs() > 4.7 * SIGMA).count();
+        let outlying = THRESHOLDS.outlying_sigmas * SIGMA;
+        let off_at_first = residuals.iter().filter(|residual| residual.abs() > outlying).count();
         assert!(off_at_first > lines / 2, "{off_at_first}");
         // Every fifth line is another thing.
         residuals.iter_mut().step_by(5).for_each(|residual| *residual += 20.0);
@@ -396,8 +402,9 @@ mod tests {
         };
         let mut system = system_of(vec![(nalgebra::DMatrix::zeros(1, 1), DVector::zeros(1)); FRAMES]);
         system.sigmas = BTreeMap::from([(Quantity::LineOffset, SIGMA)]);
-        let fitted = refitted(&frame, &system, &DVector::zeros(1), &[0.02; 6]);
-        let explained = fitted.residuals.iter().filter(|residual| residual.abs() < 4.7 * SIGMA).count();
+        system.pose_sigmas = [0.02; 6];
+        let fitted = refitted(&frame, &system, &DVector::zeros(1));
+        let explained = fitted.residuals.iter().filter(|residual| residual.abs() < outlying).count();
         assert_eq!(explained, lines - lines / 5);
         assert!((fitted.pose_error - pose_error).norm() < 0.1 * pose_error.norm(), "{}", fitted.pose_error);
     }
