@@ -33,7 +33,7 @@ mod tests {
 
     #[test]
     fn a_few_hidden_lines_are_ordinary_and_many_that_are_off_are_reported() {
-        assert_eq!(unexplained(0.16), None);
-        assert_eq!(unexplained(0.39), Some(Finding::UnexplainedLines { share: 0.39 }));
+        assert_eq!(unexplained(0.12), None);
+        assert_eq!(unexplained(0.4), Some(Finding::UnexplainedLines { share: 0.4 }));
     }
 }

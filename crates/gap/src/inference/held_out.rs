@@ -206,7 +206,6 @@ impl<'a> Rows<'a> {
                 continue;
             }
             let sigma = system.sigmas.get(&measurement.quantity).copied().unwrap_or(0.0);
-            let sigma = sigma.hypot(measurement.sigma);
             let explains =
                 |model: usize| self.refitted[model][index].abs() < THRESHOLDS.outlying_sigmas * sigma;
             let squares = channels.entry(measurement.quantity.channel()).or_default();

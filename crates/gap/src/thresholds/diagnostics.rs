@@ -16,8 +16,9 @@ pub(crate) struct DiagnosticThresholds {
     /// were used before. Halving it changes a report, see `docs/figures/gap_thresholds.md`.
     pub(crate) least_scatter_ratio: f64,
     /// Smallest share of the lines' pieces off their predicted places that is reported. Measured on held-out frames: up to
-    /// 16 % in 15 drawn halls where nothing is missing, which is what people, robots and balls hide, and up to 13 % in real
-    /// pictures; 39 and 98 % with a field's size and a mount's roll of six limits taken out of the library (development worlds).
+    /// 12 % in drawn halls where nothing is missing, which is what people, robots and balls hide, and up to 8 % in real
+    /// pictures; 40 % with a mount's roll of 32 limits taken out of the library (development world 101040000). A field's size
+    /// of ten limits taken out (101180000) leaves 12 % and is not seen.
     pub(crate) least_unexplained_lines: f64,
     pub(crate) objects: ObjectThresholds,
     pub(crate) obstruction: ObstructionThresholds,
