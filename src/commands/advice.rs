@@ -96,6 +96,9 @@ impl Remedied for DbError {
             Self::Database { fault: DbFault::Missing, .. } => {
                 Some("`reality-sim build RECORDING --out DATABASE`")
             }
+            Self::Database { fault: DbFault::NoSuchSequence { .. }, .. } => {
+                Some("`reality-sim info` lists those that it holds")
+            }
             Self::Database { fault: DbFault::Older { .. }, .. } => {
                 Some("`reality-sim build`, with one of its recordings, opens it for writing")
             }

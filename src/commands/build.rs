@@ -10,6 +10,7 @@ use reality_sim::{
     Sequence,
     db::IngestReport,
     pipeline::{Event, PipelineError, Plan, PoseChoice},
+    sequence::counted,
     warp::Hall,
 };
 
@@ -84,6 +85,8 @@ struct SequenceReport {
     /// Source of the poses: `groundtruth`, `file` or `filter`.
     poses: &'static str,
     added: usize,
+    /// Number of pictures that were there, but could not be decoded.
+    replaced: usize,
     already_there: usize,
     /// Number of frames that were left out.
     without_pose: usize,
@@ -166,9 +169,9 @@ fn with_options(error: PipelineError) -> anyhow::Error {
 
 impl SequenceReport {
     fn new(name: String, poses: &'static str, report: IngestReport, seconds: f64) -> Self {
-        let IngestReport { added, already_there, without_pose } = report;
+        let IngestReport { added, replaced, already_there, without_pose } = report;
         let images_per_second = added as f64 / seconds;
-        Self { name, poses, added, already_there, without_pose, images_per_second }
+        Self { name, poses, added, replaced, already_there, without_pose, images_per_second }
     }
 }
 
@@ -190,7 +193,7 @@ impl Report {
     fn text(&self) -> String {
         let mut lines = Vec::new();
         for sequence in &self.sequences {
-            let SequenceReport { name, poses, added, already_there, without_pose, .. } = sequence;
+            let SequenceReport { name, poses, added, replaced, already_there, without_pose, .. } = sequence;
             let poses = match *poses {
                 "groundtruth" => "its ground truth",
                 "file" => "the file given",
@@ -199,9 +202,13 @@ impl Report {
             lines.push((
                 "sequence",
                 format!(
-                    "{name}: {added} pictures added, {already_there} were already there, poses from {poses}"
+                    "{name}: {} added, {already_there} already there, poses from {poses}",
+                    counted(*added, "picture")
                 ),
             ));
+            if *replaced > 0 {
+                lines.push(("", format!("{replaced} replaced, which could not be decoded any more")));
+            }
             if *without_pose > 0 {
                 lines.push((
                     "",
@@ -216,7 +223,7 @@ impl Report {
             ));
         }
         lines.extend(self.corrections.iter().map(|corrections| ("camera", corrections.clone())));
-        lines.push(("database", format!("{}, {} pictures", self.database, self.images)));
+        lines.push(("database", format!("{}, {}", self.database, counted(self.images, "picture"))));
         aligned(&lines)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, fmt::Write, path::PathBuf};
 
-use anyhow::bail;
+use anyhow::{Context, bail};
 use clap::Args;
 use image::RgbImage;
 use serde::Serialize;
@@ -12,12 +12,13 @@ use reality_sim::{
     montage::grid,
     probing::{MethodReport, Outcome, ProbeResult, compare_methods, names},
     sensor::{Renderer, SceneColors},
-    sequence::{save_image, write_atomically},
+    sequence::{counted, save_image, write_atomically},
 };
 
 use super::{
     model_file::{ModelArgs, ModelFile, Use, open_corrected},
-    output::{check_distinct, check_output_file, create_output_folder, frame_progress, print, print_json},
+    output::{check_distinct, check_output_file, frame_progress, print, print_json},
+    output_folder::OutputFolder,
     picture_at::SynthesisArgs,
 };
 
@@ -79,26 +80,31 @@ pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
         );
     }
     check_poses(args, &probes)?;
-    check_outputs(args, &probes)?;
+    let pictures = check_outputs(args, &probes)?;
+    probes.check_pictures()?;
     let synthesizer = args.synthesis.synthesizer(archive.clone(), probes.setup.camera.clone())?;
     let renderer = renderer(&archive, &probes, model.as_ref())?;
     let with_truth = probes.reference_poses().enumerate().filter_map(|(frame, pose)| Some((frame, pose?)));
     let with_truth: Vec<(usize, CameraPose)> = with_truth.collect();
     let progress = frame_progress(with_truth.len())?;
     let mut results = Vec::new();
-    for (frame, pose) in with_truth {
+    let compared = with_truth.iter().try_for_each(|&(frame, pose)| -> anyhow::Result<()> {
         let truth = probes.load_image(frame)?;
-        let probe = compare_methods(&synthesizer, &renderer, frame, pose, truth)
-            .inspect_err(|_| progress.finish_and_clear())?;
-        if let Some(folder) = &args.pictures {
-            save_image(&folder.join(format!("{frame:06}.png")), &side_by_side(&probe))?;
+        let probe = compare_methods(&synthesizer, &renderer, frame, pose, truth)?;
+        if let Some(folder) = &pictures {
+            save_image(&folder.file(format!("{frame:06}.png"))?, &side_by_side(&probe))?;
         }
         results.push(ProbeResult { truth: RgbImage::default(), ..without_pictures(probe) });
         progress.inc(1);
-    }
+        Ok(())
+    });
     progress.finish_and_clear();
     if let Some(file) = &args.details {
         write_atomically(file, details_csv(&results).as_bytes())?;
+        let (done, of) = (results.len(), with_truth.len());
+        compared.with_context(|| format!("{}: holds {done} of {}", file.display(), counted(of, "probe")))?;
+    } else {
+        compared?;
     }
     let mut report = Report::new(args, &archive, &results);
     let purpose = Use::Pictures { is_corrected };
@@ -130,14 +136,14 @@ fn check_poses(args: &EvaluateArgs, probes: &Sequence) -> anyhow::Result<()> {
     }
 }
 
-fn check_outputs(args: &EvaluateArgs, probes: &Sequence) -> anyhow::Result<()> {
+fn check_outputs(args: &EvaluateArgs, probes: &Sequence) -> anyhow::Result<Option<OutputFolder>> {
     let mut inputs = probes.files.clone();
     inputs.extend(probes.frames.iter().map(|frame| probes.folder.join(&frame.image)));
     inputs.push(args.database.clone());
     inputs.extend(args.model.model.clone());
     check_distinct(&[&args.details, &args.pictures].into_iter().flatten().collect::<Vec<_>>())?;
     args.details.as_ref().map_or(Ok(()), |file| check_output_file(file, &inputs))?;
-    args.pictures.as_ref().map_or(Ok(()), |folder| create_output_folder(folder, &inputs))
+    args.pictures.as_ref().map(|folder| OutputFolder::check(folder, &inputs)).transpose()
 }
 
 /// Arranges the true picture first, then those of the methods; grey where a method has no answer.
@@ -191,13 +197,18 @@ impl Report {
     }
 
     fn text(&self) -> String {
-        let mut text = format!("{} probes, {} images in {}\n\n", self.probes, self.images, self.database);
+        let mut text = format!(
+            "{}, {} in {}\n\n",
+            counted(self.probes, "probe"),
+            counted(self.images, "image"),
+            self.database
+        );
         if self.probes_in_database > 0 {
             // Writing into a string cannot fail.
             let _ = writeln!(
                 text,
-                "{} probes are in the database, which makes their results meaningless: build it without them\n",
-                self.probes_in_database
+                "{} in the database, which makes the results meaningless: build it without them\n",
+                counted(self.probes_in_database, "probe")
             );
         }
         if let Some(corrections) = &self.corrections {

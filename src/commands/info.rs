@@ -11,7 +11,7 @@ use reality_sim::{
     coverage_chart::coverage_svg,
     db::{Database, ImageRecord, SCHEMA_VERSION, coverage::Coverage},
     evaluation::percentile,
-    sequence::write_atomically,
+    sequence::{counted, write_atomically},
 };
 
 use super::output::{aligned, check_output_file, print, print_json};
@@ -116,7 +116,7 @@ pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
     };
     if let (Some(file), Some((coverage, archive))) = (&args.coverage, &coverage) {
         let name = args.database.file_name().unwrap_or_default().to_string_lossy();
-        let title = format!("{name}: {} pictures", archive.images().len());
+        let title = format!("{name}: {}", counted(archive.images().len(), "picture"));
         write_atomically(file, coverage_svg(coverage, archive.field(), &title).as_bytes())?;
     }
     let report = Report::new(args, &database, &images, coverage.as_ref().map(|(coverage, _)| coverage))?;
@@ -171,29 +171,30 @@ impl Report {
     }
 
     fn text(&self) -> String {
+        let pictures = |images: usize| counted(images, "picture");
         let mut lines = vec![(
             "database",
             format!(
-                "{}, {} pictures, {:.1} MB, version {}",
+                "{}, {}, {:.1} MB, version {}",
                 self.database,
-                self.images,
+                pictures(self.images),
                 self.bytes as f64 / 1e6,
                 self.schema_version
             ),
         )];
         for SequenceReport { name, images, first_timestamp_s, last_timestamp_s } in &self.sequences {
             let seconds = last_timestamp_s - first_timestamp_s;
-            lines.push(("sequence", format!("{name}: {images} pictures in {seconds:.0} s")));
+            lines.push(("sequence", format!("{name}: {} in {seconds:.0} s", pictures(*images))));
         }
         for CameraReport { model, width, height, images } in &self.cameras {
-            lines.push(("camera", format!("{model}, {width} × {height}: {images} pictures")));
+            lines.push(("camera", format!("{model}, {width} × {height}: {}", pictures(*images))));
         }
         let field =
-            |FieldReport { name, images }: &FieldReport| ("field", format!("{name}: {images} pictures"));
+            |FieldReport { name, images }: &FieldReport| ("field", format!("{name}: {}", pictures(*images)));
         lines.extend(self.fields.iter().map(field));
         for PoseSourceReport { kind, description, images } in &self.pose_sources {
             let gap = if description.is_empty() { "" } else { ", " };
-            lines.push(("poses", format!("{kind}{gap}{description}: {images} pictures")));
+            lines.push(("poses", format!("{kind}{gap}{description}: {}", pictures(*images))));
         }
         if let Some(coverage) = &self.coverage {
             let [squares, near] = [coverage.squares_with_pictures, coverage.near].map(|share| 100.0 * share);

@@ -8,17 +8,23 @@ mod device;
 mod doctor;
 mod evaluate;
 mod filter;
+mod frame_range;
 mod gap;
 mod info;
 mod model_file;
 mod output;
+mod output_folder;
 mod picture_at;
+mod remove;
 mod render;
+mod shell;
 mod tag;
 #[cfg(feature = "viewer")]
 mod viewer;
 
-pub use self::advice::advice;
+use clap::CommandFactory;
+
+pub use self::{advice::advice, output::be_quiet};
 
 /// What to do.
 #[derive(Debug, clap::Subcommand)]
@@ -33,6 +39,8 @@ pub enum Command {
     Evaluate(evaluate::EvaluateArgs),
     /// Summarise a database: what it holds, and how much of the field it covers
     Info(info::InfoArgs),
+    /// Remove a sequence's pictures, or some of them, from a database
+    Remove(remove::RemoveArgs),
     /// Find the effect that a camera model lacks, add it, and measure what that brings
     Gap(Box<gap::GapArgs>),
     /// List the graphics adapters, and check that they compute what the CPU computes
@@ -41,6 +49,10 @@ pub enum Command {
     /// Show a recording, a database or a report in a window
     #[cfg(feature = "viewer")]
     Viewer(viewer::ViewerArgs),
+    /// Print the script by which a shell completes commands and options
+    Completions(shell::CompletionsArgs),
+    /// Write the manual pages
+    Man(shell::ManArgs),
 }
 
 impl Command {
@@ -51,7 +63,7 @@ impl Command {
             Self::Build(args) => args.check_usage(),
             Self::Render(args) => args.check_usage(),
             Self::Evaluate(args) => args.check_usage(),
-            Self::Info(_) => Ok(()),
+            Self::Info(_) | Self::Remove(_) | Self::Completions(_) | Self::Man(_) => Ok(()),
             Self::Gap(args) => args.check_usage(),
             #[cfg(feature = "gpu")]
             Self::Doctor(_) => Ok(()),
@@ -60,19 +72,22 @@ impl Command {
         }
     }
 
-    /// Runs the command.
-    pub fn run(&self) -> anyhow::Result<()> {
+    /// Runs the command of a program.
+    pub fn run<Program: CommandFactory>(&self) -> anyhow::Result<()> {
         match self {
             Self::Tag(args) => tag::run(args),
             Self::Build(args) => build::run(args),
             Self::Render(args) => render::run(args),
             Self::Evaluate(args) => evaluate::run(args),
             Self::Info(args) => info::run(args),
+            Self::Remove(args) => remove::run(args),
             Self::Gap(args) => gap::run(args),
             #[cfg(feature = "gpu")]
             Self::Doctor(args) => doctor::run(args),
             #[cfg(feature = "viewer")]
             Self::Viewer(args) => viewer::run(args),
+            Self::Completions(args) => shell::completions::<Program>(args),
+            Self::Man(args) => shell::man::<Program>(args),
         }
     }
 }

@@ -4,6 +4,7 @@ use std::{
     fs,
     io::{self, IsTerminal, Write},
     path::{Path, PathBuf},
+    sync::atomic::{AtomicBool, Ordering},
     time::Duration,
 };
 
@@ -11,8 +12,22 @@ use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
+use reality_sim::sequence::{for_terminal, on_one_line};
+
+/// Whether reports in words and progress are left out: an option of the whole program.
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
+
 /// Smallest width of the column with the names of values.
 const NAME: usize = 10;
+
+/// Leaves out reports in words and progress from now on.
+pub fn be_quiet() {
+    IS_QUIET.store(true, Ordering::Relaxed);
+}
+
+fn is_quiet() -> bool {
+    IS_QUIET.load(Ordering::Relaxed)
+}
 
 /// Checks that a file can be written under this name later, and that it is not one of `inputs`.
 pub fn check_output_file(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<()> {
@@ -29,23 +44,6 @@ pub fn check_output_file(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<()> 
     Ok(())
 }
 
-/// Creates a folder for pictures if it is missing (its parent must exist), and checks that files can be written into it
-/// and that none of `inputs` lies in it.
-pub fn create_output_folder(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<()> {
-    let name = path.display();
-    if !path.exists() {
-        check_writable_folder(&parent(path)).with_context(|| format!("{name}: cannot be created"))?;
-        fs::create_dir(path).with_context(|| format!("{name}: cannot be created: check the path"))?;
-    }
-    check_writable_folder(path)?;
-    let folder = path.canonicalize().with_context(|| format!("{name}: cannot be read"))?;
-    let holds = |input: &PathBuf| input.canonicalize().is_ok_and(|input| input.parent() == Some(&folder));
-    if let Some(input) = inputs.iter().find(|input| holds(input)) {
-        bail!("{name}: holds the input {}: give another folder for the output", input.display());
-    }
-    Ok(())
-}
-
 /// Checks a picture file that will be written, as [`check_output_file`] does; its name must give the format.
 pub fn check_output_picture(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<()> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
@@ -58,31 +56,43 @@ pub fn check_output_picture(path: &Path, inputs: &[PathBuf]) -> anyhow::Result<(
     check_output_file(path, inputs)
 }
 
-/// Refuses two outputs with the same name.
+/// Refuses two outputs that are one file, also if their paths differ.
 pub fn check_distinct(outputs: &[&PathBuf]) -> anyhow::Result<()> {
+    let places: Vec<PathBuf> = outputs.iter().map(|output| place(output)).collect();
     for (index, output) in outputs.iter().enumerate() {
-        if outputs[..index].contains(output) {
+        if places[..index].contains(&places[index]) {
             bail!("{}: is given for two outputs: give each a name of its own", output.display());
         }
     }
     Ok(())
 }
 
-/// Formats lines of one name and one value each, with the values aligned.
+/// Formats lines of one name and one value each, with the values aligned. Line breaks in values are escaped: what a file says
+/// cannot look like a line of the program's own.
 pub fn aligned(lines: &[(&str, String)]) -> String {
     let width = lines.iter().map(|(name, _)| name.len() + 1).fold(NAME, usize::max);
-    lines.iter().map(|(name, value)| format!("{name:width$}{value}\n")).collect()
+    lines.iter().map(|(name, value)| format!("{name:width$}{}\n", on_one_line(value))).collect()
 }
 
-/// Prints one JSON object on standard output.
+/// Prints one JSON object on standard output. Control characters beyond ASCII, which JSON allows, are escaped, too.
 pub fn print_json(report: &impl Serialize) -> anyhow::Result<()> {
-    print(&format!("{}\n", serde_json::to_string_pretty(report)?))
+    let json = serde_json::to_string_pretty(report)?;
+    let escape = |letter: char| {
+        let is_control = letter != '\n' && letter.is_control();
+        if is_control { format!("\\u{:04x}", letter as u32) } else { letter.to_string() }
+    };
+    print_all(format!("{}\n", json.chars().map(escape).collect::<String>()).as_bytes())
 }
 
-/// Prints text on standard output. It is not an error if the reader has closed the pipe.
+/// Prints text on standard output, without control characters that a terminal would obey, unless the program is quiet.
 pub fn print(text: &str) -> anyhow::Result<()> {
+    if is_quiet() { Ok(()) } else { print_all(for_terminal(text).as_bytes()) }
+}
+
+/// Prints bytes on standard output as they are. It is not an error if the reader has closed the pipe.
+pub fn print_all(bytes: &[u8]) -> anyhow::Result<()> {
     let mut output = io::stdout().lock();
-    match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
+    match output.write_all(bytes).and_then(|()| output.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(error).context("standard output: cannot be written")
         }
@@ -90,9 +100,14 @@ pub fn print(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// Makes a progress bar over frames on standard error, shown only in a terminal.
+/// Whether progress is shown: in a terminal, unless the program is quiet.
+pub fn shows_progress() -> bool {
+    !is_quiet() && io::stderr().is_terminal()
+}
+
+/// Makes a progress bar over frames on standard error.
 pub fn frame_progress(frames: usize) -> anyhow::Result<ProgressBar> {
-    if !io::stderr().is_terminal() {
+    if !shows_progress() {
         return Ok(ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()));
     }
     let style = ProgressStyle::with_template("{bar:32} {pos}/{len} frames, {per_sec}, {eta} left  {msg}")?;
@@ -128,6 +143,14 @@ impl StageProgress {
     }
 }
 
+/// Returns the one path of a file that may not be there yet; its folder is.
+fn place(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| {
+        let folder = parent(path).canonicalize().unwrap_or_else(|_| parent(path));
+        folder.join(path.file_name().unwrap_or_default())
+    })
+}
+
 fn parent(path: &Path) -> PathBuf {
     match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
@@ -136,7 +159,7 @@ fn parent(path: &Path) -> PathBuf {
 }
 
 /// Checks that a folder can be written to, which only an attempt can tell; nothing is left behind.
-fn check_writable_folder(folder: &Path) -> anyhow::Result<()> {
+pub fn check_writable_folder(folder: &Path) -> anyhow::Result<()> {
     let name = folder.display();
     match fs::metadata(folder) {
         Ok(metadata) if metadata.is_dir() => {}

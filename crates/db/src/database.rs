@@ -15,12 +15,13 @@ use reality_sim_core::{
     sequence::{CameraSetup, decode_image, model_of_camera},
     warp::Hall,
 };
-use rusqlite::{Connection, OpenFlags, OptionalExtension, Row, Transaction, params};
+use rusqlite::{Connection, OpenFlags, OptionalExtension, Row, Transaction, TransactionBehavior, params};
 
 use crate::{
     error::{DbError, DbFault},
     record::{IMAGE_COLUMNS, ImageRecord, PoseSource},
     schema,
+    work_limit::WorkLimit,
 };
 
 /// Time to wait for another program to finish its transaction.
@@ -38,7 +39,8 @@ const WRITER_CACHE_KIB: i64 = 32 << 10;
 pub struct Database {
     path: PathBuf,
     pub(crate) connection: Mutex<Connection>,
-    pub(crate) is_writer: bool,
+    work_limit: WorkLimit,
+    is_writer: bool,
 }
 
 impl Database {
@@ -124,22 +126,26 @@ impl Database {
         Ok(halls)
     }
 
+    /// Returns the ids of the fields that images show, and around which no hall is stored: none was measured yet, or images
+    /// were added, replaced or removed since, which forgets it.
+    pub fn fields_without_hall(&self) -> Result<Vec<i64>, DbError> {
+        let query = "SELECT DISTINCT field_id FROM images WHERE field_id NOT IN (SELECT field_id FROM halls) \
+             ORDER BY field_id";
+        self.read(|transaction| all(transaction, query, |row| row.get(0)))
+    }
+
     /// Stores the measured hall around a field and replaces an earlier one.
     pub fn set_hall(&mut self, field_id: i64, hall: &Hall) -> Result<(), DbError> {
-        let fail = |fault| DbError::new(&self.path, fault);
-        if !self.is_writer {
-            return Err(fail(DbFault::OpenedForReading));
-        }
         if self.fields()?.get(&field_id).is_none_or(|field| !hall.holds(field)) {
             let problem = "it does not hold its field";
-            return Err(fail(DbFault::BadRow { table: "hall", id: field_id, problem }));
+            return Err(DbError::new(&self.path, DbFault::BadRow { table: "hall", id: field_id, problem }));
         }
         let Hall { min_m, max_m, ceiling_m, goal_depth_m } = *hall;
-        let values = params![field_id, min_m.x, min_m.y, max_m.x, max_m.y, ceiling_m, goal_depth_m];
-        let connection = self.connection.lock().unwrap_or_else(PoisonError::into_inner);
-        let stored =
-            connection.execute("INSERT OR REPLACE INTO halls VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)", values);
-        stored.map(drop).map_err(|error| fail(error.into()))
+        self.write(|transaction| {
+            let values = params![field_id, min_m.x, min_m.y, max_m.x, max_m.y, ceiling_m, goal_depth_m];
+            let query = "INSERT OR REPLACE INTO halls VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)";
+            Ok(transaction.execute(query, values).map(drop)?)
+        })
     }
 
     /// Returns the sources of poses, by id.
@@ -188,9 +194,29 @@ impl Database {
     /// Runs queries that all see the same state of the database.
     fn read<T>(&self, work: impl FnOnce(&Transaction<'_>) -> Result<T, DbFault>) -> Result<T, DbError> {
         let connection = self.connection.lock().unwrap_or_else(PoisonError::into_inner);
+        self.work_limit.renew();
         let transaction =
             connection.unchecked_transaction().map_err(|error| DbError::new(&self.path, error))?;
         work(&transaction).map_err(|fault| DbError::new(&self.path, fault))
+    }
+
+    /// Runs statements of which all take effect, or, after an error, none. Fails if the database was opened for reading.
+    pub(crate) fn write<T>(
+        &mut self,
+        work: impl FnOnce(&Transaction<'_>) -> Result<T, DbFault>,
+    ) -> Result<T, DbError> {
+        let fail = |fault: DbFault| DbError::new(&self.path, fault);
+        if !self.is_writer {
+            return Err(fail(DbFault::OpenedForReading));
+        }
+        let connection = self.connection.get_mut().unwrap_or_else(PoisonError::into_inner);
+        self.work_limit.renew();
+        let transaction = connection
+            .transaction_with_behavior(TransactionBehavior::Immediate)
+            .map_err(|error| fail(error.into()))?;
+        let result = work(&transaction).map_err(fail)?;
+        transaction.commit().map_err(|error| fail(error.into()))?;
+        Ok(result)
     }
 
     /// Name of a part of the database in errors.
@@ -206,10 +232,11 @@ impl Database {
         }
         // A reader may write, where it can, to roll back what a killed writer left; where it cannot, SQLite falls back to
         // reading.
-        let connection = connect(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
+        let (connection, work_limit) = connect(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
         connection.pragma_update(None, "query_only", true)?;
         schema::check(&connection, path)?;
-        Ok(Self { path: path.to_path_buf(), connection: Mutex::new(connection), is_writer: false })
+        let connection = Mutex::new(connection);
+        Ok(Self { path: path.to_path_buf(), connection, work_limit, is_writer: false })
     }
 
     fn try_create_or_open(path: &Path) -> Result<Self, DbFault> {
@@ -217,13 +244,14 @@ impl Database {
             return Err(DbFault::NotAFile);
         }
         let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_CREATE;
-        let mut connection = connect(path, flags)?;
+        let (mut connection, work_limit) = connect(path, flags)?;
         if connection.is_readonly("main")? {
             return Err(DbFault::ReadOnly);
         }
         connection.pragma_update(None, "cache_size", -WRITER_CACHE_KIB)?;
         schema::prepare(&mut connection, path)?;
-        Ok(Self { path: path.to_path_buf(), connection: Mutex::new(connection), is_writer: true })
+        let connection = Mutex::new(connection);
+        Ok(Self { path: path.to_path_buf(), connection, work_limit, is_writer: true })
     }
 }
 
@@ -234,12 +262,17 @@ struct StoredImage {
     camera: String,
 }
 
-fn connect(path: &Path, flags: OpenFlags) -> Result<Connection, DbFault> {
+fn connect(path: &Path, flags: OpenFlags) -> Result<(Connection, WorkLimit), DbFault> {
+    let file_bytes = fs::metadata(path).map_or(0, |metadata| metadata.len());
     // An absolute path is never one of the special names that SQLite does not treat as a file.
-    let connection =
+    let mut connection =
         Connection::open_with_flags(path::absolute(path)?, flags | OpenFlags::SQLITE_OPEN_NO_MUTEX)?;
     connection.busy_timeout(BUSY_TIMEOUT)?;
-    Ok(connection)
+    let work_limit = WorkLimit::new(&mut connection, file_bytes)?;
+    // Somebody else may have made the file.
+    connection.pragma_update(None, "trusted_schema", false)?;
+    connection.pragma_update(None, "cell_size_check", true)?;
+    Ok((connection, work_limit))
 }
 
 /// Refuses images whose sequence, camera, field or pose source does not exist.

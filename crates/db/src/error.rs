@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use reality_sim_core::sequence::{Printable, SequenceError, one_line};
+use reality_sim_core::sequence::{Printable, SequenceError, counted, one_line};
 use rusqlite::{ErrorCode, ffi};
 
 /// Error of a database, or of a recording that is being stored in one.
@@ -56,6 +56,9 @@ pub enum DbFault {
         "is not an image database of this program: check the path, or build the database into another file"
     )]
     NotADatabase,
+    /// Nothing was ever stored in the file, as where its writer was killed before it had stored the first picture.
+    #[error("holds nothing yet: build the database again into the same file")]
+    NothingStored,
     /// The file has a newer schema version than this program knows.
     #[error("is of schema version {found} and this program knows versions up to {known}: update the program")]
     Newer {
@@ -133,6 +136,27 @@ pub enum DbFault {
         /// Id that was asked for.
         id: i64,
     },
+    /// Reading or writing took far more work than a file of this size can need.
+    #[error(
+        "is damaged, or was made to be slow (it takes more work than a database of its size): copy it again, or build it again"
+    )]
+    TooMuchWork,
+    /// No sequence has this name.
+    #[error("holds no sequence of the name {name:?}: check the name")]
+    NoSuchSequence {
+        /// Name that was asked for.
+        name: String,
+    },
+    /// The tables are not those that this program makes.
+    #[error(
+        "is damaged, or was made by another program (its {kind} {name:?} is not as this program makes it): copy it again, or build it again"
+    )]
+    ForeignSchema {
+        /// Kind of the part: table, view, trigger.
+        kind: String,
+        /// Name of the part.
+        name: String,
+    },
     /// The database already holds the frame with other contents.
     #[error(
         "frame {frame_index} of the sequence {sequence:?} is in it with another {what}: the sequence was changed, build it into a new file, or give it another name in sequence.toml"
@@ -144,6 +168,14 @@ pub enum DbFault {
         frame_index: usize,
         /// Part that differs.
         what: &'static str,
+    },
+    /// Pictures of the recording are missing or damaged; its others are stored.
+    #[error("holds the recording's other {}; {source}", counted(*.stored, "picture"))]
+    LeftOut {
+        /// Number of pictures of the recording that the database holds.
+        stored: usize,
+        /// The pictures, and what is wrong with them.
+        source: SequenceError,
     },
     /// The number of poses is not the number of frames.
     #[error("{found} poses were given for the {expected} frames of a sequence: give one entry a frame")]
@@ -182,6 +214,7 @@ impl From<rusqlite::Error> for DbFault {
             Some(ErrorCode::CannotOpen | ErrorCode::PermissionDenied) => {
                 Self::CannotOpen { source: error.into() }
             }
+            Some(ErrorCode::OperationInterrupted) => Self::TooMuchWork,
             Some(ErrorCode::SystemIoFailure) => Self::Io { source: error.into() },
             // The tables are this program's own: contents that do not fit them are damage.
             _ => Self::Damaged { source: error.into() },

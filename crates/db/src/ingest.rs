@@ -1,9 +1,7 @@
 //! Ingestion of recordings into the database.
 
-use std::{path::Path, sync::PoisonError};
-
-use reality_sim_core::sequence::Sequence;
-use rusqlite::{Connection, Transaction, TransactionBehavior};
+use reality_sim_core::sequence::{Sequence, SequenceError};
+use rusqlite::Transaction;
 
 use crate::{
     database::Database,
@@ -24,10 +22,22 @@ const BATCH_BYTES: usize = 16 << 20;
 pub struct IngestReport {
     /// Number of frames that were added.
     pub added: usize,
+    /// Number of frames whose pictures the database held, but could not be decoded: they are replaced.
+    pub replaced: usize,
     /// Number of frames that the database already held.
     pub already_there: usize,
     /// Number of frames that were left out because they have no pose.
     pub without_pose: usize,
+}
+
+impl IngestReport {
+    fn count(&mut self, insertion: Insertion) {
+        match insertion {
+            Insertion::Added => self.added += 1,
+            Insertion::Replaced => self.replaced += 1,
+            Insertion::AlreadyThere => self.already_there += 1,
+        }
+    }
 }
 
 impl Database {
@@ -35,8 +45,11 @@ impl Database {
     ///
     /// Frames are committed in batches. After an error, or when the program is killed, all committed batches stay, and the
     /// next call continues where this one ended. Frames that are already in the database are compared: another picture,
-    /// pose, camera or field is [`DbFault::Changed`]. A sequence is recognised, wherever it is, by its name and the record
-    /// of its first frame.
+    /// pose, camera or field is [`DbFault::Changed`]; a picture that cannot be decoded any more is replaced. A sequence is
+    /// recognised, wherever it is, by its name and the record of its first frame.
+    ///
+    /// Pictures that are missing or damaged are left out. Once all others are stored, they are the error
+    /// [`DbFault::LeftOut`].
     pub fn ingest(
         &mut self,
         sequence: &Sequence,
@@ -58,47 +71,35 @@ impl Database {
     ) -> Result<IngestReport, DbError> {
         let path = self.path().to_path_buf();
         let fail = |fault| DbError::new(&path, fault);
-        if !self.is_writer {
-            return Err(fail(DbFault::OpenedForReading));
-        }
         check_poses(sequence, poses).map_err(fail)?;
         let recording = Recording::of_sequence(sequence, source.clone())?;
-        let frames = Frames { path: &path, sequence, poses, recording };
-        let connection = self.connection.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let mut frames = Frames { sequence, poses, recording, unusable: Vec::new() };
         let mut report = IngestReport::default();
         let (mut done, mut is_wanted) = (0, true);
         while done < poses.len() && is_wanted {
-            let transaction = connection
-                .transaction_with_behavior(TransactionBehavior::Immediate)
-                .map_err(|error| fail(error.into()))?;
             let mut goes_on = |done| {
                 is_wanted = goes_on(done);
                 is_wanted
             };
-            done = frames.add_batch(&transaction, done, &mut report, &mut goes_on)?;
-            transaction.commit().map_err(|error| fail(error.into()))?;
+            done = self.write(|transaction| frames.add_batch(transaction, done, &mut report, &mut goes_on))?;
         }
-        Ok(report)
+        match sequence.unusable_pictures(frames.unusable) {
+            None => Ok(report),
+            Some(source) => {
+                let stored = report.added + report.replaced + report.already_there;
+                Err(fail(DbFault::LeftOut { stored, source }))
+            }
+        }
     }
 
     /// Adds one image in its own transaction. An image that the database already holds, recognised by its frame number in
     /// the recording, is compared: another picture, pose, time, camera or field is [`DbFault::Changed`].
     pub fn insert(&mut self, recording: &Recording, image: &NewImage<'_>) -> Result<Insertion, DbError> {
-        let path = self.path().to_path_buf();
-        let fail = |fault| DbError::new(&path, fault);
-        if !self.is_writer {
-            return Err(fail(DbFault::OpenedForReading));
-        }
-        insert::check(&path, recording, image)?;
-        let insert_now = |connection: &mut Connection| -> Result<Insertion, DbFault> {
-            let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
-            let shared = Shared::find_or_add(&transaction, recording)?;
-            let insertion = insert(&transaction, recording, &shared, image)?;
-            transaction.commit()?;
-            Ok(insertion)
-        };
-        let connection = self.connection.get_mut().unwrap_or_else(PoisonError::into_inner);
-        insert_now(connection).map_err(fail)
+        insert::check(self.path(), recording, image)?;
+        self.write(|transaction| {
+            let shared = Shared::find_or_add(transaction, recording)?;
+            Ok(insert(transaction, recording, &shared, image)?)
+        })
     }
 }
 
@@ -113,24 +114,23 @@ fn check_poses(sequence: &Sequence, poses: &[Option<PoseEstimate>]) -> Result<()
 
 /// Frames of a sequence with everything that they share.
 struct Frames<'a> {
-    path: &'a Path,
     sequence: &'a Sequence,
     poses: &'a [Option<PoseEstimate>],
     recording: Recording,
+    /// What is wrong with the pictures that are left out.
+    unusable: Vec<SequenceError>,
 }
 
 impl Frames<'_> {
     /// Adds frames from this one on while `goes_on` returns true after each, and returns the number of the next one.
     fn add_batch(
-        &self,
+        &mut self,
         transaction: &Transaction<'_>,
         first: usize,
         report: &mut IngestReport,
         goes_on: &mut dyn FnMut(usize) -> bool,
-    ) -> Result<usize, DbError> {
-        let fail = |fault| DbError::new(self.path, fault);
-        let shared =
-            Shared::find_or_add(transaction, &self.recording).map_err(|error| fail(DbFault::from(error)))?;
+    ) -> Result<usize, DbFault> {
+        let shared = Shared::find_or_add(transaction, &self.recording)?;
         let end = self.poses.len().min(first + BATCH_FRAMES);
         let mut held_bytes = 0;
         for index in first..end {
@@ -139,15 +139,14 @@ impl Frames<'_> {
             }
             match &self.poses[index] {
                 None => report.without_pose += 1,
-                Some(estimate) => {
-                    let bytes = self.sequence.image_bytes(index)?;
-                    held_bytes += bytes.len();
-                    let image = self.image(index, estimate, &bytes).map_err(fail)?;
-                    match insert(transaction, &self.recording, &shared, &image).map_err(fail)? {
-                        Insertion::Added => report.added += 1,
-                        Insertion::AlreadyThere => report.already_there += 1,
+                Some(estimate) => match self.sequence.image_bytes(index) {
+                    Ok(bytes) => {
+                        held_bytes += bytes.len();
+                        let image = self.image(index, estimate, &bytes)?;
+                        report.count(insert(transaction, &self.recording, &shared, &image)?);
                     }
-                }
+                    Err(error) => self.unusable.push(error),
+                },
             }
             if !goes_on(index + 1) {
                 return Ok(index + 1);

@@ -60,7 +60,7 @@ pub(crate) fn check(path: &Path, recording: &Recording, image: &NewImage<'_>) ->
     Ok(check_image(Path::new(image.file_name), image.bytes, recording.size)?)
 }
 
-/// Adds an image if it is not there yet, and compares it if it is.
+/// Adds an image if it is not there yet, and compares it if it is. A stored picture that cannot be decoded is replaced.
 pub(crate) fn insert(
     transaction: &Transaction<'_>,
     recording: &Recording,
@@ -76,11 +76,15 @@ pub(crate) fn insert(
         (stored.field_id != shared.field_id, "field"),
         (stored.timestamp_s != image.timestamp_s, "time"),
         (stored.file_name != image.file_name, "file name"),
-        (!stored.has_these_bytes, "picture"),
+        (!stored.has_these_bytes && stored.is_readable(transaction, recording.size)?, "picture"),
         (!is_same_pose(stored.pose, image.estimate.pose), "pose"),
     ];
     match differences.iter().find(|(differs, _)| *differs) {
-        None => Ok(Insertion::AlreadyThere),
+        None if stored.has_these_bytes => Ok(Insertion::AlreadyThere),
+        None => {
+            replace(transaction, shared, stored.id, image.bytes)?;
+            Ok(Insertion::Replaced)
+        }
         Some((_, what)) => {
             Err(DbFault::Changed { sequence: recording.name.clone(), frame_index: image.frame_index, what })
         }
@@ -119,13 +123,33 @@ fn add(transaction: &Transaction<'_>, shared: &Shared, image: &NewImage<'_>) -> 
         ],
     )?;
     let id = transaction.last_insert_rowid();
+    store_bytes(transaction, shared, id, image.bytes)
+}
+
+/// Puts other bytes in the place of a stored picture's.
+fn replace(transaction: &Transaction<'_>, shared: &Shared, id: i64, bytes: &[u8]) -> rusqlite::Result<()> {
     transaction
-        .execute("INSERT INTO image_bytes (image_id, bytes) VALUES (?1, ?2)", params![id, image.bytes])?;
-    Ok(())
+        .execute("UPDATE images SET byte_length = ?2 WHERE id = ?1", params![id, bytes.len() as i64])?;
+    store_bytes(transaction, shared, id, bytes)
+}
+
+/// Stores the bytes of a picture. The hall around its field was measured without it, and is forgotten.
+fn store_bytes(
+    transaction: &Transaction<'_>,
+    shared: &Shared,
+    id: i64,
+    bytes: &[u8],
+) -> rusqlite::Result<()> {
+    transaction.execute(
+        "INSERT OR REPLACE INTO image_bytes (image_id, bytes) VALUES (?1, ?2)",
+        params![id, bytes],
+    )?;
+    transaction.execute("DELETE FROM halls WHERE field_id = ?1", [shared.field_id]).map(drop)
 }
 
 /// Stored contents of an image.
 struct StoredImage {
+    id: i64,
     camera_id: i64,
     field_id: i64,
     timestamp_s: f64,
@@ -141,7 +165,7 @@ impl StoredImage {
         sequence_id: i64,
         image: &NewImage<'_>,
     ) -> rusqlite::Result<Option<Self>> {
-        let query = "SELECT camera_id, field_id, timestamp_s, file_name,
+        let query = "SELECT images.id, camera_id, field_id, timestamp_s, file_name,
                 x_m, y_m, yaw_rad, height_m, pitch_rad, roll_rad, bytes IS ?3
                 FROM images LEFT JOIN image_bytes ON image_bytes.image_id = images.id
                 WHERE sequence_id = ?1 AND frame_index = ?2";
@@ -151,12 +175,20 @@ impl StoredImage {
 
     fn from_row(row: &Row<'_>) -> rusqlite::Result<Self> {
         Ok(Self {
-            camera_id: row.get(0)?,
-            field_id: row.get(1)?,
-            timestamp_s: row.get(2)?,
-            file_name: row.get(3)?,
-            pose: pose_from_row(row, 4)?,
-            has_these_bytes: row.get(10)?,
+            id: row.get(0)?,
+            camera_id: row.get(1)?,
+            field_id: row.get(2)?,
+            timestamp_s: row.get(3)?,
+            file_name: row.get(4)?,
+            pose: pose_from_row(row, 5)?,
+            has_these_bytes: row.get(11)?,
         })
+    }
+
+    /// Returns whether the stored bytes are a picture of this size, pixels.
+    fn is_readable(&self, transaction: &Transaction<'_>, size: [u32; 2]) -> rusqlite::Result<bool> {
+        let query = "SELECT bytes FROM image_bytes WHERE image_id = ?1";
+        let bytes: Option<Vec<u8>> = transaction.query_row(query, [self.id], |row| row.get(0)).optional()?;
+        Ok(bytes.is_some_and(|bytes| check_image(Path::new(&self.file_name), &bytes, size).is_ok()))
     }
 }

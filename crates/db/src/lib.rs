@@ -2,7 +2,7 @@
 //!
 //! | type | purpose |
 //! |---|---|
-//! | [`Database`] | the file: [`Database::ingest`] adds recordings, [`Database::insert`] an image, other methods read |
+//! | [`Database`] | the file: [`Database::ingest`] adds recordings, [`Database::insert`] an image, [`Database::remove`] removes some, other methods read |
 //! | [`Recording`], [`NewImage`] | an image to be stored, and what it shares with others |
 //! | [`ImageRecord`] | an image without its pixels: pose, covariance, time, camera, field |
 //! | [`PoseEstimate`], [`PoseSource`] | a pose to be stored, and where poses come from |
@@ -49,7 +49,9 @@ mod insert;
 pub mod metric;
 mod record;
 mod recording;
+mod removal;
 mod schema;
+mod work_limit;
 
 pub use self::{
     database::Database,

@@ -111,6 +111,8 @@ impl NewImage<'_> {
 pub enum Insertion {
     /// The image was added.
     Added,
+    /// The database held the image with bytes that cannot be decoded, and now holds these.
+    Replaced,
     /// The database already held the image.
     AlreadyThere,
 }

@@ -69,6 +69,9 @@ const VERSION_1: &str = "
 /// Refuses a file that is not a complete database of this version. Changes nothing.
 pub(crate) fn check(connection: &Connection, path: &Path) -> Result<(), DbFault> {
     let transaction = connection.unchecked_transaction()?;
+    if is_empty(&transaction)? {
+        return Err(DbFault::NothingStored);
+    }
     if application_id(&transaction)? != APPLICATION_ID {
         return Err(DbFault::NotADatabase);
     }
@@ -78,12 +81,49 @@ pub(crate) fn check(connection: &Connection, path: &Path) -> Result<(), DbFault>
     if found < SCHEMA_VERSION {
         return Err(DbFault::Older { found, known: SCHEMA_VERSION });
     }
-    Ok(())
+    check_parts(&transaction)
+}
+
+/// Refuses a database in which a table is not as this program makes it, or that has views or triggers: a view in place of a
+/// table could run for ever, a trigger could change what is written. Tables and indices beside its own are of no interest.
+fn check_parts(connection: &Connection) -> Result<(), DbFault> {
+    let own = Connection::open_in_memory()?;
+    STEPS.iter().try_for_each(|step| own.execute_batch(step))?;
+    let (expected, mut found) = (parts(&own)?, parts(connection)?);
+    for part in &expected {
+        match found.iter().position(|other| other == part) {
+            Some(index) => drop(found.swap_remove(index)),
+            None => return Err(part.is_foreign()),
+        }
+    }
+    let harmful = found.iter().find(|part| part.kind == "view" || part.kind == "trigger");
+    harmful.map_or(Ok(()), |part| Err(part.is_foreign()))
+}
+
+/// Entry of the database's own list of its tables, indices, views and triggers.
+#[derive(PartialEq)]
+struct Part {
+    kind: String,
+    name: String,
+    sql: Option<String>,
+}
+
+impl Part {
+    fn is_foreign(&self) -> DbFault {
+        DbFault::ForeignSchema { kind: self.kind.clone(), name: self.name.clone() }
+    }
+}
+
+fn parts(connection: &Connection) -> rusqlite::Result<Vec<Part>> {
+    let mut statement = connection.prepare("SELECT type, name, sql FROM sqlite_schema")?;
+    let part = |row: &rusqlite::Row<'_>| Ok(Part { kind: row.get(0)?, name: row.get(1)?, sql: row.get(2)? });
+    statement.query_map([], part)?.collect()
 }
 
 /// Turns an empty file into a database, and migrates one of an older version.
 pub(crate) fn prepare(connection: &mut Connection, path: &Path) -> Result<(), DbFault> {
-    migrate(connection, path, &STEPS)
+    migrate(connection, path, &STEPS)?;
+    check_parts(connection)
 }
 
 /// Runs the steps that a database has not had yet, all or none of them.
@@ -206,8 +246,8 @@ mod tests {
 
     #[test]
     fn a_reader_says_that_an_older_version_has_to_be_opened_for_writing() {
-        let (_folder, path, mut connection) = database();
-        migrate(&mut connection, &path, &[]).unwrap();
+        let (_folder, path, connection) = database();
+        connection.pragma_update(None, "application_id", APPLICATION_ID).unwrap();
         assert!(matches!(check(&connection, &path), Err(DbFault::Older { found: 0, known: SCHEMA_VERSION })));
     }
 }

@@ -6,7 +6,7 @@ use image::RgbImage;
 use rayon::prelude::*;
 use reality_sim_core::{
     pose::{CameraPose, Motion2, Pose2, wrap_angle},
-    sequence::{Sequence, SequenceError, StampedPose, decode_image},
+    sequence::{Sequence, SequenceError, StampedPose},
     statistics::median,
 };
 use reality_sim_sensor::{Trajectory, TrajectoryError};
@@ -253,10 +253,7 @@ impl<'a> Recording<'a> {
 
     /// Reads a frame's picture; returns it with the bytes of its file.
     pub(crate) fn picture(&self, frame: &Frame) -> Result<(RgbImage, Vec<u8>), SequenceError> {
-        let bytes = self.sequence.image_bytes(frame.index_in_sequence)?;
-        let camera = &self.sequence.setup.camera;
-        let path = self.sequence.image_path(frame.index_in_sequence)?;
-        Ok((decode_image(&path, &bytes, [camera.width, camera.height])?, bytes))
+        self.sequence.load_image_and_file(frame.index_in_sequence)
     }
 }
 

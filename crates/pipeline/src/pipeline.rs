@@ -46,6 +46,9 @@ fn work(plan: &Plan, outbox: &Outbox) -> Result<(), Stop> {
         // Whether the file can be a database is checked before the filter works for an hour.
         drop(Database::create_or_open(path)?);
     }
+    if plan.database.is_some() {
+        plan.recordings.iter().try_for_each(|sequence| sequence.check_pictures())?;
+    }
     let mut finder = PoseFinder::new(plan, outbox);
     let mut poses = Vec::with_capacity(plan.recordings.len());
     for recording in 0..plan.recordings.len() {
@@ -61,15 +64,15 @@ fn work(plan: &Plan, outbox: &Outbox) -> Result<(), Stop> {
 
 fn store_all(plan: &Plan, path: &Path, poses: &[FoundPoses], outbox: &Outbox) -> Result<(), Stop> {
     let mut database = Database::create_or_open(path)?;
-    let mut is_new = false;
     for (recording, (sequence, poses)) in plan.recordings.iter().zip(poses).enumerate() {
-        is_new |= store(&mut database, recording, sequence, poses, outbox)?.added > 0;
+        store(&mut database, recording, sequence, poses, outbox)?;
     }
     let images = database.images()?.len();
     let mut hall = None;
-    if plan.measures_hall && (is_new || database.halls()?.is_empty()) {
+    let fields = if plan.measures_hall { database.fields_without_hall()? } else { Vec::new() };
+    for field_id in fields {
         outbox.send(Event::HallStarted)?;
-        hall = store_hall(path, &mut database)?;
+        hall = store_hall(path, &mut database, field_id)?.or(hall);
     }
     drop(database);
     outbox.send(Event::Completed { images, hall })

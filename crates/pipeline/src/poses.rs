@@ -51,6 +51,7 @@ impl<'a> PoseFinder<'a> {
         sequence: &Arc<Sequence>,
     ) -> Result<(Vec<Option<PoseEstimate>>, PoseSource), Stop> {
         let FilterPlan { config, smooths, keeps_unsure, program, .. } = &self.plan.filter;
+        sequence.check_pictures()?;
         let device = self.device()?;
         let builder = Localizer::builder(&sequence.setup.camera, &sequence.field).start(sequence.start);
         let localizer = builder.config(*config).backend(device.backend).build()?;

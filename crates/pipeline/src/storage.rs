@@ -35,10 +35,14 @@ pub(crate) fn store(
     Ok(report)
 }
 
-/// Measures and stores the hall around the field that most images show. `None` if the images do not show it.
-pub(crate) fn store_hall(path: &Path, database: &mut Database) -> Result<Option<Hall>, PipelineError> {
-    let archive = Archive::open(path, 0)?;
+/// Measures and stores the hall around a field. `None` if the images do not show it.
+pub(crate) fn store_hall(
+    path: &Path,
+    database: &mut Database,
+    field_id: i64,
+) -> Result<Option<Hall>, PipelineError> {
+    let archive = Archive::open_field(path, field_id, 0)?;
     let Some(hall) = measure_hall(&archive)? else { return Ok(None) };
-    database.set_hall(archive.images()[0].field_id, &hall)?;
+    database.set_hall(field_id, &hall)?;
     Ok(Some(hall))
 }

@@ -3,7 +3,11 @@
 use glam::{DVec2, Vec3};
 use image::RgbImage;
 use rayon::prelude::*;
-use reality_sim_core::{field::FieldDimensions, pose::CameraPose, sequence::CameraSetup};
+use reality_sim_core::{
+    field::FieldDimensions,
+    pose::{CameraPose, FARTHEST_M},
+    sequence::CameraSetup,
+};
 
 use crate::{
     Chain, Model, ModelError, SceneColors, Trajectory,
@@ -35,6 +39,11 @@ pub enum RenderError {
         /// Height as given, metres.
         height_m: f64,
     },
+    /// The camera is farther from the field's centre than [`FARTHEST_M`].
+    #[error(
+        "the camera's pose {0:?} is farther than {FARTHEST_M:.0} m from the field's centre: give one above the field"
+    )]
+    TooFar(CameraPose),
 }
 
 /// Draws the picture of one camera on one field at any pose. Make it once: it keeps every pixel's rays.
@@ -164,6 +173,9 @@ impl Renderer {
         }
         if pose.height_m <= 0.0 {
             return Err(RenderError::NotAboveGround { height_m: pose.height_m });
+        }
+        if !pose.is_possible() {
+            return Err(RenderError::TooFar(pose));
         }
         Ok(ProjectedScene::new(&self.scene, pose))
     }

@@ -150,3 +150,42 @@ fn effects_that_leave_no_camera_or_no_tone_curve_are_named() {
         assert_eq!(error.in_file(Path::new("m.toml")).path.as_deref(), Some(Path::new("m.toml")));
     }
 }
+
+/// What may stand in the place of a word or a number.
+const HOSTILE_WORDS: [&str; 12] = [
+    "nan",
+    "-inf",
+    "1e999",
+    "-1",
+    "99999999999999999999",
+    "\"",
+    "[",
+    "]",
+    "=",
+    "\n",
+    "\u{1b}[2J",
+    "\u{2028}",
+];
+
+proptest! {
+    #[test]
+    fn a_hostile_model_is_read_or_refused_on_one_line(
+        model in any_model(),
+        changes in proptest::collection::vec((any::<prop::sample::Index>(), 0..HOSTILE_WORDS.len(), any::<bool>()), 1..5),
+    ) {
+        let mut text = model.to_toml();
+        for (place, word, replaces) in changes {
+            let starts: Vec<usize> = text.char_indices().map(|(at, _)| at).collect();
+            let from = *place.get(&starts);
+            let rest = text[from..].find([' ', '\n']).unwrap_or(0);
+            text.replace_range(from..from + if replaces { rest } else { 0 }, HOSTILE_WORDS[word]);
+        }
+        match parsed(&text) {
+            Ok(model) => prop_assert_eq!(parsed(&model.to_toml()).unwrap(), model),
+            Err(error) => {
+                let message = error.to_string();
+                prop_assert!(!message.contains(char::is_control) && !message.is_empty(), "{:?}", message);
+            }
+        }
+    }
+}

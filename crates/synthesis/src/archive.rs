@@ -41,10 +41,24 @@ impl Archive {
     ///
     /// If a database holds recordings of several fields, only the images of the field that most images show are used.
     pub fn open(path: &Path, cache_bytes: usize) -> Result<Self, SynthesisError> {
-        let database = Database::open(path)?;
-        let mut images = database.images()?;
-        let empty = || SynthesisError::Empty { database: path.display().to_string() };
-        let field_id = most_common(images.iter().map(|image| image.field_id)).ok_or_else(empty)?;
+        let (database, images) = read(path)?;
+        let field_id = most_common(images.iter().map(|image| image.field_id)).ok_or_else(|| empty(path))?;
+        Self::of_field(database, images, field_id, cache_bytes)
+    }
+
+    /// Opens the part of a database that shows a field, as [`Archive::open`] does.
+    pub fn open_field(path: &Path, field_id: i64, cache_bytes: usize) -> Result<Self, SynthesisError> {
+        let (database, images) = read(path)?;
+        Self::of_field(database, images, field_id, cache_bytes)
+    }
+
+    fn of_field(
+        database: Database,
+        mut images: Vec<ImageRecord>,
+        field_id: i64,
+        cache_bytes: usize,
+    ) -> Result<Self, SynthesisError> {
+        let empty = || empty(database.path());
         images.retain(|image| image.field_id == field_id);
         let field = database.fields()?.remove(&field_id).ok_or_else(empty)?;
         let mut setups = database.cameras()?;
@@ -57,7 +71,7 @@ impl Archive {
         let corrected_by = database.models()?.remove(&camera_id);
         let poses: Vec<CameraPose> = images.iter().map(|image| image.pose).collect();
         let metric = PixelMetric::new(&setup.camera, usual_pose(&poses), &field)
-            .ok_or_else(|| SynthesisError::BlindCamera { database: path.display().to_string() })?;
+            .ok_or_else(|| SynthesisError::BlindCamera { database: database.path().display().to_string() })?;
         let hall = database.halls()?.remove(&field_id).unwrap_or_else(|| Hall::usual(&field));
         let proxy = ProxyGeometry::new(&hall, &field);
         let proxy = poses.iter().fold(proxy, |proxy, pose| proxy.holding(*pose));
@@ -182,6 +196,17 @@ impl Archive {
             gain: [1.0; 3],
         }
     }
+}
+
+/// Opens a database, and reads the records of its images.
+fn read(path: &Path) -> Result<(Database, Vec<ImageRecord>), SynthesisError> {
+    let database = Database::open(path)?;
+    let images = database.images()?;
+    Ok((database, images))
+}
+
+fn empty(path: &Path) -> SynthesisError {
+    SynthesisError::Empty { database: path.display().to_string() }
 }
 
 fn most_common(ids: impl Iterator<Item = i64>) -> Option<i64> {

@@ -1,7 +1,5 @@
 //! `gap --inject`: a control on the user's own recording.
 
-use std::path::Path;
-
 use anyhow::Context;
 use reality_sim::{
     gap::{
@@ -14,7 +12,7 @@ use reality_sim::{
 use serde::Serialize;
 
 use super::GapArgs;
-use crate::commands::output::aligned;
+use crate::commands::{output::aligned, output_folder::OutputFolder};
 
 /// Multiples of the detection limit at which an effect is hidden, until it is named.
 const MULTIPLES: [f64; 3] = [1.0, 2.0, 4.0];
@@ -77,7 +75,12 @@ impl Controls<'_> {
         let known = effect(id).with_context(|| format!("there is no effect {id}"))?;
         let changed = inject(self.recording, known, size)?;
         let poses: Vec<_> = changed.sequence.reference_poses().collect();
-        let recording = Recording::new(&changed.sequence, &poses, self.source, self.args.frames.clone())?;
+        let recording = Recording::new(
+            &changed.sequence,
+            &poses,
+            self.source,
+            self.args.frames_among(changed.sequence.frames.len()),
+        )?;
         use_recording(&recording, hidden(known, size))
     }
 
@@ -158,8 +161,8 @@ pub struct Row {
 }
 
 /// Writes the controls beside the report.
-pub fn write(folder: &Path, rows: &[Row]) -> anyhow::Result<()> {
-    write_atomically(&folder.join("controls.json"), serde_json::to_string_pretty(rows)?.as_bytes())?;
+pub fn write(folder: &OutputFolder, rows: &[Row]) -> anyhow::Result<()> {
+    write_atomically(&folder.file("controls.json")?, serde_json::to_string_pretty(rows)?.as_bytes())?;
     Ok(())
 }
 

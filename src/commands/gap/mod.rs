@@ -8,12 +8,9 @@ mod options;
 mod poses;
 mod text;
 
-use std::fs;
-
-use anyhow::{Context, bail};
+use anyhow::bail;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
-use std::io::{self, IsTerminal};
 
 use reality_sim::{
     Sequence,
@@ -27,7 +24,10 @@ use self::corrected_files::corrected_files;
 use self::earlier::{Earlier, SinceReport};
 use self::inject::{ControlReport, Controls};
 pub use self::options::GapArgs;
-use super::output::{create_output_folder, print, print_json};
+use super::{
+    output::{print, print_json, shows_progress},
+    output_folder::OutputFolder,
+};
 
 /// Runs the command.
 pub fn run(args: &GapArgs) -> anyhow::Result<()> {
@@ -42,7 +42,7 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
     let earlier = args.reference.as_deref().map(Sequence::open).transpose()?;
     let of_earlier = earlier.as_ref().map_or_else(Vec::new, |earlier| earlier.files.clone());
     let inputs = [sequence.files.clone(), of_earlier, Vec::from_iter(pictures)].concat();
-    create_output_folder(&args.out, &inputs)?;
+    let out = &OutputFolder::check(&args.out, &inputs)?;
     let poses = poses::reference(args, &sequence)?;
     let progress = stages()?;
     progress.set_message("reading the pictures");
@@ -52,8 +52,9 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
         given.clone_from(&earlier.model);
         sequence.setup.photometry = Some(earlier.photometry);
     }
-    let recording = Recording::new(&sequence, &poses.poses, poses.source, args.frames.clone())?;
-    let run = Run { args, given: &given, options: &options, progress: &progress };
+    let recording =
+        Recording::new(&sequence, &poses.poses, poses.source, args.frames_among(sequence.frames.len()))?;
+    let run = Run { args, out, given: &given, options: &options, progress: &progress };
     let controls = Controls { recording: &recording, source: poses.source, args, options: &options };
     if let Some(Control::One(id, size)) = &args.inject {
         return controls.with_hidden(id, *size, |recording, hidden| run.control(recording, &hidden));
@@ -61,10 +62,10 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
     let analysis = run.analysed(&recording)?;
     let since = earlier.as_ref().map(|earlier| &earlier.told);
     let report = SinceReport { report: &analysis.report, reference: since };
-    write(args, &recording, &given, (&analysis, &report))?;
+    write((args, out), &recording, &given, (&analysis, &report))?;
     if args.inject.is_some() {
         let rows = controls.all(&analysis.report, |recording| run.analysed(recording))?;
-        inject::write(&args.out, &rows)?;
+        inject::write(out, &rows)?;
         return if args.json { print_json(&rows) } else { print(&inject::table(&rows)) };
     }
     if args.json {
@@ -77,6 +78,7 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
 /// What one run needs, for several recordings.
 struct Run<'a> {
     args: &'a GapArgs,
+    out: &'a OutputFolder,
     given: &'a Model,
     options: &'a Options,
     progress: &'a ProgressBar,
@@ -94,7 +96,7 @@ impl Run<'_> {
     fn control(&self, recording: &Recording<'_>, hidden: &inject::Hidden) -> anyhow::Result<()> {
         let analysis = self.analysed(recording)?;
         let control = ControlReport::new(&analysis.report, hidden);
-        write(self.args, recording, self.given, (&analysis, &control))?;
+        write((self.args, self.out), recording, self.given, (&analysis, &control))?;
         if self.args.json {
             return print_json(&control);
         }
@@ -113,33 +115,30 @@ fn refuse_held(args: &GapArgs, given: &Model) -> anyhow::Result<()> {
 /// Writes the report's files. `report.json`, by which other commands recognise the folder, comes last; `report` is what goes into
 /// it.
 fn write(
-    args: &GapArgs,
+    (args, out): (&GapArgs, &OutputFolder),
     recording: &Recording<'_>,
     given: &Model,
     (analysis, report): (&Analysis, &impl Serialize),
 ) -> anyhow::Result<()> {
-    let folder = &args.out;
     let pictures = &Pictures::new(recording, given, analysis)?;
     let corrected = corrected_files(args, recording.sequence(), analysis)?;
-    let shown = folder.join("pictures");
-    fs::create_dir_all(&shown).with_context(|| format!("{}: cannot be created", shown.display()))?;
     for (name, picture) in
         [("measured", &pictures.measured), ("before", &pictures.before), ("after", &pictures.after)]
     {
-        save_image(&shown.join(format!("{name}.png")), picture)?;
+        save_image(&out.file(format!("pictures/{name}.png"))?, picture)?;
     }
     let json = serde_json::to_string_pretty(report)?;
     let page = html::page(&analysis.report, pictures);
     let files = [("model.toml", analysis.model.to_toml()), ("report.html", page), ("report.json", json)];
     for (name, text) in corrected.into_iter().chain(files) {
-        write_atomically(&folder.join(name), text.as_bytes())?;
+        write_atomically(&out.file(name)?, text.as_bytes())?;
     }
     Ok(())
 }
 
 /// Returns a progress display; it is visible on a terminal only.
 fn stages() -> anyhow::Result<ProgressBar> {
-    if !io::stderr().is_terminal() {
+    if !shows_progress() {
         return Ok(ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()));
     }
     let spinner =

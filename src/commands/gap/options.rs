@@ -5,7 +5,7 @@ use std::{ops::Range, path::PathBuf};
 use clap::Args;
 
 use super::control::{Control, effect_id};
-use crate::commands::device::BackendArgs;
+use crate::commands::{device::BackendArgs, frame_range::FrameRange};
 
 /// Options of `gap`.
 #[derive(Debug, Args)]
@@ -19,8 +19,8 @@ pub struct GapArgs {
     #[arg(long, value_name = "FOLDER")]
     pub out: PathBuf,
     /// Use only frames A to B − 1, counted from 0
-    #[arg(long, value_name = "A..B", value_parser = frames)]
-    pub frames: Option<Range<usize>>,
+    #[arg(long, value_name = "A..B", value_parser = FrameRange::parse)]
+    pub frames: Option<FrameRange>,
     /// Seed; modulo 4, it chooses which quarter of the frames is held out
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
@@ -48,29 +48,13 @@ pub struct GapArgs {
 }
 
 impl GapArgs {
+    /// Returns the range of frames that is asked for among this many; none for all of them.
+    pub fn frames_among(&self, count: usize) -> Option<Range<usize>> {
+        self.frames.map(|range| range.among(count))
+    }
+
     /// Refuses options that contradict each other.
     pub fn check_usage(&self) -> Result<(), String> {
         self.backend.check_usage()
-    }
-}
-
-fn frames(text: &str) -> Result<Range<usize>, String> {
-    let range = text
-        .split_once("..")
-        .and_then(|(from, to)| Some(from.trim().parse::<usize>().ok()?..to.trim().parse::<usize>().ok()?));
-    let range = range.filter(|range| !range.is_empty());
-    range.ok_or_else(|| "give two numbers, the smaller one first, such as 0..60".to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn frames_are_a_range_that_is_not_empty() {
-        assert_eq!(frames("3..20"), Ok(3..20));
-        for text in ["", "3", "3..", "..4", "5..5", "6..5", "-1..4", "a..b", "1...4"] {
-            assert!(frames(text).is_err(), "{text}");
-        }
     }
 }

@@ -26,6 +26,7 @@ use self::{
 use super::{
     model_file::{ModelArgs, Use},
     output::{frame_progress, print, print_json},
+    output_folder::OutputFolder,
 };
 
 /// Number of pictures of a path in its strip.
@@ -36,7 +37,7 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
     let model = ModelArgs { model: args.model.clone() }.read()?;
     let archive = args.synthesis.archive(&args.database, model.as_ref())?;
     let poses = args.poses(&archive)?;
-    args.check_outputs()?;
+    let folder = args.check_outputs()?;
     let mut setup = archive.setup().clone();
     if let Some(file) = &args.camera {
         let other = read_camera(file)?;
@@ -50,9 +51,9 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
         }
         (_, method) => Painter::new(method, &synthesizer, &setup),
     };
-    let mut report = match &args.path {
-        Some(path) => along_path(args, path, &painter, &poses)?,
-        None => at_pose(args, &painter, &archive, poses[0])?,
+    let mut report = match (&args.path, &folder) {
+        (Some(path), Some(folder)) => along_path(args, (path, folder), &painter, &poses)?,
+        _ => at_pose(args, &painter, &archive, poses[0])?,
     };
     let purpose = match args.method {
         PictureMethod::Simulated => Use::Simulation,
@@ -104,7 +105,7 @@ fn at_pose(
 
 fn along_path(
     args: &RenderArgs,
-    path: &Path,
+    (path, folder): (&Path, &OutputFolder),
     painter: &Painter,
     poses: &[StampedPose],
 ) -> anyhow::Result<Report> {
@@ -116,7 +117,7 @@ fn along_path(
         let painted = painter.paint(pose).inspect_err(|_| progress.finish_and_clear());
         let Painted { work, milliseconds } =
             painted.with_context(|| format!("{}, pose {}", path.display(), index + 1))?;
-        save_image(&args.out.join(format!("{index:06}.png")), work.picture())?;
+        save_image(&folder.file(format!("{index:06}.png"))?, work.picture())?;
         times.push(milliseconds);
         covered.extend(work.covered());
         if is_in_strip(index, poses.len()) {

@@ -12,7 +12,8 @@ use reality_sim::{
 
 use crate::commands::{
     choice::{described, one_of},
-    output::{check_distinct, check_output_picture, create_output_folder},
+    output::{check_distinct, check_output_picture},
+    output_folder::OutputFolder,
     picture_at::SynthesisArgs,
 };
 
@@ -158,8 +159,9 @@ impl RenderArgs {
         }
     }
 
-    /// Checks the outputs first: nobody should wait for a thousand pictures and learn then that one cannot be written.
-    pub fn check_outputs(&self) -> anyhow::Result<()> {
+    /// Checks the outputs first: nobody should wait for a thousand pictures and learn then that one cannot be written. Returns
+    /// the folder of a path's pictures.
+    pub fn check_outputs(&self) -> anyhow::Result<Option<OutputFolder>> {
         let inputs: Vec<PathBuf> =
             [Some(&self.database), self.path.as_ref(), self.camera.as_ref(), self.model.as_ref()]
                 .into_iter()
@@ -171,16 +173,16 @@ impl RenderArgs {
         beside.clone().try_for_each(|output| check_output_picture(output, &inputs))?;
         match self.path {
             Some(_) => {
-                create_output_folder(&self.out, &inputs)?;
-                let inside = self.strip.as_ref().filter(|strip| strip.parent() == Some(&self.out));
-                inside.map_or(Ok(()), |strip| {
+                let folder = OutputFolder::check(&self.out, &inputs)?;
+                if let Some(strip) = self.strip.as_ref().filter(|strip| strip.parent() == Some(&self.out)) {
                     bail!(
                         "{}: lies in the folder of the path's pictures: give another folder",
                         strip.display()
-                    )
-                })
+                    );
+                }
+                Ok(Some(folder))
             }
-            None => check_output_picture(&self.out, &inputs),
+            None => check_output_picture(&self.out, &inputs).map(|()| None),
         }
     }
 }

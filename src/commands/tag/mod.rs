@@ -5,7 +5,7 @@ mod report;
 
 use std::path::PathBuf;
 
-use anyhow::bail;
+use anyhow::{Context, bail};
 use image::RgbImage;
 use indicatif::ProgressBar;
 
@@ -15,7 +15,7 @@ use reality_sim::{
     localization::Picture,
     overlay::{BorderOutline, Overlay},
     refine::SmoothedPose,
-    sequence::{save_image, write_atomically},
+    sequence::{counted, save_image, write_atomically},
     write_tum,
 };
 
@@ -23,24 +23,32 @@ pub use self::options::TagArgs;
 use self::report::{PoseResult, Report, details_csv};
 use super::{
     model_file::Use,
-    output::{check_distinct, check_output_file, create_output_folder, frame_progress, print, print_json},
+    output::{check_distinct, check_output_file, frame_progress, print, print_json},
+    output_folder::OutputFolder,
 };
 
 /// Runs the command.
 pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     let model = args.model.read()?;
-    let sequence = args.open_sequence(model.as_ref())?;
-    check_outputs(args, &sequence)?;
+    let mut sequence = args.open_sequence(model.as_ref())?;
+    let overlays = check_outputs(args, &sequence)?;
+    sequence.check_pictures()?;
 
     let config = args.config();
     let device = args.device()?;
-    let Sequence { setup, field, start, .. } = &sequence;
-    let builder = Localizer::builder(&setup.camera, field).config(config).start(*start);
-    let mut localizer = builder.backend(device.backend.clone()).build()?;
-    let progress = frame_progress(sequence.frames.len())?;
-    let frames = localize(args, &sequence, &mut localizer, &progress);
+    let builder = Localizer::builder(&sequence.setup.camera, &sequence.field);
+    let builder = builder.config(config).start(sequence.start).backend(device.backend.clone());
+    let mut localizer = builder.build()?;
+    let wanted = sequence.frames.len();
+    let progress = frame_progress(wanted)?;
+    let mut frames = Vec::with_capacity(wanted);
+    let localized = localize(args, &sequence, &mut localizer, (&progress, overlays.as_ref()), &mut frames);
     progress.finish_and_clear();
-    let frames = frames?;
+    // What was found before a picture failed is written all the same.
+    sequence.frames.truncate(frames.len());
+    if frames.is_empty() {
+        return localized;
+    }
 
     let results = if args.smooth { smoothed(&sequence, &localizer, &frames)? } else { filtered(&frames) };
     let poses: Vec<CameraPose> = results.iter().map(|result| result.pose).collect();
@@ -54,21 +62,31 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
             .collect();
         write_tum(out, &stamped)?;
     }
-    let corrections = model.map(|model| model.words(setup, field, Use::Recording));
+    localized.with_context(|| match args.out.as_ref().or(args.details.as_ref()) {
+        Some(file) => format!(
+            "{}: holds the first {} of {}",
+            file.display(),
+            frames.len(),
+            counted(wanted, "frame")
+        ),
+        None => format!("frame {}", frames.len()),
+    })?;
+    let corrections = model.map(|model| model.words(&sequence.setup, &sequence.field, Use::Recording));
     let report =
         Report::new(args, &sequence, &config, &device, &frames, &poses).with_corrections(corrections);
     if args.json { print_json(&report) } else { print(&report.text(&sequence.name)) }
 }
 
-/// Localizes every picture, and draws it if that is requested.
+/// Localizes every picture, and draws it if that is requested. After an error `frames` holds those before it.
 fn localize(
     args: &TagArgs,
     sequence: &Sequence,
     localizer: &mut Localizer,
-    progress: &ProgressBar,
-) -> anyhow::Result<Vec<LocalizedFrame>> {
+    (progress, overlays): (&ProgressBar, Option<&OutputFolder>),
+    frames: &mut Vec<LocalizedFrame>,
+) -> anyhow::Result<()> {
     let first = args.frames.map_or(0, |range| range.first);
-    let (mut frames, mut path) = (Vec::with_capacity(sequence.frames.len()), Vec::new());
+    let mut path = Vec::new();
     let mut run = localizer.run(sequence);
     while let Some(frame) = run.next() {
         let (frame, index) = (frame?, frames.len());
@@ -77,15 +95,15 @@ fn localize(
             let error_cm = 100.0 * PoseError::new(frame.pose, truth).distance_m;
             progress.set_message(format!("{error_cm:.1} cm off"));
         }
-        if let (Some(folder), Some(observation)) = (&args.overlay, run.observation()) {
+        if let (Some(folder), Some(observation)) = (overlays, run.observation()) {
             path.push(frame.pose);
-            let file = folder.join(format!("{:06}.jpg", first + index));
+            let file = folder.file(format!("{:06}.jpg", first + index))?;
             let truth = sequence.frames[index].reference_pose;
             save_image(&file, &draw(sequence, observation, &frame, truth, run.localizer(), &path)?)?;
         }
         frames.push(frame);
     }
-    Ok(frames)
+    Ok(())
 }
 
 /// Returns the filter's pose of every picture, from this and earlier pictures only.
@@ -116,12 +134,12 @@ fn smoothed(
 }
 
 /// Checks the outputs first: nobody should wait for an hour and learn then that the result cannot be written.
-fn check_outputs(args: &TagArgs, sequence: &Sequence) -> anyhow::Result<()> {
+fn check_outputs(args: &TagArgs, sequence: &Sequence) -> anyhow::Result<Option<OutputFolder>> {
     let inputs = args.inputs(sequence);
     let files: Vec<&PathBuf> = [&args.out, &args.details].into_iter().flatten().collect();
     files.iter().try_for_each(|file| check_output_file(file, &inputs))?;
     check_distinct(&files)?;
-    args.overlay.as_ref().map_or(Ok(()), |folder| create_output_folder(folder, &inputs))
+    args.overlay.as_ref().map(|folder| OutputFolder::check(folder, &inputs)).transpose()
 }
 
 fn draw(

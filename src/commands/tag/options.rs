@@ -12,12 +12,14 @@ use reality_sim::{
     FieldDimensions, LocalizerConfig, ObservationKind, Pose2, Sequence,
     field::preset_names,
     filter::{Estimator, KldConfig, Resampling},
-    sequence::read_field,
+    pose::FARTHEST_M,
+    sequence::{counted, read_field},
 };
 
 use crate::commands::{
     choice::{described, one_of},
     device::{BackendArgs, Device},
+    frame_range::FrameRange,
     model_file::{ModelArgs, ModelFile},
 };
 
@@ -95,34 +97,23 @@ pub struct TagArgs {
     #[arg(long, value_name = "FOLDER")]
     pub overlay: Option<PathBuf>,
     /// Process only frames A to B − 1, counted from 0; the start pose is then dead-reckoned by odometry
-    #[arg(long, value_name = "A..B", value_parser = frame_range)]
+    #[arg(long, value_name = "A..B", value_parser = FrameRange::parse)]
     pub frames: Option<FrameRange>,
     /// Print the report as one JSON object
     #[arg(long)]
     pub json: bool,
 }
 
-/// Half-open range of frames; a missing bound leaves that side open.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct FrameRange {
-    pub first: usize,
-    end: Option<usize>,
-}
-
-fn frame_range(text: &str) -> Result<FrameRange, String> {
-    let form = || "give A..B, A.. or ..B with A below B, counted from 0".to_owned();
-    let (first, end) = text.split_once("..").ok_or_else(form)?;
-    let number =
-        |text: &str| if text.is_empty() { Ok(None) } else { text.parse().map(Some).map_err(|_| form()) };
-    let (first, end) = (number(first)?.unwrap_or(0), number(end)?);
-    if end.is_some_and(|end| end <= first) { Err(form()) } else { Ok(FrameRange { first, end }) }
-}
-
 fn start_pose(text: &str) -> Result<Pose2, String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
     match numbers.as_deref() {
         Ok(&[x_m, y_m, yaw_rad]) if x_m.is_finite() && y_m.is_finite() && yaw_rad.is_finite() => {
-            Ok(Pose2::new(x_m, y_m, yaw_rad))
+            let start = Pose2::new(x_m, y_m, yaw_rad);
+            if x_m.hypot(y_m) <= FARTHEST_M {
+                Ok(start)
+            } else {
+                Err(format!("give a place within {FARTHEST_M:.0} m of the field's centre"))
+            }
         }
         _ => Err("give three finite numbers: metres, metres, radians".to_owned()),
     }
@@ -209,13 +200,12 @@ impl TagArgs {
 
     fn range(&self, sequence: &Sequence) -> anyhow::Result<Range<usize>> {
         let count = sequence.frames.len();
-        let Some(FrameRange { first, end }) = self.frames else { return Ok(0..count) };
-        let end = end.unwrap_or(count);
-        if first >= end || end > count {
+        let range = self.frames.map_or(0..count, |range| range.among(count));
+        if range.is_empty() || range.end > count {
             let folder = sequence.folder.display();
-            bail!("{folder}: has {count} frames: give --frames within 0..{count}");
+            bail!("{folder}: has {}: give --frames within 0..{count}", counted(count, "frame"));
         }
-        Ok(first..end)
+        Ok(range)
     }
 
     /// Returns the pose of a frame by dead reckoning from the sequence's start; `None` if start or odometry is missing.
@@ -258,17 +248,6 @@ fn field_by_name(name: &Path) -> anyhow::Result<FieldDimensions> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn ranges_are_half_open_and_may_be_open() {
-        let range = |first, end| Ok(FrameRange { first, end });
-        assert_eq!(frame_range("3..8"), range(3, Some(8)));
-        assert_eq!(frame_range("3.."), range(3, None));
-        assert_eq!(frame_range("..8"), range(0, Some(8)));
-        for wrong in ["", "5", "8..3", "3..3", "-1..4", "a..b", "1..2..3"] {
-            assert!(frame_range(wrong).is_err(), "{wrong}");
-        }
-    }
 
     #[test]
     fn a_start_is_three_finite_numbers() {

@@ -8,6 +8,7 @@ use reality_sim::{
     CameraPose, LocalizedFrame, LocalizerConfig, ObservationKind, Sequence,
     evaluation::{ErrorStatistics, PoseError, percentile},
     filter::{Estimator, Resampling},
+    sequence::counted,
 };
 
 use super::options::TagArgs;
@@ -149,14 +150,19 @@ impl Report {
     /// Formats the report for people.
     pub fn text(&self, name: &str) -> String {
         let mut lines = vec![
-            ("sequence", format!("{name}, {} frames", self.frames)),
+            ("sequence", format!("{name}, {}", counted(self.frames, "frame"))),
             (
                 "model",
-                format!("{}, {} particles, {} iterations", self.observation, self.particles, self.iterations),
+                format!(
+                    "{}, {}, {}",
+                    self.observation,
+                    counted(self.particles, "particle"),
+                    counted(self.iterations as usize, "iteration")
+                ),
             ),
             ("backend", self.backend_text()),
             ("time", format!("{:.1} ms a frame (median)", 1e3 * self.seconds_per_frame)),
-            ("sure", format!("{} frames; {} searched", self.sure_frames, self.searched_frames)),
+            ("sure", format!("{}; {} searched", counted(self.sure_frames, "frame"), self.searched_frames)),
         ];
         lines.extend(self.corrections.iter().map(|corrections| ("camera", corrections.clone())));
         if let Some(error) = &self.error {
@@ -164,7 +170,7 @@ impl Report {
             let [mean, median, p95, max] = [error.mean_m, error.median_m, error.p95_m, error.max_m].map(cm);
             lines.push(("error", format!("mean {mean}, median {median}, 95 % below {p95}, largest {max}")));
             let yaw = error.mean_yaw_rad.to_degrees();
-            lines.push(("", format!("yaw {yaw:.2}° in the mean; {} frames lost", error.lost_frames)));
+            lines.push(("", format!("yaw {yaw:.2}° in the mean; {} lost", counted(error.lost_frames, "frame"))));
         }
         for (name, path) in [("poses", &self.out), ("details", &self.details), ("overlay", &self.overlay)] {
             lines.extend(path.iter().map(|path| (name, path.clone())));

@@ -1,11 +1,12 @@
 //! `camera.toml`: the lens, the camera's mounting height, and how it turns light into pixel values.
 
-use std::path::Path;
+use std::{ops::RangeInclusive, path::Path};
 
 use serde::{Deserialize, Serialize};
 
 use super::{
     error::{Fault, SequenceError, excerpt},
+    limits::MAX_TOML_BYTES,
     mounting::Mounting,
     text::read_and_parse,
     toml_text::{NumberCheck, line_of_key, parse, print},
@@ -14,6 +15,9 @@ use crate::camera::{Camera, Distortion, ImageCircle, InvalidCamera, Opencv, Open
 
 /// Maximum mounting height, metres; anything higher is a mistake in the file.
 const MAX_HEIGHT_M: f64 = 100.0;
+
+/// Gammas that a camera may have: those of cameras and displays lie between 1 and 2.8.
+const GAMMAS: RangeInclusive<f64> = 0.1..=10.0;
 
 /// Camera as mounted on the robot.
 #[derive(Debug, Clone, PartialEq)]
@@ -135,13 +139,13 @@ struct CircleTable {
 
 /// Reads and validates a camera file. Fails if it cannot be read, or with the first value that is missing or invalid.
 pub fn read_camera(path: &Path) -> Result<CameraSetup, SequenceError> {
-    read_and_parse(path, CameraSetup::from_toml)
+    read_and_parse(path, MAX_TOML_BYTES, CameraSetup::from_toml)
 }
 
 /// Reads where the camera is against what the recording's other files state, `[mount.correction]`, from a camera file. Fails
 /// as [`read_camera`] does.
 pub fn read_mounting(path: &Path) -> Result<Mounting, SequenceError> {
-    read_and_parse(path, |path, text| {
+    read_and_parse(path, MAX_TOML_BYTES, |path, text| {
         let table: CameraTable = parse(path, text)?;
         table.mount.correction.check(path, text)?;
         Ok(table.mount.correction)
@@ -247,9 +251,8 @@ fn build_distortion(table: &CameraTable) -> Result<Distortion, Fault> {
 
 /// Returns the key in whose line the fault is shown.
 fn faulty_key(table: &CameraTable, error: &InvalidCamera) -> &'static str {
-    let fits = |size| (1..=32768).contains(&size);
     match error {
-        InvalidCamera::Size { width, .. } if fits(*width) => "height",
+        InvalidCamera::Size { width, height } if *width != 0 && (*height == 0 || width < height) => "height",
         InvalidCamera::Size { .. } => "width",
         InvalidCamera::FocalLength { fx, .. } if *fx > 0.0 => "fy",
         InvalidCamera::FocalLength { .. } => "fx",
@@ -269,7 +272,7 @@ fn checked_circle(path: &Path, text: &str, circle: &CircleTable) -> Result<Image
 
 fn check_photometry(path: &Path, text: &str, photometry: &Photometry) -> Result<(), SequenceError> {
     let numbers = NumberCheck { path, text, table: "photometry" };
-    numbers.check("gamma", photometry.gamma, |gamma| gamma > 0.0, "above 0")?;
+    numbers.check("gamma", photometry.gamma, |gamma| GAMMAS.contains(&gamma), "from 0.1 to 10")?;
     for (key, colour) in
         [("line_linear_rgb", photometry.line_linear_rgb), ("carpet_linear_rgb", photometry.carpet_linear_rgb)]
     {

@@ -8,6 +8,9 @@ use crate::{camera::InvalidCamera, field::InvalidField};
 /// Maximum length of an excerpt of a file in a message, characters.
 const EXCERPT_LENGTH: usize = 60;
 
+/// Maximum number of names in a message.
+const NAMES: usize = 5;
+
 /// Reason why a file or folder of a recording cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[error("{}{}: {fault}", Printable(.path), LineSuffix(*.line))]
@@ -74,7 +77,7 @@ pub enum Fault {
         key: String,
     },
     /// A value is out of its range.
-    #[error("`{key}` is {value}: it must be {rule}")]
+    #[error("`{key}` is {}: it must be {rule}", Number(*.value))]
     BadValue {
         /// Name of the key or column.
         key: &'static str,
@@ -82,6 +85,14 @@ pub enum Fault {
         value: f64,
         /// Rule that the value has to fulfil.
         rule: &'static str,
+    },
+    /// A name contains control characters.
+    #[error("`{key}` is {name}: a name has no line breaks or other control characters, choose another")]
+    BadName {
+        /// Name of the key or column.
+        key: &'static str,
+        /// Given name, quoted.
+        name: String,
     },
     /// The camera model is unknown.
     #[error("the camera model {model} is not known: use OPENCV_FISHEYE, OPENCV or PINHOLE")]
@@ -192,6 +203,30 @@ pub enum Fault {
         /// Number of frames.
         count: usize,
     },
+    /// Pictures that the table of frames names are not there.
+    #[error(
+        "{count} of its {frames} pictures are missing (no such file: {}): put them there, or remove their lines from the table of frames",
+        Printable(.first)
+    )]
+    PicturesMissing {
+        /// First missing picture, relative to the sequence's folder.
+        first: PathBuf,
+        /// Number of missing pictures.
+        count: usize,
+        /// Number of frames.
+        frames: usize,
+    },
+    /// Several pictures are missing or damaged.
+    #[error("{} of its {frames} pictures cannot be used ({}), the first because {first}", .names.len(), Names(.names))]
+    PicturesUnusable {
+        /// Pictures, relative to the sequence's folder.
+        names: Vec<PathBuf>,
+        /// What is wrong with the first one.
+        #[source]
+        first: Box<Fault>,
+        /// Number of frames.
+        frames: usize,
+    },
     /// The picture is neither JPEG nor PNG.
     #[error("is neither a JPEG nor a PNG picture: convert it to one of them")]
     ImageFormat,
@@ -201,6 +236,19 @@ pub enum Fault {
     /// The picture is damaged.
     #[error("the picture cannot be decoded ({0}): copy or record it again")]
     ImageDamaged(#[source] FormatError),
+    /// The bytes of a JPEG do not end with its pixels, as where a part was lost or overwritten.
+    #[error(
+        "the picture is damaged ({unread_bytes} of its bytes belong to no pixel): copy or record it again"
+    )]
+    ImageNotWhole {
+        /// Number of bytes behind the pixels.
+        unread_bytes: usize,
+    },
+    /// The picture's EXIF data say that it is to be turned or mirrored before it is looked at.
+    #[error(
+        "the picture's EXIF orientation turns or mirrors it: store its pixels the way the camera of camera.toml sees them, without that entry"
+    )]
+    ImageTurned,
     /// The picture does not have the camera's size.
     #[error(
         "the picture has {found_width} x {found_height} pixels and the camera {width} x {height}: correct camera.toml, or use the camera's own pictures"
@@ -234,6 +282,29 @@ pub(super) fn excerpt(text: &str) -> String {
     match text.char_indices().nth(EXCERPT_LENGTH) {
         Some((end, _)) => format!("{:?}…", &text[..end]),
         None => format!("{text:?}"),
+    }
+}
+
+/// First names of a list, and how many more there are.
+struct Names<'a>(&'a [PathBuf]);
+
+impl fmt::Display for Names<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names: Vec<String> =
+            self.0.iter().take(NAMES).map(|name| Printable(name).to_string()).collect();
+        let more = self.0.len() - names.len();
+        let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
+        write!(formatter, "{}{rest}", names.join(", "))
+    }
+}
+
+/// Number of a file; with a power of ten if it would fill a line otherwise.
+struct Number(f64);
+
+impl fmt::Display for Number {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(value) = self;
+        if value.abs() < 1e12 { write!(formatter, "{value}") } else { write!(formatter, "{value:e}") }
     }
 }
 

@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use super::{
-    error::{Fault, SequenceError},
+    error::{Fault, SequenceError, excerpt},
+    limits::MAX_TOML_BYTES,
+    printable::is_printable,
     text::read_and_parse,
     toml_text::{line_of_key, parse, print},
 };
@@ -11,7 +13,7 @@ use crate::field::FieldDimensions;
 
 /// Reads and validates a field file. Fails if it cannot be read, or with the first value that is missing or invalid.
 pub fn read_field(path: &Path) -> Result<FieldDimensions, SequenceError> {
-    read_and_parse(path, FieldDimensions::from_toml)
+    read_and_parse(path, MAX_TOML_BYTES, FieldDimensions::from_toml)
 }
 
 impl FieldDimensions {
@@ -22,6 +24,10 @@ impl FieldDimensions {
         field.validate().map_err(|error| {
             SequenceError::at(origin, line_of_key(text, &[error.name]), Fault::Field(error))
         })?;
+        if !is_printable(&field.name) {
+            let fault = Fault::BadName { key: "name", name: excerpt(&field.name) };
+            return Err(SequenceError::at(origin, line_of_key(text, &["name"]), fault));
+        }
         Ok(field)
     }
 

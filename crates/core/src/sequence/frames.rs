@@ -15,6 +15,16 @@ use super::{
 };
 use crate::pose::{CameraPose, Pose2};
 
+/// Latest time of a table, seconds. Whatever is later is in other units, such as nanoseconds.
+const LATEST_S: f64 = 1e11;
+
+/// Largest coordinate of a table, metres. Chosen: whatever is farther is no measurement; millimetres, which `gap` recognises, are
+/// within.
+const LONGEST_M: f64 = 1e6;
+
+/// Largest angle of a table, radians. Chosen: headings may count turns, and degrees, which `gap` recognises, are within.
+const LARGEST_RAD: f64 = 1e6;
+
 const ODOMETRY_COLUMNS: [&str; 3] = ["odometry_x_m", "odometry_y_m", "odometry_yaw_rad"];
 
 /// Record of one picture and of what the robot knew when it was taken.
@@ -147,9 +157,9 @@ impl Columns {
         let odometry = self.odometry.map(|columns| {
             let [x, y, yaw] = ODOMETRY_COLUMNS;
             Ok(Pose2::new(
-                number(x, field(columns[0]))?,
-                number(y, field(columns[1]))?,
-                number(yaw, field(columns[2]))?,
+                metres(x, field(columns[0]))?,
+                metres(y, field(columns[1]))?,
+                radians(yaw, field(columns[2]))?,
             ))
         });
         let image = PathBuf::from(field(self.image));
@@ -157,11 +167,11 @@ impl Columns {
             return Err(Fault::PathLeavesFolder { name: excerpt(field(self.image)) });
         }
         Ok(FrameRecord {
-            timestamp_s: number("timestamp_s", field(self.timestamp_s))?,
+            timestamp_s: seconds("timestamp_s", field(self.timestamp_s))?,
             image,
             odometry: odometry.transpose()?,
-            pitch_rad: number("pitch_rad", field(self.pitch_rad))?,
-            roll_rad: number("roll_rad", field(self.roll_rad))?,
+            pitch_rad: radians("pitch_rad", field(self.pitch_rad))?,
+            roll_rad: radians("roll_rad", field(self.roll_rad))?,
             reference_pose: None,
         })
     }
@@ -194,4 +204,24 @@ fn find_odometry(header: &StringRecord) -> Result<Option<[usize; 3]>, Fault> {
 pub(super) fn number(column: &'static str, text: &str) -> Result<f64, Fault> {
     let value: f64 = text.parse().map_err(|_| Fault::NotANumber { column, text: excerpt(text) })?;
     if value.is_finite() { Ok(value) } else { Err(Fault::NotFinite { column }) }
+}
+
+/// Parses a time from a field, seconds.
+pub(super) fn seconds(column: &'static str, text: &str) -> Result<f64, Fault> {
+    bounded(column, text, LATEST_S, "in seconds, below 1e11: the year 5138, counted from 1970")
+}
+
+/// Parses a length from a field, metres.
+pub(super) fn metres(column: &'static str, text: &str) -> Result<f64, Fault> {
+    bounded(column, text, LONGEST_M, "in metres, from -1e6 to 1e6")
+}
+
+/// Parses an angle from a field, radians.
+fn radians(column: &'static str, text: &str) -> Result<f64, Fault> {
+    bounded(column, text, LARGEST_RAD, "in radians, from -1e6 to 1e6")
+}
+
+fn bounded(column: &'static str, text: &str, limit: f64, rule: &'static str) -> Result<f64, Fault> {
+    let value = number(column, text)?;
+    if value.abs() <= limit { Ok(value) } else { Err(Fault::BadValue { key: column, value, rule }) }
 }

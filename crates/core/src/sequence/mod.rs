@@ -11,6 +11,8 @@ mod field_file;
 mod format_error;
 mod frames;
 mod groundtruth;
+mod jpeg;
+mod limits;
 mod mounting;
 mod picture;
 mod printable;
@@ -26,9 +28,10 @@ use std::{
 };
 
 use image::RgbImage;
+use rayon::prelude::*;
 
 pub use self::{
-    atomic::write_atomically,
+    atomic::{hold_writing, write_atomically},
     camera_file::{CameraSetup, Photometry, Trust, read_camera, read_mounting},
     corrected_by::{camera_with_model, model_of_camera},
     error::{Fault, SequenceError},
@@ -38,13 +41,14 @@ pub use self::{
     groundtruth::match_poses,
     mounting::Mounting,
     picture::{check_image, decode_image, save_image},
-    printable::{Printable, one_line},
+    printable::{Printable, counted, for_terminal, on_one_line, one_line},
     tum::{StampedPose, read_tum, write_tum},
 };
 use self::{
     frames::parse_frames,
     groundtruth::between_frames,
-    picture::{copy_picture, load_picture, read_picture},
+    limits::{MAX_TABLE_BYTES, MAX_TOML_BYTES},
+    picture::{copy_picture, read_picture},
     sequence_file::{SEQUENCE_FILE, parse_sequence},
     text::read_and_parse,
 };
@@ -87,14 +91,14 @@ impl Sequence {
     pub fn open_with_camera(folder: &Path, camera: Option<&Path>) -> Result<Self, SequenceError> {
         check_folder(folder)?;
         let main_file = folder.join(SEQUENCE_FILE);
-        let table = read_and_parse(&main_file, parse_sequence)?;
+        let table = read_and_parse(&main_file, MAX_TOML_BYTES, parse_sequence)?;
         let parts = [&table.camera, &table.field, &table.frames];
         let parts = parts.into_iter().chain(&table.groundtruth).map(|name| folder.join(name));
         let files = std::iter::once(main_file).chain(parts).collect();
         let camera = camera.map_or_else(|| folder.join(&table.camera), Path::to_path_buf);
         let (setup, mounting) = (read_camera(&camera)?, read_mounting(&camera)?);
         let field = read_field(&folder.join(&table.field))?;
-        let mut frames = read_and_parse(&folder.join(&table.frames), parse_frames)?;
+        let mut frames = read_and_parse(&folder.join(&table.frames), MAX_TABLE_BYTES, parse_frames)?;
         let mut poses_between_frames = Vec::new();
         if let Some(name) = &table.groundtruth {
             let path = folder.join(name);
@@ -123,7 +127,7 @@ impl Sequence {
     /// Returns the path of a recording's camera file. Fails as [`Sequence::open`] does.
     pub fn camera_file(folder: &Path) -> Result<PathBuf, SequenceError> {
         check_folder(folder)?;
-        Ok(folder.join(read_and_parse(&folder.join(SEQUENCE_FILE), parse_sequence)?.camera))
+        Ok(folder.join(read_and_parse(&folder.join(SEQUENCE_FILE), MAX_TOML_BYTES, parse_sequence)?.camera))
     }
 
     /// Returns the reference pose of each frame, if there is one.
@@ -139,16 +143,54 @@ impl Sequence {
     /// Loads the picture of a frame (from 0), JPEG or PNG; grey pictures become RGB. Fails if there is no such frame,
     /// or if the picture cannot be read or does not have the camera's size.
     pub fn load_image(&self, index: usize) -> Result<RgbImage, SequenceError> {
-        let camera = &self.setup.camera;
-        load_picture(&self.image_path(index)?, [camera.width, camera.height])
+        self.load_image_and_file(index).map(|(picture, _)| picture)
     }
 
-    /// Returns the bytes of a frame's picture file (frames count from 0) unchanged. Fails if there is no such frame or
-    /// the file is not a whole JPEG or PNG of the camera's size; header and end are checked, the pixels are not
-    /// decoded.
-    pub fn image_bytes(&self, index: usize) -> Result<Vec<u8>, SequenceError> {
+    /// Loads the picture of a frame as [`Sequence::load_image`], and returns it with the bytes of its file.
+    pub fn load_image_and_file(&self, index: usize) -> Result<(RgbImage, Vec<u8>), SequenceError> {
         let camera = &self.setup.camera;
         read_picture(&self.image_path(index)?, [camera.width, camera.height])
+    }
+
+    /// Returns the bytes of a frame's picture file (frames count from 0) unchanged. Fails as [`Sequence::load_image`]: the
+    /// picture is decoded.
+    pub fn image_bytes(&self, index: usize) -> Result<Vec<u8>, SequenceError> {
+        self.load_image_and_file(index).map(|(_, bytes)| bytes)
+    }
+
+    /// Checks, before long work, that the file of every picture is there, and that the first one is a picture of the camera.
+    /// Fails with the number of missing pictures, or as [`Sequence::load_image`].
+    pub fn check_pictures(&self) -> Result<(), SequenceError> {
+        let is_missing = |frame: &&FrameRecord| !self.folder.join(&frame.image).is_file();
+        let mut missing = self.frames.iter().filter(is_missing);
+        if let Some(first) = missing.next() {
+            let (first, count) = (first.image.clone(), 1 + missing.count());
+            let fault = Fault::PicturesMissing { first, count, frames: self.frames.len() };
+            return Err(SequenceError::of_file(&self.folder, fault));
+        }
+        self.load_image(0).map(drop)
+    }
+
+    /// Decodes every picture, after one of them could not be used. Fails with all that cannot be: their number, their names, and
+    /// what is wrong with the first.
+    pub fn check_every_picture(&self) -> Result<(), SequenceError> {
+        let frames = (0..self.frames.len()).into_par_iter();
+        let unusable = frames.filter_map(|index| self.load_image(index).err()).collect();
+        self.unusable_pictures(unusable).map_or(Ok(()), Err)
+    }
+
+    /// Returns the error of pictures that cannot be used: for a single one its own, for none nothing.
+    pub fn unusable_pictures(&self, mut errors: Vec<SequenceError>) -> Option<SequenceError> {
+        if errors.len() < 2 {
+            return errors.pop();
+        }
+        let name = |error: &SequenceError| {
+            error.path.strip_prefix(&self.folder).unwrap_or(&error.path).to_path_buf()
+        };
+        let names = errors.iter().map(name).collect();
+        let first = Box::new(errors.swap_remove(0).fault);
+        let fault = Fault::PicturesUnusable { names, first, frames: self.frames.len() };
+        Some(SequenceError::of_file(&self.folder, fault))
     }
 
     /// Copies the picture file of a frame (from 0) unchanged into another sequence's folder, under the same name. Fails

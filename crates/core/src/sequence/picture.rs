@@ -5,37 +5,31 @@ use std::{fs, io::Cursor, path::Path};
 use image::{
     DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, ImageFormat, ImageReader,
     Limits, RgbImage, codecs::jpeg::JpegEncoder, codecs::png::PngEncoder, error::UnsupportedErrorKind,
+    metadata::Orientation,
 };
 
 use super::{
     atomic::write_atomically,
     error::{Fault, SequenceError},
     format_error::FormatError,
+    jpeg::decode_jpeg,
+    limits::MAX_PICTURE_BYTES,
     text::read_bytes,
 };
-
-/// Maximum size of a picture file, and of the memory for decoding it, bytes.
-const MAX_PICTURE_BYTES: u64 = 512 << 20;
 
 /// Quality of written JPEG files: nearly lossless at edges.
 const JPEG_QUALITY: u8 = 95;
 
-/// Reads a JPEG or PNG picture of this size, pixels; grey pictures become RGB, transparency is dropped.
-pub(super) fn load_picture(path: &Path, size: [u32; 2]) -> Result<RgbImage, SequenceError> {
-    decode_image(path, &read_bytes(path, MAX_PICTURE_BYTES)?, size)
-}
-
-/// Reads the bytes of a picture file, and checks that they are a whole picture of this size, pixels.
-pub(super) fn read_picture(path: &Path, size: [u32; 2]) -> Result<Vec<u8>, SequenceError> {
+/// Reads a picture file of this size, pixels. Returns the picture with the bytes of its file.
+pub(super) fn read_picture(path: &Path, size: [u32; 2]) -> Result<(RgbImage, Vec<u8>), SequenceError> {
     let bytes = read_bytes(path, MAX_PICTURE_BYTES)?;
-    check_image(path, &bytes, size)?;
-    Ok(bytes)
+    Ok((decode_image(path, &bytes, size)?, bytes))
 }
 
-/// Checks by header and end that bytes are a whole JPEG or PNG of this size, pixels; the pixels are not decoded. Fails
-/// if they are not. Errors name `path`.
+/// Checks that bytes are a JPEG or PNG of this size, pixels, and that all of it decodes. Fails if they are not. Errors name
+/// `path`.
 pub fn check_image(path: &Path, bytes: &[u8], size: [u32; 2]) -> Result<(), SequenceError> {
-    check_picture(bytes, size).map_err(|fault| SequenceError::of_file(path, fault))
+    decode_image(path, bytes, size).map(drop)
 }
 
 /// Writes a picture as PNG or JPEG, by the extension of the file name, and creates its folder. The file gets its name
@@ -83,31 +77,23 @@ pub fn decode_image(origin: &Path, bytes: &[u8], size: [u32; 2]) -> Result<RgbIm
 }
 
 pub(super) fn decode_picture(bytes: &[u8], size: [u32; 2]) -> Result<RgbImage, Fault> {
-    let decoder = checked_decoder(bytes, size)?;
-    DynamicImage::from_decoder(decoder).map(DynamicImage::into_rgb8).map_err(decode_fault)
+    match image::guess_format(bytes) {
+        Ok(ImageFormat::Png) => decode_png(bytes, size),
+        Ok(ImageFormat::Jpeg) => decode_jpeg(bytes, size),
+        _ => Err(Fault::ImageFormat),
+    }
 }
 
-/// Checks that the bytes are a whole picture of this size, without decoding its pixels.
-pub(super) fn check_picture(bytes: &[u8], size: [u32; 2]) -> Result<(), Fault> {
-    checked_decoder(bytes, size).map(drop)
-}
-
-/// Returns a decoder. Compares the size first, before anything as large as the header claims is allocated.
-fn checked_decoder(bytes: &[u8], [width, height]: [u32; 2]) -> Result<impl ImageDecoder + '_, Fault> {
-    let format = image::guess_format(bytes).map_err(|_| Fault::ImageFormat)?;
-    let is_whole = match format {
-        ImageFormat::Png => is_whole_png(bytes),
-        ImageFormat::Jpeg => is_whole_jpeg(bytes),
-        _ => return Err(Fault::ImageFormat),
-    };
-    if !is_whole {
+/// Decodes a PNG. Compares the size first, before anything as large as the header claims is allocated.
+fn decode_png(bytes: &[u8], [width, height]: [u32; 2]) -> Result<RgbImage, Fault> {
+    if !is_whole_png(bytes) {
         return Err(Fault::ImageTruncated);
     }
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::Png);
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_PICTURE_BYTES);
     reader.limits(limits);
-    let decoder = reader.into_decoder().map_err(decode_fault)?;
+    let mut decoder = reader.into_decoder().map_err(decode_fault)?;
     let (found_width, found_height) = decoder.dimensions();
     if [found_width, found_height] != [width, height] {
         return Err(Fault::ImageSize { found_width, found_height, width, height });
@@ -115,7 +101,10 @@ fn checked_decoder(bytes: &[u8], [width, height]: [u32; 2]) -> Result<impl Image
     if decoder.total_bytes() > MAX_PICTURE_BYTES {
         return Err(Fault::ImageTooLarge { limit_bytes: MAX_PICTURE_BYTES });
     }
-    Ok(decoder)
+    if decoder.orientation().map_err(decode_fault)? != Orientation::NoTransforms {
+        return Err(Fault::ImageTurned);
+    }
+    DynamicImage::from_decoder(decoder).map(DynamicImage::into_rgb8).map_err(decode_fault)
 }
 
 fn decode_fault(error: ImageError) -> Fault {
@@ -143,25 +132,5 @@ fn is_whole_png(bytes: &[u8]) -> bool {
             return true;
         }
         rest = next;
-    }
-}
-
-/// Returns whether an end marker follows the pixels of a JPEG: the decoder silently fills missing pixels with grey.
-/// Segments before the pixels are skipped, since a thumbnail has an end marker of its own.
-fn is_whole_jpeg(bytes: &[u8]) -> bool {
-    const START_OF_SCAN: u8 = 0xda;
-    let mut rest = bytes.get(2..).unwrap_or_default();
-    loop {
-        match *rest {
-            // Any number of fill bytes may precede a marker.
-            [0xff, 0xff, ..] => rest = &rest[1..],
-            [0xff, START_OF_SCAN, ..] => return rest.windows(2).any(|pair| pair == [0xff, 0xd9]),
-            [0xff, _, high, low, ..] => {
-                let length = usize::from(u16::from_be_bytes([high, low]));
-                let Some(next) = rest.get(2 + length..) else { return false };
-                rest = next;
-            }
-            _ => return false,
-        }
     }
 }

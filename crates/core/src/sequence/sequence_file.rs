@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     error::{Fault, SequenceError, excerpt},
+    printable::is_printable,
     toml_text::{NumberCheck, line_of_key, parse},
 };
 use crate::pose::Pose2;
@@ -50,6 +51,10 @@ impl From<StartTable> for Pose2 {
 pub(super) fn parse_sequence(path: &Path, text: &str) -> Result<SequenceTable, SequenceError> {
     let mut table: SequenceTable = parse(path, text)?;
     table.groundtruth = table.groundtruth.filter(|name| !name.is_empty());
+    if !is_printable(&table.name) {
+        let fault = Fault::BadName { key: "name", name: excerpt(&table.name) };
+        return Err(SequenceError::at(path, line_of_key(text, &["name"]), fault));
+    }
     let files = [
         ("camera", Some(&table.camera)),
         ("field", Some(&table.field)),

@@ -8,9 +8,6 @@ use std::{
 
 use super::error::{Fault, SequenceError};
 
-/// Maximum size of a text file of a sequence, bytes: a day at 30 frames a second fits.
-const MAX_TEXT_BYTES: u64 = 256 << 20;
-
 /// Reads all bytes of a regular file that is not larger than the limit.
 pub(super) fn read_bytes(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, SequenceError> {
     let fail = |error: io::Error| SequenceError::of_file(path, read_fault(error));
@@ -31,12 +28,13 @@ pub(super) fn read_bytes(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, Seque
     Ok(bytes)
 }
 
-/// Reads a text file and hands it to a parser.
+/// Reads a text file that is not larger than the limit, and hands it to a parser.
 pub(super) fn read_and_parse<T>(
     path: &Path,
+    limit_bytes: u64,
     parse: impl FnOnce(&Path, &str) -> Result<T, SequenceError>,
 ) -> Result<T, SequenceError> {
-    let bytes = read_bytes(path, MAX_TEXT_BYTES)?;
+    let bytes = read_bytes(path, limit_bytes)?;
     parse(path, decode(path, &bytes)?)
 }
 

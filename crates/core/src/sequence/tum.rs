@@ -7,7 +7,8 @@ use glam::{DQuat, DVec3, DVec4};
 use super::{
     atomic::write_atomically,
     error::{Fault, SequenceError},
-    frames::number,
+    frames::{metres, number, seconds},
+    limits::MAX_TABLE_BYTES,
     text::read_and_parse,
 };
 use crate::pose::CameraPose;
@@ -29,7 +30,7 @@ pub struct StampedPose {
 /// Reads a TUM file. Skips comments (`#`) and blank lines, normalises quaternions and keeps the order. Fails if the
 /// file cannot be read, or with the first malformed line.
 pub fn read_tum(path: &Path) -> Result<Vec<StampedPose>, SequenceError> {
-    read_and_parse(path, parse_tum)
+    read_and_parse(path, MAX_TABLE_BYTES, parse_tum)
 }
 
 /// Writes a TUM file that reads back as the same poses. The file gets its name only when it is complete. Fails if a
@@ -69,8 +70,9 @@ fn parse_row(row: &str) -> Result<StampedPose, Fault> {
         return Err(Fault::FieldCount { found, expected: COLUMNS.len() });
     }
     let mut values = [0.0; COLUMNS.len()];
-    for ((value, column), field) in values.iter_mut().zip(COLUMNS).zip(fields) {
-        *value = number(column, field)?;
+    let parsers = [seconds, metres, metres, metres, number, number, number, number];
+    for (((value, column), parse), field) in values.iter_mut().zip(COLUMNS).zip(parsers).zip(fields) {
+        *value = parse(column, field)?;
     }
     let [timestamp_s, x, y, z, qx, qy, qz, qw] = values;
     let rotation = unit_quaternion(DVec4::new(qx, qy, qz, qw)).ok_or(Fault::ZeroQuaternion)?;

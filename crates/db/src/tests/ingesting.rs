@@ -17,7 +17,7 @@ fn the_same_sequence_again_adds_nothing_from_whatever_folder() {
     let mut database = Database::create_or_open(&path).unwrap();
     let before = database.images().unwrap();
     let report = add(&mut database, &Sequence::open(&elsewhere).unwrap()).unwrap();
-    assert_eq!(report, IngestReport { added: 0, already_there: 60, without_pose: 0 });
+    assert_eq!(report, IngestReport { added: 0, replaced: 0, already_there: 60, without_pose: 0 });
     assert_eq!(database.images().unwrap(), before);
     assert_eq!(database.sequences().unwrap().len(), 1);
 }
@@ -27,7 +27,7 @@ fn a_recording_that_went_on_is_completed() {
     let (_folder, path) = database_of(&short_walk(20));
     let mut database = Database::create_or_open(&path).unwrap();
     let report = add(&mut database, &walk()).unwrap();
-    assert_eq!(report, IngestReport { added: 40, already_there: 20, without_pose: 0 });
+    assert_eq!(report, IngestReport { added: 40, replaced: 0, already_there: 20, without_pose: 0 });
     let frames: Vec<usize> = database.images().unwrap().iter().map(|image| image.frame_index).collect();
     assert_eq!(frames, (0..60).collect::<Vec<_>>());
 }
@@ -41,10 +41,10 @@ fn frames_without_a_pose_are_left_out_until_they_have_one() {
     poses[3] = None;
     poses[59] = None;
     let report = database.ingest(&sequence, &poses, &PoseSource::GroundTruth).unwrap();
-    assert_eq!(report, IngestReport { added: 58, already_there: 0, without_pose: 2 });
+    assert_eq!(report, IngestReport { added: 58, replaced: 0, already_there: 0, without_pose: 2 });
     assert!(database.images().unwrap().iter().all(|image| image.frame_index != 3));
     let report = add(&mut database, &sequence).unwrap();
-    assert_eq!(report, IngestReport { added: 2, already_there: 58, without_pose: 0 });
+    assert_eq!(report, IngestReport { added: 2, replaced: 0, already_there: 58, without_pose: 0 });
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn a_broken_picture_is_named_and_what_was_committed_stays() {
     assert_eq!(database.images().unwrap().len(), 64);
     fs::write(&file, &bytes).unwrap();
     let report = add(&mut database, &broken).unwrap();
-    assert_eq!(report, IngestReport { added: 6, already_there: 64, without_pose: 0 });
+    assert_eq!(report, IngestReport { added: 6, replaced: 0, already_there: 64, without_pose: 0 });
 }
 
 #[test]
@@ -244,7 +244,7 @@ fn a_full_disk_is_an_error_and_what_was_committed_stays() {
     assert!(kept > 0 && kept.is_multiple_of(64), "{kept}");
     limit(&database, i64::from(u32::MAX));
     let report = add(&mut database, &sequence).unwrap();
-    assert_eq!(report, IngestReport { added: 200 - kept, already_there: kept, without_pose: 0 });
+    assert_eq!(report, IngestReport { added: 200 - kept, replaced: 0, already_there: kept, without_pose: 0 });
 }
 
 #[test]

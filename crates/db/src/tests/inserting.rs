@@ -33,7 +33,7 @@ fn images_inserted_one_by_one_are_those_that_a_folder_s_ingest_adds() {
     }
     assert_eq!(database.images().unwrap(), Database::open(&path).unwrap().images().unwrap());
     let report = add(&mut database, &sequence).unwrap();
-    assert_eq!(report, IngestReport { added: 0, already_there: 5, without_pose: 0 });
+    assert_eq!(report, IngestReport { added: 0, replaced: 0, already_there: 5, without_pose: 0 });
 }
 
 #[test]

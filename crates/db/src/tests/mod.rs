@@ -1,10 +1,12 @@
 //! Round trips of the demonstration walk through the database, and the faults that can occur.
 
+mod hostile;
 mod ingesting;
 mod inserting;
 mod interrupted;
 mod opening;
 mod reading;
+mod removing;
 mod sharing;
 
 use std::{fs, path::Path, path::PathBuf};

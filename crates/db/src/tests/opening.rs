@@ -41,7 +41,7 @@ fn an_empty_file_is_refused_for_reading_and_becomes_a_database_for_writing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.db");
     fs::write(&path, "").unwrap();
-    assert_message(&Database::open(&path).unwrap_err(), &path, &["is not an image database"]);
+    assert_message(&Database::open(&path).unwrap_err(), &path, &["holds nothing yet"]);
     drop(Database::create_or_open(&path).unwrap());
     assert!(Database::open(&path).unwrap().images().unwrap().is_empty());
 }

@@ -56,7 +56,9 @@ impl Pictures {
             let renderer = Renderer::with_model(&sequence.setup, &sequence.field, colors, model)?;
             match renderer.draw_at(&recording.trajectory, time_s, None) {
                 // A camera under the ground sees nothing; why it is there is in the report.
-                Err(RenderError::NotAboveGround { .. }) => Ok(RgbImage::new(width, height)),
+                Err(RenderError::NotAboveGround { .. } | RenderError::TooFar(_)) => {
+                    Ok(RgbImage::new(width, height))
+                }
                 drawn => drawn.map_err(|source| PicturesError::Pose { index, source }),
             }
         };

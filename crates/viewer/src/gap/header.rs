@@ -1,6 +1,7 @@
 //! The answer: the verdict in one word, and the summary in a sentence.
 
 use eframe::egui::{self, Color32, Label, RichText, Ui};
+use reality_sim_core::sequence::counted;
 use reality_sim_gap::report::{
     Report, Verdict,
     text::{GAP_UNIT, absorbed, digits, reference_source, summary, verdict_meaning, verdict_word},
@@ -61,9 +62,9 @@ fn facts(report: &Report) -> String {
     let [before, after, floor] =
         [report.gap.before, report.gap.after, report.gap.floor].map(|size| digits(size, 3));
     format!(
-        "{} · {} frames, {} of them held out · poses {} · gap {before} before, {after} after, in {GAP_UNIT} (floor {floor})",
+        "{} · {}, {} of them held out · poses {} · gap {before} before, {after} after, in {GAP_UNIT} (floor {floor})",
         report.recording,
-        report.frames,
+        counted(report.frames, "frame"),
         report.held_out_frames,
         reference_source(report.poses.source),
     )

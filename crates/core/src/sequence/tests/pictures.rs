@@ -105,8 +105,6 @@ fn every_truncation_is_noticed() {
         for length in 0..bytes.len() {
             let decoded = picture::decode_picture(&bytes[..length], [16, 12]);
             assert!(decoded.is_err(), "{format:?}: {length} of {} bytes were accepted", bytes.len());
-            let checked = picture::check_picture(&bytes[..length], [16, 12]);
-            assert!(checked.is_err(), "{format:?}: {length} of {} bytes passed the check", bytes.len());
         }
     }
     let jpeg = encode(&sample(16, 12).into(), ImageFormat::Jpeg);

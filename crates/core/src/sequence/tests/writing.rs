@@ -52,7 +52,7 @@ fn round_trip_without_anything_optional() {
 #[test]
 fn round_trip_with_odd_names() {
     let mut sequence = open(&valid_folder());
-    sequence.name = "a \"b\"\n= 'c' # ü".to_owned();
+    sequence.name = "a \"b\" = 'c' # ü".to_owned();
     sequence.frames[0].image = PathBuf::from("images/a, \"b\".png");
     sequence.frames[1].image = PathBuf::from("bilder/ü\nv.png");
     sequence.frames[2].timestamp_s = 1.7e9 + 0.123_456;
@@ -72,6 +72,7 @@ fn what_cannot_be_read_is_not_written() {
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is written");
     };
     refuses(&|s| s.frames.clear(), "no frames");
+    refuses(&|s| s.name = "two\nlines".to_owned(), "control characters");
     refuses(&|s| s.frames[1].odometry = None, "either all frames have odometry or none");
     refuses(&|s| s.frames[1].image = "../a.png".into(), "inside the sequence's folder");
     refuses(&|s| s.frames[1].image = " a.png".into(), "blanks");

@@ -8,6 +8,8 @@ mod notes;
 mod pictures;
 mod text;
 
+use reality_sim_core::sequence::counted;
+
 use self::{maps::Subject, text::escape};
 use crate::{
     inference::held_out::ChannelGap,
@@ -43,12 +45,12 @@ pub fn page(report: &Report, pictures: &Pictures) -> String {
 fn verdict(report: &Report) -> String {
     format!(
         "<h1>Simulation against recording: {}</h1>\n<p class=\"verdict\">{}</p>\n<p class=\"quiet\"><span \
-         class=\"word\">{}</span> {} frames, {} of them held out</p>\n",
+         class=\"word\">{}</span> {}, {} of them held out</p>\n",
         escape(&report.recording),
         // A no-break space keeps a percent sign from starting a line.
         escape(&summary(report)).replace(" %", "&#160;%"),
         verdict_word(report.verdict),
-        report.frames,
+        counted(report.frames, "frame"),
         report.held_out_frames
     )
 }

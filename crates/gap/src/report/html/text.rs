@@ -1,6 +1,6 @@
 //! Text in HTML.
 
-/// Escapes text for use between tags and in attributes.
+/// Escapes text for use between tags and in attributes. Control characters, which HTML does not allow, are shown by their escapes.
 pub(super) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -10,6 +10,7 @@ pub(super) fn escape(text: &str) -> String {
             '>' => escaped.push_str("&gt;"),
             '"' => escaped.push_str("&quot;"),
             '\'' => escaped.push_str("&#39;"),
+            letter if letter.is_control() && letter != '\n' => escaped.extend(letter.escape_default()),
             _ => escaped.push(letter),
         }
     }

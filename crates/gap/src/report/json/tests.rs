@@ -1,5 +1,7 @@
 use std::fs;
 
+use image::{GrayImage, RgbImage};
+use proptest::prelude::*;
 use reality_sim_sensor::library;
 
 use super::*;
@@ -11,7 +13,11 @@ use crate::{
     },
     inference::detection_limit::MissingInput,
     measurement::quantity::ColorChannel,
-    report::file::{ReportError, ReportFault},
+    report::{
+        file::{ReportError, ReportFault},
+        html::page,
+        pictures::Pictures,
+    },
     testing::{self, effect_report},
 };
 
@@ -209,6 +215,72 @@ fn every_effect_can_be_written_with_any_sizes() {
         for value in [-0.01, 0.0, 0.01] {
             let report = Report { effects: vec![effect_report(effect.id(), value)], ..full() };
             assert!(serde_json::to_string(&report).is_ok(), "{}", effect.id());
+        }
+    }
+}
+
+/// What may stand in the place of a value.
+fn hostile_value() -> impl Strategy<Value = serde_json::Value> {
+    use serde_json::json;
+    prop::sample::select(vec![
+        json!(null),
+        json!(-1),
+        json!(1e308),
+        json!(u64::MAX),
+        json!(""),
+        json!("<script>\u{0}\u{1b}[2J\n"),
+        json!([]),
+        json!({}),
+        json!([[[]]]),
+    ])
+}
+
+/// Puts a value in the place of the one that is reached by these choices, from the outermost object inwards.
+fn replace_within(value: &mut serde_json::Value, choices: &[prop::sample::Index], new: serde_json::Value) {
+    let Some((choice, rest)) = choices.split_first() else { return *value = new };
+    match value {
+        serde_json::Value::Object(fields) if !fields.is_empty() => {
+            let place = choice.index(fields.len());
+            fields
+                .values_mut()
+                .nth(place)
+                .into_iter()
+                .for_each(|inner| replace_within(inner, rest, new.clone()));
+        }
+        serde_json::Value::Array(values) if !values.is_empty() => {
+            let place = choice.index(values.len());
+            replace_within(&mut values[place], rest, new);
+        }
+        value => *value = new,
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_hostile_report_is_read_or_refused_on_one_line(
+        choices in prop::collection::vec(any::<prop::sample::Index>(), 1..7),
+        new in hostile_value(),
+        end in prop::option::of(any::<prop::sample::Index>()),
+    ) {
+        let mut written = serde_json::to_value(full()).unwrap();
+        replace_within(&mut written, &choices, new);
+        let mut file = serde_json::to_string_pretty(&written).unwrap();
+        if let Some(end) = end {
+            file.truncate((0..=end.index(file.len())).rev().find(|at| file.is_char_boundary(*at)).unwrap_or(0));
+        }
+        match read_again("hostile", &file) {
+            // Whatever can be read can be shown, and keeps what it holds.
+            Ok(report) => {
+                let none = || RgbImage::new(0, 0);
+                let field = GrayImage::new(0, 0);
+                let page = page(&report, &Pictures { measured: none(), before: none(), after: none(), field });
+                prop_assert!(!page.contains(|letter: char| letter.is_control() && letter != '\n'));
+                prop_assert!(!page.contains("<script>"));
+            }
+            Err(error) => {
+                let message = error.to_string();
+                prop_assert!(!message.contains(char::is_control) && !message.is_empty(), "{:?}", message);
+            }
         }
     }
 }

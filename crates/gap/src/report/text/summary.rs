@@ -1,5 +1,6 @@
 //! Verdict in a few sentences.
 
+use reality_sim_core::sequence::counted;
 use reality_sim_sensor::{Role, effect, text::percent};
 
 use super::{
@@ -202,6 +203,7 @@ fn shown_from(not_found: &[NotFoundReport]) -> Option<String> {
 fn inconclusive(unobservable: &[Unobservable]) -> String {
     let first = || unobservable.iter().take(NAMED);
     let names: Vec<String> = first().map(|effect| format!("whether {}", library_name(&effect.id))).collect();
+    let others: Vec<&str> = unobservable.iter().skip(NAMED).map(|effect| effect.id.as_str()).collect();
     let mut recordings: Vec<&str> = first().map(unobservable_remedy).collect();
     recordings.retain(|recording| !recording.is_empty());
     recordings.dedup();
@@ -213,7 +215,11 @@ fn inconclusive(unobservable: &[Unobservable]) -> String {
     } else {
         format!(": to find out, {}", recordings.join("; and "))
     };
-    format!("These frames cannot tell {}{remedy}.", names.join(" or "))
+    let others = match others.len() {
+        0 => String::new(),
+        count => format!(". {} could not be judged either: {}", counted(count, "more effect"), enumerated(&others)),
+    };
+    format!("These frames cannot tell {}{remedy}{others}.", names.join(" or "))
 }
 
 /// Returns "a, b and c".

@@ -1,0 +1,48 @@
+//! Limit on the work of a transaction: pages that somebody arranged, or that are damaged, can lead SQLite in circles. It follows
+//! SQLite's own advice for files of unknown origin, <https://www.sqlite.org/security.html>.
+
+use std::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
+
+use rusqlite::Connection;
+
+/// Instructions of SQLite's virtual machine between two looks at the limit.
+const STEP: u32 = 10_000;
+
+/// Instructions that a transaction may take whatever the size of its file: a fraction of a second.
+const LEAST: u64 = 10_000_000;
+
+/// Further instructions for each byte of the file. A row of an image takes at least 160 bytes and, in the longest transaction,
+/// that which checks all references, fewer than 200 instructions.
+const PER_BYTE: u64 = 4;
+
+/// Number of instructions that the present transaction of a connection may still take.
+#[derive(Debug, Clone)]
+pub(crate) struct WorkLimit {
+    left: Arc<AtomicU64>,
+    most: u64,
+}
+
+impl WorkLimit {
+    /// Limits the work of a connection to a file of this length, bytes. A transaction that takes more fails.
+    pub fn new(connection: &mut Connection, file_bytes: u64) -> rusqlite::Result<Self> {
+        let most = LEAST.saturating_add(PER_BYTE.saturating_mul(file_bytes));
+        let limit = Self { left: Arc::new(AtomicU64::new(most)), most };
+        let left = limit.left.clone();
+        let is_spent = move || {
+            let before = left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
+                Some(left.saturating_sub(u64::from(STEP)))
+            });
+            before.is_ok_and(|before| before < u64::from(STEP))
+        };
+        connection.progress_handler(STEP as i32, Some(is_spent))?;
+        Ok(limit)
+    }
+
+    /// Begins a transaction, which may take as much as any other.
+    pub fn renew(&self) {
+        self.left.store(self.most, Ordering::Relaxed);
+    }
+}
