@@ -31,7 +31,7 @@ pub fn details_csv(sequence: &Sequence, frames: &[LocalizedFrame], results: &[Po
         csv.push_str(name);
     }
     csv.push_str(
-        ",effective_sample_size,particles,line_fraction,sure,mirror_probability,searched,error_m,error_yaw_rad\n",
+        ",effective_sample_size,particles,line_fraction,explained_fraction,sure,mirror_probability,searched,error_m,error_yaw_rad\n",
     );
     for (index, (frame, result)) in frames.iter().zip(results).enumerate() {
         let pose = result.pose;
@@ -48,10 +48,11 @@ pub fn details_csv(sequence: &Sequence, frames: &[LocalizedFrame], results: &[Po
         }
         let _ = write!(
             csv,
-            ",{},{},{},{},{},{}",
+            ",{},{},{},{},{},{},{}",
             frame.filter.effective_sample_size,
             frame.filter.particles,
             frame.line_fraction,
+            frame.explained_fraction,
             frame.sure,
             frame.mirrored_probability,
             frame.searched
@@ -170,7 +171,10 @@ impl Report {
             let [mean, median, p95, max] = [error.mean_m, error.median_m, error.p95_m, error.max_m].map(cm);
             lines.push(("error", format!("mean {mean}, median {median}, 95 % below {p95}, largest {max}")));
             let yaw = error.mean_yaw_rad.to_degrees();
-            lines.push(("", format!("yaw {yaw:.2}° in the mean; {} lost", counted(error.lost_frames, "frame"))));
+            lines.push((
+                "",
+                format!("yaw {yaw:.2}° in the mean; {} lost", counted(error.lost_frames, "frame")),
+            ));
         }
         for (name, path) in [("poses", &self.out), ("details", &self.details), ("overlay", &self.overlay)] {
             lines.extend(path.iter().map(|path| (name, path.clone())));

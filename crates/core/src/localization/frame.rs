@@ -25,6 +25,8 @@ pub struct LocalizedFrame {
     /// Fraction of the line in view that the picture shows where the pose projects it. If it is small at the pose
     /// itself, the fraction at the best-fitting pose next to it.
     pub line_fraction: f64,
+    /// Fraction of the white lines in the picture that are lines of the field as seen from the pose; 1 if the picture shows none.
+    pub explained_fraction: f64,
     /// Whether the lines fit at this pose and nowhere else, except at its mirror pose.
     pub settled: bool,
     /// Whether the pose is settled and its mirror pose is improbable; while this is false, the pose may be wrong.

@@ -5,17 +5,19 @@ use std::{fmt, sync::Arc, time::Instant};
 use image::RgbImage;
 
 use super::{
+    agreement::Agreement,
     config::LocalizerConfig,
     error::LocalizationError,
     frame::LocalizedFrame,
     observation::Observation,
+    rivals::Rival,
     track::{Beginning, Track},
 };
 use crate::{
     filter::{Filter, FilterEstimate},
     goal_colors::GoalColors,
     mount::MountPose,
-    pose::{CameraPose, Motion2, Pose2},
+    pose::{CameraPose, Motion2, Pose2, wrap_angle},
     preprocess::{FieldBorder, Prepared, Preprocessor},
     refine::PoseFit,
     search::{GlobalSearch, Mode, Prior},
@@ -59,9 +61,11 @@ impl Localizer {
             None => self.begin(&picture, observation)?,
         };
         let Posterior { mut track, estimate, motion, searched } = posterior;
-        let (pose, fit) = self.refine(&track, mount, estimate.pose)?;
-        let line_fraction = self.line_fraction_near(pose, mount, track.fits_from());
-        let settled = track.settle(pose.planar(), line_fraction);
+        let refined = self.refine(&track, mount, estimate.pose)?;
+        let (pose, fit) = self.weigh_rivals(&mut track, mount, refined)?;
+        let agreement = self.agreement(pose, mount, track.fits_from());
+        let Agreement { line_fraction, explained_fraction, .. } = agreement;
+        let settled = track.settle(pose.planar(), agreement);
         let mut frame = LocalizedFrame {
             timestamp_s: observation.timestamp_s,
             pose,
@@ -70,6 +74,7 @@ impl Localizer {
             mount,
             motion,
             line_fraction,
+            explained_fraction,
             settled,
             sure: settled && track.is_half_sure(),
             mirrored_probability: track.mirrored_probability(),
@@ -135,14 +140,25 @@ impl Localizer {
     ) -> Result<Posterior, LocalizationError> {
         self.filter.initialize(&[(self.start.unwrap_or_default(), 1.0)], self.config.start_sigma)?;
         let mut beginning = Beginning::Given;
+        let mut found = Vec::new();
         if self.start.is_none() {
             let modes = self.search(picture, observation.mount, None)?;
             beginning = Beginning::Searched { is_clear: self.config.relocalization.is_clear(&modes) };
+            found = modes;
         }
-        let estimate = self.filter.update(observation.mount, self.config.filter.noise.sigma(None))?;
+        let mut estimate = self.filter.update(observation.mount, self.config.filter.noise.sigma(None))?;
         let pose = estimate.pose.planar();
-        let track = Track::new(self.config.track, pose, self.odometry(observation), beginning);
-        Ok(Posterior { track, estimate, motion: None, searched: self.start.is_none() })
+        let mut track = Track::new(self.config.track, pose, self.odometry(observation), beginning);
+        if let Some(best) = found.first() {
+            self.add_rivals(&mut track, &found, best);
+            track.verify();
+        }
+        let mut searched = self.start.is_none();
+        if self.config.relocalizes && self.may_be_elsewhere(&track, estimate.pose, observation.mount) {
+            searched = true;
+            estimate = self.recover(&mut track, picture, observation.mount, estimate)?;
+        }
+        Ok(Posterior { track, estimate, motion: None, searched })
     }
 
     /// Handles any later picture: predicts and updates; relocalizes if the prediction is too uncertain or the picture
@@ -173,8 +189,12 @@ impl Localizer {
 
         let mut estimate = self.filter.update(mount, diffusion)?;
 
-        let may_be_lost = || is_long_way || self.may_be_lost(&track, estimate.pose, mount);
-        if self.config.relocalizes && !searched && may_be_lost() {
+        let asks_for_search = || {
+            is_long_way
+                || self.may_be_lost(&track, estimate.pose, mount)
+                || self.may_be_elsewhere(&track, estimate.pose, mount)
+        };
+        if self.config.relocalizes && !searched && asks_for_search() {
             searched = true;
             estimate = self.recover(&mut track, picture, mount, estimate)?;
         }
@@ -187,7 +207,13 @@ impl Localizer {
 
     fn may_be_lost(&self, track: &Track, pose: CameraPose, mount: MountPose) -> bool {
         let least = track.lost_below();
-        track.is_unconfirmed() || self.line_fraction_near(pose, mount, least) < least
+        track.is_unconfirmed()
+            || self.search.explained_fraction(pose) < track.lost_unless_explained()
+            || self.line_fraction_near(pose, mount, least) < least
+    }
+
+    fn may_be_elsewhere(&self, track: &Track, pose: CameraPose, mount: MountPose) -> bool {
+        track.needs_verification(self.agreement(pose, mount, track.fits_from()))
     }
 
     /// Returns the line fraction of a pose. If it is less than `enough`, returns that of the pose next to it that fits the
@@ -215,6 +241,7 @@ impl Localizer {
     ) -> Result<FilterEstimate, LocalizationError> {
         let prior = track.prior_of_lost();
         let mut modes = self.modes(picture, mount, Some(prior))?;
+        track.verify();
         // From many places no line is in view: such a place fits every picture a little, and none well.
         modes.retain(|mode| self.search.line_fraction(mode.pose) >= self.config.track.lost_line_fraction);
         let Some(best) = modes.first() else { return Ok(estimate) };
@@ -222,6 +249,7 @@ impl Localizer {
             return Ok(estimate);
         };
         if !self.config.relocalization.is_better_elsewhere(best, &own) {
+            self.add_rivals(track, &modes, &own);
             return Ok(estimate);
         }
         self.place(&modes)?;
@@ -262,6 +290,91 @@ impl Localizer {
     fn relocalize(&self, track: &mut Track, modes: &[Mode], prior: Prior) {
         let best = modes.first().map(|mode| mode.pose.planar());
         track.relocalize(best, self.config.relocalization.is_clear(modes), prior);
+        track.verify();
+        if let Some(best) = modes.first() {
+            self.add_rivals(track, modes, best);
+        }
+    }
+
+    /// Adds the places of a search that fit nearly as well as the track's own to its rivals.
+    fn add_rivals(&self, track: &mut Track, modes: &[Mode], own: &Mode) {
+        let config = &self.config.relocalization;
+        let is_own = |pose: CameraPose| {
+            config.is_same_place(pose, own.pose) || config.is_same_place(pose, own.pose.mirrored())
+        };
+        let mut rivals = track.rivals().to_vec();
+        for mode in modes.iter().filter(|mode| !is_own(mode.pose)) {
+            // Goals tell the halves apart: of a place and its mirror place, the one nearer to the track's own is its rival.
+            let pose = nearer(own.pose, mode.pose);
+            let is_known = |rival: &Rival| config.is_same_place(pose.with_planar(rival.pose), pose);
+            if !rivals.iter().any(is_known) {
+                let log_odds = (mode.log_weight - own.log_weight).min(0.0);
+                rivals.push(Rival::new(pose.planar(), log_odds));
+            }
+        }
+        track.set_rivals(rivals);
+    }
+
+    /// Weighs the track's rivals against its own pose by the present picture. If one wins, the track goes on at its place; the
+    /// pose of the picture and its fit are returned.
+    fn weigh_rivals(
+        &mut self,
+        track: &mut Track,
+        mount: MountPose,
+        own: (CameraPose, Option<PoseFit>),
+    ) -> Result<(CameraPose, Option<PoseFit>), LocalizationError> {
+        let mut rivals = track.rivals().to_vec();
+        if rivals.is_empty() {
+            return Ok(own);
+        }
+        // The prediction counts for none of them: how sure it is depends on how each place was found.
+        let here = self.search.best_near(own.0, mount);
+        let least = track.fits_from();
+        let fits = |pose| self.search.line_fraction(pose) >= least;
+        let mut modes = Vec::with_capacity(rivals.len());
+        for rival in &mut rivals {
+            let there = self.search.best_near(mount.at(rival.pose), mount);
+            if !rival.knows_picture {
+                // A picture that fits at neither place tells nothing of them.
+                let tells = [here, there].iter().any(|mode| fits(mode.pose));
+                let gain = if tells { there.log_weight - here.log_weight } else { 0.0 };
+                rival.weigh(there.pose.planar(), gain, &self.config.track);
+            }
+            modes.push(there);
+        }
+        let best = (0..rivals.len()).max_by(|&a, &b| rivals[a].log_odds.total_cmp(&rivals[b].log_odds));
+        let wins_at = self.config.track.rival_wins_at;
+        let winner = best.filter(|&index| rivals[index].log_odds >= wins_at && fits(modes[index].pose));
+        let mut found = own;
+        if let Some(index) = winner {
+            let (mode, lead) = (modes[index], rivals[index].log_odds);
+            rivals[index] = Rival::new(own.0.planar(), 0.0);
+            rivals.iter_mut().for_each(|rival| rival.log_odds -= lead);
+            self.filter.initialize(&[(mode.pose.planar(), 1.0)], self.config.relocalization.found_sigma)?;
+            found = (mode.pose, mode.fit.filter(|_| self.config.refines));
+        }
+        let place = found.0;
+        let config = &self.config.relocalization;
+        rivals.retain(|rival| !config.is_same_place(place.with_planar(rival.pose), place));
+        track.set_rivals(rivals);
+        Ok(found)
+    }
+
+    /// Returns how well a pose and the picture agree; `enough` is the line fraction from which the pose fits.
+    fn agreement(&self, pose: CameraPose, mount: MountPose, enough: f64) -> Agreement {
+        // Where enough lines coincide, the pose is right to a line's width. With a mount pose that is wrong by a degree, narrow
+        // lines are missed even from the right place.
+        let coincides = self.search.line_fraction(pose) >= enough;
+        let near = if coincides { pose } else { self.search.best_near(pose, mount).pose };
+        let most = self.config.track.fit_distance;
+        let is_at_fit = (pose.x_m - near.x_m).hypot(pose.y_m - near.y_m) <= most.position_m
+            && wrap_angle(pose.yaw_rad - near.yaw_rad).abs() <= most.yaw_rad;
+        let best = |of: &dyn Fn(CameraPose) -> f64| of(pose).max(of(near));
+        Agreement {
+            line_fraction: best(&|pose| self.search.line_fraction(pose)),
+            explained_fraction: best(&|pose| self.search.explained_fraction(pose)),
+            is_at_fit,
+        }
     }
 
     /// Fits the best particle, its alternatives and the prediction to the picture. Returns the most probable of these poses,
@@ -311,6 +424,13 @@ impl Localizer {
         frame.sure = frame.settled && track.is_half_sure();
         Ok(())
     }
+}
+
+/// Returns a pose or its mirror pose, whichever is nearer to another one.
+fn nearer(to: CameraPose, pose: CameraPose) -> CameraPose {
+    let distance_m = |pose: CameraPose| (pose.x_m - to.x_m).hypot(pose.y_m - to.y_m);
+    let mirrored = pose.mirrored();
+    if distance_m(mirrored) < distance_m(pose) { mirrored } else { pose }
 }
 
 impl fmt::Debug for Localizer {

@@ -61,6 +61,7 @@
 //! # }
 //! ```
 
+mod agreement;
 mod builder;
 mod config;
 mod error;
@@ -71,6 +72,7 @@ mod observation;
 mod picture;
 mod playback;
 mod relocalization;
+mod rivals;
 mod run;
 mod smoothing;
 mod track;

@@ -17,7 +17,7 @@ use crate::{
     field::FieldDimensions,
     filter::{Filter, FilterConfig, FilterEstimate, PlanarSigma},
     mount::MountPose,
-    observation::ObservationConfig,
+    observation::{ObservationConfig, ObservationKind},
     pose::{CameraPose, Motion2, Pose2},
     preprocess::{Prepared, luma},
     test_scene,
@@ -52,6 +52,70 @@ fn a_grey_picture_gives_the_pose_and_never_the_half() {
     let frame = localizer.update(&observation(&grey)).unwrap();
     assert!(is_right(frame.pose) || is_right(frame.pose.mirrored()), "{frame:?}");
     assert!(!frame.sure && frame.mirrored_probability == 0.5);
+}
+
+/// Covers a part of a picture, as somebody who stands there in dark clothes does.
+fn hidden(mut picture: RgbImage, columns: std::ops::Range<u32>) -> RgbImage {
+    for u in columns {
+        for v in 0..picture.height() {
+            picture.put_pixel(u, v, image::Rgb([50, 40, 45]));
+        }
+    }
+    picture
+}
+
+/// A part of the lines fits at a wrong place, and the particles stay there for a while.
+#[test]
+fn a_wrong_place_at_which_some_lines_fit_is_not_sure() {
+    let (camera, field) = (test_scene::fisheye(), test_scene::field());
+    let (mut stayed, mut fitted) = (0, 0);
+    for kind in ObservationKind::ALL {
+        for pose in test_scene::poses() {
+            let picture = test_scene::render(&camera, pose, &field);
+            for away in [[1.0, 0.0], [0.0, -1.0], [0.6, 0.6]] {
+                let wrong = Pose2::new(pose.x_m + away[0], pose.y_m + away[1], pose.yaw_rad);
+                let config = LocalizerConfig::new(kind);
+                let builder = Localizer::builder(&camera, &field).config(config).start(wrong);
+                let mut localizer = builder.build().unwrap();
+                let observation = Observation::new(0.0, picture.clone(), MountPose::of(pose))
+                    .with_odometry(Pose2::default());
+                for _ in 0..3 {
+                    let frame = localizer.update(&observation).unwrap();
+                    let off_m = (frame.pose.x_m - pose.x_m).hypot(frame.pose.y_m - pose.y_m);
+                    if off_m > 0.4 {
+                        stayed += 1;
+                        fitted += u32::from(frame.line_fraction > 0.25);
+                        assert!(!frame.sure, "{kind}, {off_m} m off: {frame:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(
+        stayed > 10 && fitted > 0,
+        "{stayed} pictures at wrong places, {fitted} of them with lines that fit"
+    );
+}
+
+/// Without a start, a picture of which much is hidden fits at several places; the next ones decide.
+#[test]
+fn several_places_are_followed_until_pictures_decide() {
+    let (camera, field) = (test_scene::fisheye(), test_scene::field());
+    let mut ambiguous = 0;
+    for pose in test_scene::poses() {
+        let whole = test_scene::render(&camera, pose, &field);
+        let mut localizer = Localizer::builder(&camera, &field).build().unwrap();
+        let see = |picture: RgbImage| {
+            Observation::new(0.0, picture, MountPose::of(pose)).with_odometry(Pose2::default())
+        };
+        let first = localizer.update(&see(hidden(whole.clone(), 0..230))).unwrap();
+        ambiguous += u32::from(!first.settled);
+        let last = (0..6).map(|_| localizer.update(&see(whole.clone())).unwrap()).last().unwrap();
+        let is_right = |found: CameraPose| (found.x_m - pose.x_m).hypot(found.y_m - pose.y_m) < 0.05;
+        assert!(is_right(last.pose) || is_right(last.pose.mirrored()), "{last:?} instead of {pose:?}");
+        assert!(last.settled, "{last:?}");
+    }
+    assert!(ambiguous > 0, "some picture of which much is hidden fits at several places");
 }
 
 #[test]

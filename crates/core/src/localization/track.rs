@@ -4,7 +4,7 @@
 //! *unconfirmed* until some consecutive pictures have fitted. It is *doubtful* while they fit badly. Whether the field's
 //! point symmetry has been resolved is tracked separately: a settled pose may still be the mirror image of the right one.
 
-use super::{config::TrackConfig, half_evidence::HalfEvidence};
+use super::{agreement::Agreement, config::TrackConfig, half_evidence::HalfEvidence, rivals::Rival};
 use crate::{
     filter::{MotionNoise, PlanarSigma},
     pose::{Motion2, Pose2},
@@ -42,6 +42,12 @@ pub(crate) struct Track {
     odometry: Option<Pose2>,
     /// Slow average of the line fraction of settled poses.
     usual_line_fraction: f64,
+    /// The same of the explained fraction.
+    usual_explained_fraction: f64,
+    /// Other places that may be the right one.
+    rivals: Vec<Rival>,
+    /// Whether the place is beyond doubt: a picture showed it clearly, or the field was searched for others.
+    is_verified: bool,
     /// Number of consecutive pictures that fitted since the place became uncertain; `None` once it is confirmed.
     unconfirmed: Option<u32>,
     /// Number of doubtful pictures since the last one that fitted: in these the filter may have been lost.
@@ -65,6 +71,9 @@ impl Track {
             anchor_sigma: config.kidnapped_sigma,
             odometry,
             usual_line_fraction: 0.0,
+            usual_explained_fraction: 0.0,
+            rivals: Vec::new(),
+            is_verified: false,
             unconfirmed,
             doubtful_frames: 0,
             prior_mirrored_log_odds,
@@ -78,6 +87,10 @@ impl Track {
         self.odometry = odometry;
         self.anchor = self.anchor.moved(prediction.motion.unwrap_or_default());
         self.anchor_sigma = self.anchor_sigma.plus(prediction.sigma);
+        self.rivals.iter_mut().for_each(|rival| rival.follow(prediction.motion));
+        if prediction.is_kidnapped || self.is_long_way(&prediction) {
+            self.is_verified = false;
+        }
         if prediction.is_kidnapped {
             // Whoever carried the robot may have turned it round.
             self.forget_half(0.0);
@@ -150,6 +163,40 @@ impl Track {
         self.unconfirmed == Some(0)
     }
 
+    /// Returns the other places that may be the right one.
+    pub fn rivals(&self) -> &[Rival] {
+        &self.rivals
+    }
+
+    /// Notes that the field was searched for other places, which are now among the rivals.
+    pub fn verify(&mut self) {
+        self.is_verified = true;
+    }
+
+    /// Returns whether a picture that agrees with the pose like this leaves so much open that the field has to be searched for
+    /// other places.
+    pub fn needs_verification(&self, agreement: Agreement) -> bool {
+        !self.is_verified && !self.is_convincing(agreement)
+    }
+
+    fn is_convincing(&self, agreement: Agreement) -> bool {
+        agreement.line_fraction >= self.config.convincing_line_fraction
+            && agreement.explained_fraction >= self.config.convincing_explained_fraction
+    }
+
+    /// Replaces the other places that may be the right one. Of many, the most probable are kept; those that have lost are not.
+    pub fn set_rivals(&mut self, mut rivals: Vec<Rival>) {
+        rivals.retain(|rival| rival.log_odds > -self.config.rival_loses_at);
+        rivals.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
+        rivals.truncate(self.config.most_rivals);
+        self.rivals = rivals;
+    }
+
+    /// Returns the explained fraction below which the filter may be lost.
+    pub fn lost_unless_explained(&self) -> f64 {
+        self.config.lost_explained_ratio * self.usual_explained_fraction
+    }
+
     /// Returns the line fraction below which the filter may be lost.
     pub fn lost_below(&self) -> f64 {
         self.config.lost_line_fraction.max(self.config.lost_ratio * self.usual_line_fraction)
@@ -160,9 +207,16 @@ impl Track {
         self.config.fitting_line_fraction.max(self.config.fitting_ratio * self.usual_line_fraction)
     }
 
-    /// Updates the track with the pose of a picture and its line fraction; returns whether the pose is settled.
-    pub fn settle(&mut self, pose: Pose2, line_fraction: f64) -> bool {
-        let fits = line_fraction >= self.fits_from();
+    /// Returns the explained fraction from which a pose fits.
+    fn fits_where_explained(&self) -> f64 {
+        let ratio = self.config.fitting_explained_ratio;
+        self.config.fitting_explained_fraction.max(ratio * self.usual_explained_fraction)
+    }
+
+    /// Updates the track with the pose of a picture and its agreement with it; returns whether the pose is settled.
+    pub fn settle(&mut self, pose: Pose2, agreement: Agreement) -> bool {
+        let Agreement { line_fraction, explained_fraction, is_at_fit } = agreement;
+        let fits = line_fraction >= self.fits_from() && explained_fraction >= self.fits_where_explained();
         self.unconfirmed = match self.unconfirmed {
             Some(streak) if fits && streak + 1 < self.config.confirming_frames => Some(streak + 1),
             Some(_) if fits => None,
@@ -174,25 +228,30 @@ impl Track {
         } else if line_fraction < self.lost_below() {
             self.doubtful_frames = (self.doubtful_frames + 1).min(self.config.max_doubtful_frames);
         }
-        let is_settled = fits && self.unconfirmed.is_none();
+        self.is_verified |= self.is_convincing(agreement);
+        let is_alone = self.is_verified && self.unconfirmed.is_none() && self.rivals.is_empty();
+        let is_settled = fits && is_at_fit && is_alone;
         if fits {
             let sigma = if is_settled { self.config.settled_sigma } else { self.config.likely_sigma };
             (self.anchor, self.anchor_sigma) = (pose, sigma);
         }
-        self.average(is_settled.then_some(line_fraction));
+        self.average(is_settled.then_some([line_fraction, explained_fraction]));
         is_settled
     }
 
     /// Updates the slow average. Without a settled picture it fades: what was usual before a search need not be usual
     /// after it.
-    fn average(&mut self, line_fraction: Option<f64>) {
+    fn average(&mut self, settled: Option<[f64; 2]>) {
         let weight = self.config.line_fraction_weight;
-        match line_fraction {
-            Some(fraction) => {
-                let weight = if self.usual_line_fraction == 0.0 { 1.0 } else { weight };
-                self.usual_line_fraction += weight * (fraction - self.usual_line_fraction);
+        let averages = [&mut self.usual_line_fraction, &mut self.usual_explained_fraction];
+        for (index, usual) in averages.into_iter().enumerate() {
+            match settled {
+                Some(fractions) => {
+                    let weight = if *usual == 0.0 { 1.0 } else { weight };
+                    *usual += weight * (fractions[index] - *usual);
+                }
+                None => *usual *= 1.0 - weight,
             }
-            None => self.usual_line_fraction *= 1.0 - weight,
         }
     }
 
@@ -247,6 +306,11 @@ mod tests {
     const POOR: f64 = 0.42;
     const BAD: f64 = 0.1;
 
+    /// Returns the agreement of a pose with this line fraction that explains all lines of its picture.
+    fn agreeing(line_fraction: f64) -> Agreement {
+        Agreement { line_fraction, explained_fraction: 1.0, is_at_fit: true }
+    }
+
     fn track(beginning: Beginning) -> Track {
         let start = Pose2::new(-1.0, 0.5, 0.3);
         Track::new(TrackConfig::default(), start, Some(Pose2::default()), beginning)
@@ -255,7 +319,7 @@ mod tests {
     /// Returns a track with a given start whose first picture fitted.
     fn settled() -> Track {
         let mut track = track(Beginning::Given);
-        assert!(track.settle(Pose2::new(-1.0, 0.5, 0.3), GOOD));
+        assert!(track.settle(Pose2::new(-1.0, 0.5, 0.3), agreeing(GOOD)));
         track
     }
 
@@ -270,18 +334,18 @@ mod tests {
         let mut track = track(Beginning::Given);
         assert!(!track.is_unconfirmed() && track.is_half_sure() && track.mirrored_probability() == 0.0);
         assert!(!track.asks_for_half(GOOD), "whoever gave the start knew the half");
-        assert!(track.settle(Pose2::new(0.0, 0.0, 0.0), GOOD));
+        assert!(track.settle(Pose2::new(0.0, 0.0, 0.0), agreeing(GOOD)));
         assert_eq!(track.prior().sigma, TrackConfig::default().settled_sigma);
     }
 
     #[test]
     fn a_search_with_one_answer_settles_at_once_and_one_with_several_after_four_pictures_that_fit() {
         let mut clear = track(Beginning::Searched { is_clear: true });
-        assert!(clear.settle(Pose2::default(), GOOD));
+        assert!(clear.settle(Pose2::default(), agreeing(GOOD)));
 
         let mut unclear = track(Beginning::Searched { is_clear: false });
         assert!(unclear.is_unconfirmed());
-        let fits: Vec<bool> = (0..5).map(|_| unclear.settle(Pose2::default(), GOOD)).collect();
+        let fits: Vec<bool> = (0..5).map(|_| unclear.settle(Pose2::default(), agreeing(GOOD))).collect();
         assert_eq!(fits, [false, false, false, true, true]);
     }
 
@@ -289,7 +353,7 @@ mod tests {
     fn a_pose_that_fits_but_is_not_confirmed_moves_the_anchor_with_the_likely_uncertainty() {
         let mut track = track(Beginning::Searched { is_clear: false });
         let pose = Pose2::new(2.0, 1.0, -0.4);
-        assert!(!track.settle(pose, GOOD));
+        assert!(!track.settle(pose, agreeing(GOOD)));
         assert_eq!(track.prior(), Prior { pose, sigma: TrackConfig::default().likely_sigma });
     }
 
@@ -297,10 +361,10 @@ mod tests {
     fn one_picture_that_does_not_fit_begins_the_confirmation_anew() {
         let mut track = track(Beginning::Searched { is_clear: false });
         for _ in 0..3 {
-            track.settle(Pose2::default(), GOOD);
+            track.settle(Pose2::default(), agreeing(GOOD));
         }
         assert!(!track.is_unconfirmed());
-        track.settle(Pose2::default(), POOR / 2.0);
+        track.settle(Pose2::default(), agreeing(POOR / 2.0));
         assert!(track.is_unconfirmed());
     }
 
@@ -321,7 +385,7 @@ mod tests {
     fn evidence_for_the_mirrored_pose_turns_the_track_round() {
         let mut track = track(Beginning::Searched { is_clear: true });
         let pose = Pose2::new(1.0, 0.5, 0.2);
-        track.settle(pose, GOOD);
+        track.settle(pose, agreeing(GOOD));
         assert!(!track.weigh_halves(pose, [0.0, -1.0]));
         let before = track.mirrored_probability();
         assert!(track.weigh_halves(pose, [0.0, 2.0]));
@@ -402,8 +466,8 @@ mod tests {
         let mut track = settled();
         track.confirm_after_long_way();
         assert!(!track.is_unconfirmed(), "it was right before");
-        assert!(!track.settle(Pose2::default(), GOOD));
-        assert!(track.settle(Pose2::default(), GOOD));
+        assert!(!track.settle(Pose2::default(), agreeing(GOOD)));
+        assert!(track.settle(Pose2::default(), agreeing(GOOD)));
     }
 
     #[test]
@@ -418,7 +482,7 @@ mod tests {
         let mut track = settled();
         assert!((track.fits_from() - 0.55 * GOOD).abs() < 1e-12);
         assert!((track.lost_below() - 0.5 * GOOD).abs() < 1e-12);
-        assert!(!track.settle(Pose2::default(), POOR));
+        assert!(!track.settle(Pose2::default(), agreeing(POOR)));
         assert_eq!(track.doubtful_frames, 0, "neither fits nor lost");
     }
 
@@ -426,10 +490,10 @@ mod tests {
     fn the_usual_line_fraction_follows_slowly_and_fades_while_nothing_is_settled() {
         let mut track = settled();
         assert_eq!(track.usual_line_fraction, GOOD, "the first picture is all that is known");
-        track.settle(Pose2::default(), 0.6);
+        track.settle(Pose2::default(), agreeing(0.6));
         assert!((track.usual_line_fraction - (GOOD + 0.05 * (0.6 - GOOD))).abs() < 1e-12);
         let before = track.usual_line_fraction;
-        track.settle(Pose2::default(), BAD);
+        track.settle(Pose2::default(), agreeing(BAD));
         assert!((track.usual_line_fraction - 0.95 * before).abs() < 1e-12);
     }
 
@@ -439,11 +503,11 @@ mod tests {
         let lost = TrackConfig::default().lost_sigma.position_m;
         assert_eq!(track.prior_of_lost().sigma.position_m, lost, "the first doubt");
         for times in [2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 9.0, 9.0] {
-            assert!(!track.settle(Pose2::new(7.0, 7.0, 0.0), BAD));
+            assert!(!track.settle(Pose2::new(7.0, 7.0, 0.0), agreeing(BAD)));
             assert!((track.prior().sigma.position_m - times * lost).abs() < 1e-12, "{times}");
         }
         assert_eq!(track.prior().pose, Pose2::new(-1.0, 0.5, 0.3), "the anchor stays where it last fitted");
-        track.settle(Pose2::default(), GOOD);
+        track.settle(Pose2::default(), agreeing(GOOD));
         assert_eq!(track.prior().sigma, TrackConfig::default().settled_sigma);
     }
 
@@ -454,7 +518,7 @@ mod tests {
         track.relocalize(Some(prior.pose), false, prior);
         assert!(track.is_unconfirmed());
         track.relocalize(Some(prior.pose), true, prior);
-        assert!(!track.is_unconfirmed() && track.settle(prior.pose, GOOD));
+        assert!(!track.is_unconfirmed() && track.settle(prior.pose, agreeing(GOOD)));
         track.relocalize(None, false, prior);
         assert!(track.is_unconfirmed(), "nothing was found");
     }

@@ -19,6 +19,8 @@ pub struct Prepared {
     pub whiteness: GrayImage,
     /// Whiteness of carpet and lines.
     pub levels: WhiteLevels,
+    /// White pixels in some of the rows, column and row each: enough of them to tell where lines are.
+    pub white_pixels: Vec<[u32; 2]>,
     /// Border of the field.
     pub border: FieldBorder,
     scale: LineScale,
@@ -60,7 +62,7 @@ impl Preprocessor {
             line_width_m: self.line_width_m,
             height_m: mount.height_m as f32,
         };
-        let levels = white_levels(&whiteness, &border, scale);
-        Prepared { picture, whiteness, levels, border, scale }
+        let (levels, white_pixels) = white_levels(&whiteness, &border, scale);
+        Prepared { picture, whiteness, levels, white_pixels, border, scale }
     }
 }

@@ -40,8 +40,13 @@ pub fn white_line_evidence(
 }
 
 /// Returns how bright lines and carpet are in a picture, and how much brighter than its flanks a white pixel must be:
-/// Otsu's threshold among the pixels that stand out at all.
-pub fn white_levels(whiteness: &GrayImage, border: &FieldBorder, scale: LineScale) -> WhiteLevels {
+/// Otsu's threshold among the pixels that stand out at all. Returns besides the pixels that are white in the rows from which this is
+/// learned.
+pub fn white_levels(
+    whiteness: &GrayImage,
+    border: &FieldBorder,
+    scale: LineScale,
+) -> (WhiteLevels, Vec<[u32; 2]>) {
     let ridges = ridges(whiteness, border, scale, LEVEL_ROWS);
     // Pixels that are no ridge at all would outnumber the lines.
     let candidates =
@@ -55,10 +60,14 @@ pub fn white_levels(whiteness: &GrayImage, border: &FieldBorder, scale: LineScal
         flank += f32::from(white - ridge);
         count += 1.0;
     }
-    match count > 0.0 {
+    let levels = match count > 0.0 {
         true => WhiteLevels { carpet: flank / count, line: line / count, threshold },
         false => WhiteLevels { threshold, ..WhiteLevels::default() },
-    }
+    };
+    let rows = (0..ridges.height()).step_by(LEVEL_ROWS);
+    let pixels = rows.flat_map(|v| (0..ridges.width()).map(move |u| [u, v]));
+    let white = pixels.filter(|[u, v]| ridges.get_pixel(*u, *v).0[0] > threshold);
+    (levels, white.collect())
 }
 
 /// Returns by how much each pixel inside the border, in some of the rows, is brighter than both its flanks, along the

@@ -13,7 +13,8 @@ pub struct SearchConfig {
     /// Number of grid poses kept for refinement, 60: the grid's score is coarse, and the right pose is often not the
     /// best.
     pub kept_poses: usize,
-    /// Number of scored grid poses that are compared with each other per pose kept, 40: most lie beside a better one.
+    /// Number of scored grid poses that are compared with each other per pose kept, 400: most lie beside a better one, and
+    /// only then it is asked which of the picture's lines they explain.
     pub compared_per_kept: usize,
     /// Maximum number of headings kept per place, 4: lines look alike in several headings, and these must not crowd out
     /// other places.
@@ -34,6 +35,8 @@ pub struct SearchConfig {
     pub fitted_places: usize,
     /// Log-weight that a fit may lose, 4: the particle from which it starts was chosen to maximise the log-weight.
     pub fit_margin: f64,
+    /// Log-weight that a pose loses if no white line in the picture is a line of the field, seen from there, 20.
+    pub unexplained_weight: f64,
     /// Poses nearer to a better one than this are the same place, 0.35 m and 0.25 rad: more than the spread of
     /// [`SearchConfig::far`], so that no place is found twice.
     pub same_place: PlanarSigma,
@@ -51,6 +54,7 @@ setters!(SearchConfig {
     with_iterations: iterations = u32,
     with_fitted_places: fitted_places = usize,
     with_fit_margin: fit_margin = f64,
+    with_unexplained_weight: unexplained_weight = f64,
     with_same_place: same_place = PlanarSigma,
 });
 
@@ -60,7 +64,7 @@ impl Default for SearchConfig {
         Self {
             grid: None,
             kept_poses: 60,
-            compared_per_kept: 40,
+            compared_per_kept: 400,
             kept_headings: 4,
             places_at_once: 1024,
             near: SearchParticles { particles: 60, sigma: sigma(0.08, 0.04) },
@@ -69,6 +73,7 @@ impl Default for SearchConfig {
             iterations: 6,
             fitted_places: 24,
             fit_margin: 4.0,
+            unexplained_weight: 20.0,
             same_place: sigma(0.35, 0.25),
         }
     }

@@ -4,9 +4,11 @@
 mod config;
 mod grid;
 mod mode;
+mod seen_lines;
 
 use rayon::prelude::*;
 
+use self::seen_lines::SeenLines;
 pub use self::{
     config::{SearchConfig, SearchParticles},
     grid::SearchGrid,
@@ -32,6 +34,9 @@ pub struct GlobalSearch {
     grid_scorer: Box<dyn Scorer>,
     scorer: CpuScorer,
     white_contrast: f64,
+    /// Lines of the picture loaded last.
+    seen: SeenLines,
+    camera: Camera,
     field: FieldDimensions,
     refiner: Refiner,
 }
@@ -65,6 +70,8 @@ impl GlobalSearch {
             grid_scorer: backend.scorer(camera, field, ObservationConfig::grid(field))?,
             scorer: CpuScorer::new(camera, field, ObservationConfig::coarse_contrast()),
             white_contrast: 1.0,
+            seen: SeenLines::default(),
+            camera: camera.clone(),
             field: field.clone(),
             refiner,
         })
@@ -77,6 +84,7 @@ impl GlobalSearch {
 
     /// Loads a new picture for the methods that do not search the field.
     pub fn load(&mut self, picture: &Prepared) {
+        self.seen = SeenLines::new(&self.camera, &self.field, picture);
         self.scorer.set_picture(picture);
         self.white_contrast = f64::from(picture.levels.contrast());
     }
@@ -85,6 +93,12 @@ impl GlobalSearch {
     /// [`CpuScorer::line_fraction`]; 0 if no line is in view.
     pub fn line_fraction(&self, pose: CameraPose) -> f64 {
         self.scorer.line_fraction(pose).unwrap_or(0.0)
+    }
+
+    /// Returns the fraction of the white lines in the picture that are lines of the field as seen from a pose; 1 if the
+    /// picture shows none.
+    pub fn explained_fraction(&self, pose: CameraPose) -> f64 {
+        self.seen.explained_fraction(pose)
     }
 
     /// Returns the poses that fit the picture, best first. On a field with equal halves, a pose and its mirror pose fit
@@ -121,6 +135,17 @@ impl GlobalSearch {
         fitted.into_iter().max_by(|a, b| a.log_weight.total_cmp(&b.log_weight))
     }
 
+    /// Returns a pose fitted to the picture loaded last, without any prior; as it is where the fit leads to another place.
+    pub fn best_near(&self, pose: CameraPose, mount: MountPose) -> Mode {
+        let own = self.mode(pose, mount, None);
+        let fitted = self.fitted(own, mount, None);
+        if self.is_same_place(pose.planar(), fitted.pose.planar()) { fitted } else { own }
+    }
+
+    fn is_same_place(&self, a: Pose2, b: Pose2) -> bool {
+        distinct(vec![a, b], self.config.same_place, |pose| *pose).len() == 1
+    }
+
     fn fitted(&self, mode: Mode, mount: MountPose, prior: Option<Prior>) -> Mode {
         // If lines lie close together, a wide search can slip from one to the next; a narrow one stays on its line.
         [Reach::Wide, Reach::Narrow]
@@ -136,8 +161,10 @@ impl GlobalSearch {
 
     fn mode(&self, pose: CameraPose, mount: MountPose, prior: Option<Prior>) -> Mode {
         let prior = prior.map_or(0.0, |prior| prior.log_probability(pose.planar()));
+        let unexplained = self.config.unexplained_weight * (1.0 - self.seen.explained_fraction(pose));
         let log_weight =
-            self.scorer.log_weight(&pose) + self.refiner.mount_sigma().log_prior(pose, mount) + prior;
+            self.scorer.log_weight(&pose) + self.refiner.mount_sigma().log_prior(pose, mount) + prior
+                - unexplained;
         Mode { pose, log_weight, probability: 0.0, fit: None }
     }
 
@@ -174,6 +201,11 @@ impl GlobalSearch {
         }
         scored.sort_by(|a, b| b.1.total_cmp(&a.1));
         scored.truncate(self.config.kept_poses * self.config.compared_per_kept);
+        scored.par_iter_mut().for_each(|(pose, score)| {
+            let explained = self.seen.roughly_explained_fraction(mount.at(*pose));
+            *score -= self.config.unexplained_weight * (1.0 - explained);
+        });
+        scored.sort_by(|a, b| b.1.total_cmp(&a.1));
         let mut places = distinct(scored, self.config.same_place, |(pose, _)| *pose);
         places.truncate(self.config.kept_poses);
         Ok(places.into_iter().map(|(pose, _)| pose).collect())
@@ -283,6 +315,34 @@ mod tests {
             }
         }
         assert!(fitted > 20 && slipped > 5, "both happen: {fitted} fitted, {slipped} slipped");
+    }
+
+    #[test]
+    fn where_only_some_lines_fit_fewer_of_the_pictures_lines_are_explained() {
+        let (camera, field) = (test_scene::fisheye(), test_scene::field());
+        let mut search = GlobalSearch::new(&camera, &field, MountPoseSigma::default());
+        let grid = SearchGrid { step_m: 0.2, headings: 72 };
+        for pose in test_scene::poses() {
+            let mount = MountPose::of(pose);
+            let preprocessor = Preprocessor::new(&camera, field.line_width_m);
+            search.load(&preprocessor.prepare(test_scene::render(&camera, pose, &field), mount));
+            let explained = search.explained_fraction(pose);
+            assert!(explained > 0.97, "{explained} at the pose of the picture");
+            let is_wrong = |other: &CameraPose| {
+                [pose, pose.mirrored()].iter().all(|right| {
+                    (right.x_m - other.x_m).hypot(right.y_m - other.y_m) > 0.4
+                        || wrap_angle(right.yaw_rad - other.yaw_rad).abs() > 0.3
+                })
+            };
+            let all = grid.places(&field).into_iter().flat_map(|place| grid.poses_at(place));
+            let wrong = all.map(|place| mount.at(place)).filter(is_wrong);
+            let most_fitting =
+                wrong.max_by(|a, b| search.line_fraction(*a).total_cmp(&search.line_fraction(*b)));
+            let most_fitting = most_fitting.unwrap();
+            assert!(search.line_fraction(most_fitting) > 0.3, "lines fit at a wrong place");
+            let explained = search.explained_fraction(most_fitting);
+            assert!(explained < 0.8, "{explained} at {most_fitting:?} instead of {pose:?}");
+        }
     }
 
     #[test]
