@@ -81,7 +81,8 @@ impl Database {
                 is_wanted = goes_on(done);
                 is_wanted
             };
-            done = self.write(|transaction| frames.add_batch(transaction, done, &mut report, &mut goes_on))?;
+            done =
+                self.write(|transaction| frames.add_batch(transaction, done, &mut report, &mut goes_on))?;
         }
         match sequence.unusable_pictures(frames.unusable) {
             None => Ok(report),

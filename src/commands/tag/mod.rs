@@ -63,12 +63,9 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
         write_tum(out, &stamped)?;
     }
     localized.with_context(|| match args.out.as_ref().or(args.details.as_ref()) {
-        Some(file) => format!(
-            "{}: holds the first {} of {}",
-            file.display(),
-            frames.len(),
-            counted(wanted, "frame")
-        ),
+        Some(file) => {
+            format!("{}: holds the first {} of {}", file.display(), frames.len(), counted(wanted, "frame"))
+        }
         None => format!("frame {}", frames.len()),
     })?;
     let corrections = model.map(|model| model.words(&sequence.setup, &sequence.field, Use::Recording));

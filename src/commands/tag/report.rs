@@ -170,7 +170,10 @@ impl Report {
             let [mean, median, p95, max] = [error.mean_m, error.median_m, error.p95_m, error.max_m].map(cm);
             lines.push(("error", format!("mean {mean}, median {median}, 95 % below {p95}, largest {max}")));
             let yaw = error.mean_yaw_rad.to_degrees();
-            lines.push(("", format!("yaw {yaw:.2}° in the mean; {} lost", counted(error.lost_frames, "frame"))));
+            lines.push((
+                "",
+                format!("yaw {yaw:.2}° in the mean; {} lost", counted(error.lost_frames, "frame")),
+            ));
         }
         for (name, path) in [("poses", &self.out), ("details", &self.details), ("overlay", &self.overlay)] {
             lines.extend(path.iter().map(|path| (name, path.clone())));

@@ -290,8 +290,7 @@ struct Names<'a>(&'a [PathBuf]);
 
 impl fmt::Display for Names<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let names: Vec<String> =
-            self.0.iter().take(NAMES).map(|name| Printable(name).to_string()).collect();
+        let names: Vec<String> = self.0.iter().take(NAMES).map(|name| Printable(name).to_string()).collect();
         let more = self.0.len() - names.len();
         let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
         write!(formatter, "{}{rest}", names.join(", "))

@@ -8,7 +8,8 @@ use reality_sim_core::{
 };
 
 use super::{
-    frame::FrameView,
+    cloud::{self, Inset},
+    frame::{FrameView, GatheringStep},
     history::{History, Thinned, odometry_path, true_path},
     settings::Layers,
 };
@@ -24,6 +25,7 @@ pub struct Map {
     view: FieldView,
     dragged: Option<Pose2>,
     footprint: Footprint,
+    inset: Inset,
 }
 
 impl Map {
@@ -64,7 +66,7 @@ impl Map {
             draw_path(&canvas, &history.path(at), colors::POSE);
         }
         if layers.particles {
-            draw_particles(&canvas, frame);
+            cloud::draw(&canvas, frame);
         }
         if let Some(truth) = frame.truth.filter(|_| layers.truth) {
             canvas.arrow(truth.planar(), colors::TRUTH);
@@ -73,6 +75,12 @@ impl Map {
             canvas.arrow(frame.best_particle.planar(), colors::PARTICLE);
         }
         canvas.arrow(frame.record.pose.planar(), colors::POSE);
+        if layers.inset && self.dragged.is_none() {
+            self.inset.draw(&canvas, &sequence.field, frame, layers);
+        }
+        if let Some(step) = frame.gathering {
+            explain(&canvas, step);
+        }
         canvas.hint("drag: move the particles away · wheel: zoom");
         self.drag(ui, &canvas, frame.record.pose.planar())
     }
@@ -113,11 +121,11 @@ fn draw_odometry(canvas: &FieldCanvas, sequence: &Sequence, history: &History, a
     }
 }
 
-/// Draws the particles: brighter and larger with more weight.
-fn draw_particles(canvas: &FieldCanvas, frame: &FrameView) {
-    for particle in &frame.particles {
-        let shown = particle.relative_weight.sqrt();
-        let color = colors::PARTICLE.gamma_multiply(0.25 + 0.75 * shown);
-        canvas.painter.circle_filled(canvas.at(particle.pose.position_in_world()), 1.2 + 1.6 * shown, color);
-    }
+/// Says what the gathering particles do.
+fn explain(canvas: &FieldCanvas, GatheringStep { number, of }: GatheringStep) {
+    canvas.title(&if number == 0 {
+        "Nothing is known yet: particles are spread over the field".to_owned()
+    } else {
+        format!("They gather where the picture fits: {number} of {of}")
+    });
 }

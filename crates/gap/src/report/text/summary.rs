@@ -217,7 +217,9 @@ fn inconclusive(unobservable: &[Unobservable]) -> String {
     };
     let others = match others.len() {
         0 => String::new(),
-        count => format!(". {} could not be judged either: {}", counted(count, "more effect"), enumerated(&others)),
+        count => {
+            format!(". {} could not be judged either: {}", counted(count, "more effect"), enumerated(&others))
+        }
     };
     format!("These frames cannot tell {}{remedy}{others}.", names.join(" or "))
 }

@@ -1,0 +1,165 @@
+//! The particles on the field from above, and an enlarged inset of them while they lie too close together.
+
+use eframe::egui::{Pos2, Rect, Stroke, StrokeKind, Vec2, vec2};
+use glam::DVec2;
+use reality_sim_core::{
+    field::FieldDimensions,
+    pose::{CameraPose, Pose2},
+};
+
+use super::{frame::FrameView, settings::Layers};
+use crate::{colors, field_view::FieldCanvas};
+
+/// Width of the ground in the inset, metres.
+const WIDTH_M: f64 = 0.3;
+/// Width of the inset on the screen, as a share of the view's smaller side, and its range, points.
+const WIDTH_SHARE: f32 = 0.42;
+const WIDTHS: std::ops::RangeInclusive<f32> = 90.0..=220.0;
+/// Distance of the inset from the view's edges, points.
+const MARGIN: f32 = 8.0;
+/// Least factor by which the inset enlarges the map: below it, the map itself is enlarged.
+const LEAST_ENLARGEMENT: f32 = 2.0;
+/// Least share of the particles that lie in the inset.
+const LEAST_SHARE: f64 = 0.9;
+/// Distance that the inset keeps from poses, points.
+const DISTANCE: f32 = 12.0;
+
+/// Corner of the view, as the direction from its centre.
+type Corner = Vec2;
+
+/// Corners in the order in which they are tried: scale and hints are along the lower edge.
+const CORNERS: [Corner; 4] = [vec2(1.0, -1.0), vec2(-1.0, -1.0), vec2(1.0, 1.0), vec2(-1.0, 1.0)];
+
+/// Draws the particles: brighter and larger with more weight.
+pub fn draw(canvas: &FieldCanvas, frame: &FrameView) {
+    for particle in &frame.particles {
+        let shown = particle.relative_weight.sqrt();
+        let color = colors::PARTICLE.gamma_multiply(0.25 + 0.75 * shown);
+        canvas.painter.circle_filled(canvas.at(particle.pose.position_in_world()), 1.2 + 1.6 * shown, color);
+    }
+}
+
+/// Enlarged view of the particles. It stays in its corner until a pose comes there.
+#[derive(Debug)]
+pub struct Inset {
+    corner: Corner,
+}
+
+impl Default for Inset {
+    fn default() -> Self {
+        Self { corner: CORNERS[0] }
+    }
+}
+
+impl Inset {
+    /// Draws the inset into a corner of the map, unless the map itself shows the particles well.
+    pub fn draw(&mut self, map: &FieldCanvas, field: &FieldDimensions, frame: &FrameView, layers: &Layers) {
+        let middle_in_world = frame.record.pose.planar().position_in_world();
+        let width = (WIDTH_SHARE * map.rect.size().min_elem()).clamp(*WIDTHS.start(), *WIDTHS.end());
+        let is_enlarged = width >= LEAST_ENLARGEMENT * map.points(WIDTH_M);
+        if !is_enlarged || !holds_cloud(frame, middle_in_world) {
+            return;
+        }
+        let poses = [Some(frame.record.pose), frame.truth].into_iter().flatten().map(CameraPose::planar);
+        let taken: Vec<Pos2> = poses.flat_map(|pose| ends_of_arrow(map, pose)).collect();
+        self.corner = free_corner(self.corner, map.rect, width, &taken);
+        let rect = in_corner(self.corner, map.rect, width);
+        let place = Rect::from_center_size(map.at(middle_in_world), Vec2::splat(map.points(WIDTH_M)));
+        draw_frame(map, place, rect);
+        let part = map.part(rect, middle_in_world, WIDTH_M);
+        part.painter.rect_filled(rect, 0.0, colors::CARPET);
+        part.draw_lines(field, colors::LINE.gamma_multiply(0.5));
+        if layers.particles {
+            draw(&part, frame);
+        }
+        if let Some(truth) = frame.truth.filter(|_| layers.truth) {
+            part.arrow(truth.planar(), colors::TRUTH);
+        }
+        if layers.best_particle {
+            part.arrow(frame.best_particle.planar(), colors::PARTICLE);
+        }
+        part.arrow(frame.record.pose.planar(), colors::POSE);
+        part.draw_scale_with("");
+        map.painter.rect_stroke(rect, 0.0, stroke(), StrokeKind::Outside);
+    }
+}
+
+fn stroke() -> Stroke {
+    Stroke::new(1.0, colors::LINE.gamma_multiply(0.8))
+}
+
+/// Whether nearly all particles lie in a square of the inset's width around a position.
+fn holds_cloud(frame: &FrameView, middle_in_world: DVec2) -> bool {
+    let is_inside = |place: DVec2| (place - middle_in_world).abs().max_element() < 0.5 * WIDTH_M;
+    let poses = frame.particles.iter().map(|particle| particle.pose.position_in_world());
+    let inside = poses.filter(|place| is_inside(*place)).count();
+    !frame.particles.is_empty() && inside as f64 >= LEAST_SHARE * frame.particles.len() as f64
+}
+
+fn ends_of_arrow(map: &FieldCanvas, pose: Pose2) -> [Pos2; 2] {
+    [map.at(pose.position_in_world()), map.arrow_tip(pose)]
+}
+
+/// Returns the first corner, beginning with the present one, in which the inset covers none of the positions; the present
+/// one if there is none.
+fn free_corner(present: Corner, view: Rect, width: f32, taken: &[Pos2]) -> Corner {
+    let is_free = |corner: &Corner| {
+        let rect = in_corner(*corner, view, width).expand(DISTANCE);
+        !taken.iter().any(|position| rect.contains(*position))
+    };
+    std::iter::once(present).chain(CORNERS).find(is_free).unwrap_or(present)
+}
+
+fn in_corner(corner: Corner, view: Rect, width: f32) -> Rect {
+    let offset = 0.5 * view.size() - Vec2::splat(MARGIN + 0.5 * width);
+    Rect::from_center_size(view.center() + offset * corner, Vec2::splat(width))
+}
+
+/// Draws a square around the place on the map that the inset shows, and lines between the two.
+fn draw_frame(map: &FieldCanvas, place: Rect, inset: Rect) {
+    map.painter.rect_stroke(place, 0.0, stroke(), StrokeKind::Outside);
+    let corners = |rect: Rect| [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom()];
+    // The two lines that enclose all others begin at the corners farthest to both sides of the way to the inset.
+    let way = inset.center() - place.center();
+    let is_rising = way.x * way.y < 0.0;
+    let (from, to) = (corners(place), corners(inset));
+    for corner in if is_rising { [0, 2] } else { [1, 3] } {
+        let line = Stroke::new(1.0, colors::LINE.gamma_multiply(0.35));
+        map.painter.line_segment([from[corner], to[corner]], line);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use eframe::egui::pos2;
+
+    use super::*;
+
+    const VIEW: Rect = Rect { min: pos2(100.0, 50.0), max: pos2(700.0, 450.0) };
+    const WIDTH: f32 = 150.0;
+
+    fn corner(present: Corner, taken: &[Pos2]) -> Corner {
+        free_corner(present, VIEW, WIDTH, taken)
+    }
+
+    #[test]
+    fn the_inset_stays_in_its_corner_until_a_pose_comes_there() {
+        let [right, left, ..] = CORNERS;
+        assert_eq!(corner(right, &[VIEW.center()]), right);
+        assert_eq!(corner(right, &[pos2(600.0, 100.0)]), left);
+        assert_eq!(corner(left, &[VIEW.center()]), left);
+        assert_eq!(corner(left, &[pos2(200.0, 100.0)]), right);
+    }
+
+    #[test]
+    fn wherever_two_poses_are_the_inset_covers_neither_and_lies_in_the_view() {
+        let places: Vec<Pos2> =
+            (0..=12).flat_map(|x| (0..=8).map(move |y| VIEW.min + 50.0 * vec2(x as f32, y as f32))).collect();
+        for &a in &places {
+            for &b in &places {
+                let rect = in_corner(corner(CORNERS[0], &[a, b]), VIEW, WIDTH);
+                assert!(VIEW.contains_rect(rect) && !rect.contains(a) && !rect.contains(b), "{a} {b}");
+            }
+        }
+    }
+}
