@@ -146,7 +146,11 @@ impl FieldCanvas {
 
     /// Draws an arrow at a pose, a tenth of the view long, with a dark rim.
     pub fn arrow(&self, pose: Pose2, color: Color32) {
-        let length = self.arrow_length();
+        self.arrow_of_length(pose, color, self.arrow_length());
+    }
+
+    /// Draws an arrow of a length, points, at a pose, with a dark rim.
+    pub fn arrow_of_length(&self, pose: Pose2, color: Color32, length: f32) {
         let tail = self.at(pose.position_in_world());
         let direction = vec2(pose.yaw_rad.cos() as f32, -pose.yaw_rad.sin() as f32);
         let (tip, side) = (tail + length * direction, direction.rot90());
@@ -168,16 +172,12 @@ impl FieldCanvas {
         self.painter.text(corner, Align2::RIGHT_BOTTOM, text, FontId::proportional(11.0), color);
     }
 
-    /// Writes a text along the upper edge.
+    /// Writes a text along the upper edge, on a dark ground.
     pub fn title(&self, text: &str) {
-        let font = FontId::proportional(14.0);
-        self.painter.text(
-            self.rect.center_top() + vec2(0.0, 6.0),
-            Align2::CENTER_TOP,
-            text,
-            font,
-            colors::LINE,
-        );
+        let galley = self.painter.layout_no_wrap(text.to_owned(), FontId::proportional(14.0), colors::LINE);
+        let ground = Align2::CENTER_TOP.anchor_size(self.rect.center_top() + vec2(0.0, 6.0), galley.size());
+        self.painter.rect_filled(ground.expand2(vec2(8.0, 3.0)), 4.0, Color32::from_black_alpha(190));
+        self.painter.galley(ground.min, galley, colors::LINE);
     }
 
     /// Returns the screen position of the tip of a pose's arrow.

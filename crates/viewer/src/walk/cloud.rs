@@ -10,19 +10,28 @@ use reality_sim_core::{
 use super::{frame::FrameView, settings::Layers};
 use crate::{colors, field_view::FieldCanvas};
 
-/// Width of the ground in the inset, metres.
-const WIDTH_M: f64 = 0.3;
+/// Widths of the ground that the inset may show, metres: the smallest that holds the particles.
+const WIDTHS_M: [f64; 3] = [0.06, 0.12, 0.3];
+/// Share of a smaller width that the particles may take up for the inset to be enlarged further: without it, a cloud as wide
+/// as the inset would make it change with every picture.
+const SHARE_OF_SMALLER: f64 = 0.7;
 /// Width of the inset on the screen, as a share of the view's smaller side, and its range, points.
-const WIDTH_SHARE: f32 = 0.42;
+const WIDTH_SHARE: f32 = 0.4;
 const WIDTHS: std::ops::RangeInclusive<f32> = 90.0..=220.0;
 /// Distance of the inset from the view's edges, points.
 const MARGIN: f32 = 8.0;
 /// Least factor by which the inset enlarges the map: below it, the map itself is enlarged.
 const LEAST_ENLARGEMENT: f32 = 2.0;
+/// Least width of the square around the place on the map, points.
+const LEAST_PLACE: f32 = 8.0;
 /// Least share of the particles that lie in the inset.
 const LEAST_SHARE: f64 = 0.9;
 /// Distance that the inset keeps from poses, points.
 const DISTANCE: f32 = 12.0;
+
+/// Length of the arrows in the inset, points; the truth's is longer, so that it is seen under the other.
+const ARROW: f32 = 26.0;
+const TRUTH_ARROW: f32 = 40.0;
 
 /// Corner of the view, as the direction from its centre.
 type Corner = Vec2;
@@ -39,15 +48,16 @@ pub fn draw(canvas: &FieldCanvas, frame: &FrameView) {
     }
 }
 
-/// Enlarged view of the particles. It stays in its corner until a pose comes there.
+/// Enlarged view of the particles. It stays in its corner until a pose comes there, and keeps its scale while it can.
 #[derive(Debug)]
 pub struct Inset {
     corner: Corner,
+    width_m: f64,
 }
 
 impl Default for Inset {
     fn default() -> Self {
-        Self { corner: CORNERS[0] }
+        Self { corner: CORNERS[0], width_m: WIDTHS_M[0] }
     }
 }
 
@@ -56,29 +66,34 @@ impl Inset {
     pub fn draw(&mut self, map: &FieldCanvas, field: &FieldDimensions, frame: &FrameView, layers: &Layers) {
         let middle_in_world = frame.record.pose.planar().position_in_world();
         let width = (WIDTH_SHARE * map.rect.size().min_elem()).clamp(*WIDTHS.start(), *WIDTHS.end());
-        let is_enlarged = width >= LEAST_ENLARGEMENT * map.points(WIDTH_M);
-        if !is_enlarged || !holds_cloud(frame, middle_in_world) {
+        let extent_m = extent_m(frame, middle_in_world);
+        let Some(width_m) = ground_width_m(self.width_m, extent_m).filter(|_| frame.has_pose()) else {
+            return;
+        };
+        self.width_m = width_m;
+        if width < LEAST_ENLARGEMENT * map.points(width_m) {
             return;
         }
         let poses = [Some(frame.record.pose), frame.truth].into_iter().flatten().map(CameraPose::planar);
         let taken: Vec<Pos2> = poses.flat_map(|pose| ends_of_arrow(map, pose)).collect();
         self.corner = free_corner(self.corner, map.rect, width, &taken);
         let rect = in_corner(self.corner, map.rect, width);
-        let place = Rect::from_center_size(map.at(middle_in_world), Vec2::splat(map.points(WIDTH_M)));
+        let place_width = map.points(width_m).max(LEAST_PLACE);
+        let place = Rect::from_center_size(map.at(middle_in_world), Vec2::splat(place_width));
         draw_frame(map, place, rect);
-        let part = map.part(rect, middle_in_world, WIDTH_M);
+        let part = map.part(rect, middle_in_world, width_m);
         part.painter.rect_filled(rect, 0.0, colors::CARPET);
         part.draw_lines(field, colors::LINE.gamma_multiply(0.5));
         if layers.particles {
             draw(&part, frame);
         }
         if let Some(truth) = frame.truth.filter(|_| layers.truth) {
-            part.arrow(truth.planar(), colors::TRUTH);
+            part.arrow_of_length(truth.planar(), colors::TRUTH, TRUTH_ARROW);
         }
         if layers.best_particle {
-            part.arrow(frame.best_particle.planar(), colors::PARTICLE);
+            part.arrow_of_length(frame.best_particle.planar(), colors::PARTICLE, ARROW);
         }
-        part.arrow(frame.record.pose.planar(), colors::POSE);
+        part.arrow_of_length(frame.record.pose.planar(), colors::POSE, ARROW);
         part.draw_scale_with("");
         map.painter.rect_stroke(rect, 0.0, stroke(), StrokeKind::Outside);
     }
@@ -88,12 +103,21 @@ fn stroke() -> Stroke {
     Stroke::new(1.0, colors::LINE.gamma_multiply(0.8))
 }
 
-/// Whether nearly all particles lie in a square of the inset's width around a position.
-fn holds_cloud(frame: &FrameView, middle_in_world: DVec2) -> bool {
-    let is_inside = |place: DVec2| (place - middle_in_world).abs().max_element() < 0.5 * WIDTH_M;
+/// Returns the width of the smallest square around a position that holds nearly all particles, metres.
+fn extent_m(frame: &FrameView, middle_in_world: DVec2) -> f64 {
+    let from_middle = |place: DVec2| (place - middle_in_world).abs().max_element();
     let poses = frame.particles.iter().map(|particle| particle.pose.position_in_world());
-    let inside = poses.filter(|place| is_inside(*place)).count();
-    !frame.particles.is_empty() && inside as f64 >= LEAST_SHARE * frame.particles.len() as f64
+    let mut distances_m: Vec<f64> = poses.map(from_middle).collect();
+    distances_m.sort_by(f64::total_cmp);
+    let last = (LEAST_SHARE * distances_m.len() as f64).ceil() as usize;
+    last.checked_sub(1).and_then(|last| distances_m.get(last)).map_or(f64::INFINITY, |half_m| 2.0 * half_m)
+}
+
+/// Returns the width of the ground to be shown for particles of this extent, metres; `None` if they are spread too far.
+fn ground_width_m(present_m: f64, extent_m: f64) -> Option<f64> {
+    let holds =
+        |width_m: &f64| extent_m <= if *width_m < present_m { SHARE_OF_SMALLER * width_m } else { *width_m };
+    WIDTHS_M.into_iter().find(holds)
 }
 
 fn ends_of_arrow(map: &FieldCanvas, pose: Pose2) -> [Pos2; 2] {
@@ -149,6 +173,17 @@ mod tests {
         assert_eq!(corner(right, &[pos2(600.0, 100.0)]), left);
         assert_eq!(corner(left, &[VIEW.center()]), left);
         assert_eq!(corner(left, &[pos2(200.0, 100.0)]), right);
+    }
+
+    #[test]
+    fn the_scale_follows_the_particles_but_not_every_tremor() {
+        let [small, middle, large] = WIDTHS_M;
+        assert_eq!(ground_width_m(small, 0.99 * small), Some(small));
+        assert_eq!(ground_width_m(small, 1.01 * small), Some(middle));
+        assert_eq!(ground_width_m(middle, 0.99 * small), Some(middle));
+        assert_eq!(ground_width_m(middle, 0.6 * small), Some(small));
+        assert_eq!(ground_width_m(small, 0.99 * large), Some(large));
+        assert_eq!(ground_width_m(large, 1.01 * large), None);
     }
 
     #[test]

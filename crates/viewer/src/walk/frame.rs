@@ -88,6 +88,13 @@ pub struct GatheringStep {
     pub of: u32,
 }
 
+impl GatheringStep {
+    /// Whether the particles are only spread: none weighs more than another, and there is no pose yet.
+    pub fn is_spread(self) -> bool {
+        self.number == 0
+    }
+}
+
 /// Everything shown of one picture.
 pub struct FrameView {
     pub record: Record,
@@ -107,6 +114,13 @@ pub struct FrameView {
     pub border: Vec<Vec<DVec2>>,
 }
 
+impl FrameView {
+    /// Whether a pose has been found, however doubtful.
+    pub fn has_pose(&self) -> bool {
+        !self.gathering.is_some_and(GatheringStep::is_spread)
+    }
+}
+
 /// Pose and particles found in a picture.
 pub struct Found {
     pub record: Record,
@@ -114,6 +128,12 @@ pub struct Found {
     pub particles: Vec<CameraPose>,
     /// `None` while the recording is followed.
     pub gathering: Option<GatheringStep>,
+}
+
+impl Found {
+    fn is_spread(&self) -> bool {
+        self.gathering.is_some_and(GatheringStep::is_spread)
+    }
 }
 
 /// Picture and what was found in it, with the data for drawing them.
@@ -142,7 +162,11 @@ impl Seen {
         let (camera, field) = (&sequence.setup.camera, &sequence.field);
         let half_width_m = 0.5 * field.line_width_m;
         let lines = |pose, sideways_m| project_lines(camera, field, pose, sideways_m);
-        let edges = |pose| [lines(pose, -half_width_m), lines(pose, half_width_m)].concat();
+        let has_pose = !self.found.is_spread();
+        let edges = |pose| match has_pose {
+            true => [lines(pose, -half_width_m), lines(pose, half_width_m)].concat(),
+            false => Vec::new(),
+        };
         let corners: Vec<DVec2> =
             self.prepared.border.outline_in_heading.iter().map(|corner| corner.as_dvec2()).collect();
         let Found { record, best_particle, gathering, .. } = self.found;
@@ -175,8 +199,12 @@ impl Seen {
     /// Returns the particles weighted by the observation model: every n-th of many, and always the best one.
     fn weighted_particles(&self, scorer: &mut CpuScorer) -> Vec<WeightedParticle> {
         let particles = &self.found.particles;
-        scorer.set_picture(&self.prepared);
-        let log_weights = scorer.log_weights_of(particles);
+        let log_weights = if self.found.is_spread() {
+            vec![0.0; particles.len()]
+        } else {
+            scorer.set_picture(&self.prepared);
+            scorer.log_weights_of(particles)
+        };
         let Some(best) = best_index(&log_weights) else { return Vec::new() };
         let weights = normalise(&log_weights);
         let most = weights[best].max(f64::MIN_POSITIVE);

@@ -12,7 +12,7 @@ use glam::DVec2;
 use image::RgbImage;
 use reality_sim_core::{
     backend::{Backend, BackendError},
-    filter::{Filter, FilterEstimate, PlanarSigma, best_index, effective_sample_size, normalise, spread_m},
+    filter::{Filter, FilterEstimate, PlanarSigma},
     localization::{LocalizerConfig, Observation},
     mount::MountPose,
     observation::{CpuScorer, ObservationConfig, ObservationKind},
@@ -69,13 +69,13 @@ impl Gathering {
         let prepared = preprocessor.prepare(picture.clone(), mount);
         let mut filter = backend.filter(&setup.camera, field, observation, config)?;
         filter.load(&prepared)?;
-        let (places, sigma) = spread(field.carpet_half_extent_m());
+        let half_extent_m = field.carpet_half_extent_m();
+        let (places, sigma) = spread(half_extent_m);
         filter.initialize(&places, sigma)?;
-        let mut scorer = CpuScorer::new(&setup.camera, field, observation);
-        scorer.set_picture(&prepared);
+        let scorer = CpuScorer::new(&setup.camera, field, observation);
         let particles: Vec<CameraPose> =
             filter.particles()?.iter().map(|particle| mount.at(particle.planar())).collect();
-        let estimate = estimate(&particles, &scorer.log_weights_of(&particles));
+        let estimate = estimate_of_spread(mount, half_extent_m, particles.len());
         let found = found(&estimate, particles, 0, truth);
         let seen = Seen::new(prepared, mount, found);
         Ok(Self { filter, mount, truth, scorer, seen, updates: 0 })
@@ -137,17 +137,14 @@ fn spread(half_extent_m: DVec2) -> (Vec<(Pose2, f64)>, PlanarSigma) {
     (poses.collect(), sigma)
 }
 
-/// Returns the estimate from particles that no update has weighed yet.
-fn estimate(particles: &[CameraPose], log_weights: &[f64]) -> FilterEstimate {
-    let weights = normalise(log_weights);
-    let best = best_index(log_weights);
-    let pose = best.map_or(CameraPose::default(), |best| particles[best]);
+/// Returns the estimate before the first update, which tells nothing yet: all particles weigh the same.
+fn estimate_of_spread(mount: MountPose, half_extent_m: DVec2, particles: usize) -> FilterEstimate {
     FilterEstimate {
-        pose,
-        log_weight: best.map_or(f64::NEG_INFINITY, |best| log_weights[best]),
-        effective_sample_size: effective_sample_size(&weights),
-        spread_m: spread_m(particles, &weights, pose),
-        particles: particles.len(),
+        pose: mount.at(Pose2::default()),
+        log_weight: f64::NEG_INFINITY,
+        effective_sample_size: particles as f64,
+        spread_m: half_extent_m.length() / 3_f64.sqrt(),
+        particles,
     }
 }
 

@@ -41,6 +41,7 @@ impl Map {
     ) -> Option<Pose2> {
         if let Some(frame) = frame
             && layers.follow
+            && frame.gathering.is_none()
             && self.dragged.is_none()
         {
             self.view.follow(frame.record.pose.planar().position_in_world());
@@ -53,7 +54,8 @@ impl Map {
             // A user who moves the view wants to see another part.
             layers.follow = false;
         }
-        if layers.footprint {
+        // The best of particles all over the field jumps about, and a footprint with it.
+        if layers.footprint && frame.gathering.is_none() {
             canvas.footprint(self.footprint.outline(&sequence.setup.camera, frame.record.pose));
         }
         if layers.odometry {
@@ -71,10 +73,12 @@ impl Map {
         if let Some(truth) = frame.truth.filter(|_| layers.truth) {
             canvas.arrow(truth.planar(), colors::TRUTH);
         }
-        if layers.best_particle {
+        if layers.best_particle && frame.has_pose() {
             canvas.arrow(frame.best_particle.planar(), colors::PARTICLE);
         }
-        canvas.arrow(frame.record.pose.planar(), colors::POSE);
+        if frame.has_pose() {
+            canvas.arrow(frame.record.pose.planar(), colors::POSE);
+        }
         if layers.inset && self.dragged.is_none() {
             self.inset.draw(&canvas, &sequence.field, frame, layers);
         }
@@ -82,7 +86,7 @@ impl Map {
             explain(&canvas, step);
         }
         canvas.hint("drag: move the particles away · wheel: zoom");
-        self.drag(ui, &canvas, frame.record.pose.planar())
+        if frame.has_pose() { self.drag(ui, &canvas, frame.record.pose.planar()) } else { None }
     }
 
     /// Drags the particles with the primary button, keeping their heading.
@@ -122,10 +126,10 @@ fn draw_odometry(canvas: &FieldCanvas, sequence: &Sequence, history: &History, a
 }
 
 /// Says what the gathering particles do.
-fn explain(canvas: &FieldCanvas, GatheringStep { number, of }: GatheringStep) {
-    canvas.title(&if number == 0 {
-        "Nothing is known yet: particles are spread over the field".to_owned()
+fn explain(canvas: &FieldCanvas, step: GatheringStep) {
+    if step.is_spread() {
+        canvas.title("Nothing is known yet: particles are spread over the field");
     } else {
-        format!("They gather where the picture fits: {number} of {of}")
-    });
+        canvas.title(&format!("They gather where the picture fits: {} of {}", step.number, step.of));
+    }
 }

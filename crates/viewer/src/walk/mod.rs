@@ -249,20 +249,19 @@ fn facts(ui: &mut Ui, frame: Option<&FrameView>, is_working: bool) {
         (None, false, true) => "not sure, after a search".to_owned(),
     };
     let pose = record.pose;
+    let known = |text: String| if frame.has_pose() { text } else { "–".to_owned() };
+    let angles = format!("{:.2}°, {:.2}°", pose.pitch_rad.to_degrees(), pose.roll_rad.to_degrees());
     egui::Grid::new("facts").num_columns(2).spacing([8.0, 2.0]).show(ui, |ui| {
         fact(ui, "Pose", state);
-        fact(ui, "x, y", format!("{:.3} m, {:.3} m", pose.x_m, pose.y_m));
-        fact(ui, "heading", format!("{:.2}°", pose.yaw_rad.to_degrees()));
-        fact(ui, "height", format!("{:.3} m", pose.height_m));
-        fact(
-            ui,
-            "pitch, roll",
-            format!("{:.2}°, {:.2}°", pose.pitch_rad.to_degrees(), pose.roll_rad.to_degrees()),
-        );
+        fact(ui, "x, y", known(format!("{:.3} m, {:.3} m", pose.x_m, pose.y_m)));
+        fact(ui, "heading", known(format!("{:.2}°", pose.yaw_rad.to_degrees())));
+        fact(ui, "height", known(format!("{:.3} m", pose.height_m)));
+        fact(ui, "pitch, roll", known(angles));
         if let (Some(error_m), Some(error_yaw_rad)) = (record.error_m, record.error_yaw_rad) {
             let text = format!("{:.2} cm, {:.2}°", 100.0 * error_m, error_yaw_rad.to_degrees());
-            fact(ui, "error", text);
+            fact(ui, "error", known(text));
         }
-        fact(ui, "particles", format!("{} weighed", record.particles));
+        let verb = if frame.has_pose() { "weighed" } else { "spread" };
+        fact(ui, "particles", format!("{} {verb}", record.particles));
     });
 }
