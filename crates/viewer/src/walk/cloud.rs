@@ -29,9 +29,9 @@ const LEAST_SHARE: f64 = 0.9;
 /// Distance that the inset keeps from poses, points.
 const DISTANCE: f32 = 12.0;
 
-/// Length of the arrows in the inset, points; the truth's is longer, so that it is seen under the other.
-const ARROW: f32 = 26.0;
-const TRUTH_ARROW: f32 = 40.0;
+/// Length of the arrows as a share of the inset's width; the truth's is longer, so that it is seen under the other.
+const ARROW_SHARE: f32 = 0.17;
+const TRUTH_ARROW_SHARE: f32 = 0.26;
 
 /// Corner of the view, as the direction from its centre.
 type Corner = Vec2;
@@ -88,12 +88,12 @@ impl Inset {
             draw(&part, frame);
         }
         if let Some(truth) = frame.truth.filter(|_| layers.truth) {
-            part.arrow_of_length(truth.planar(), colors::TRUTH, TRUTH_ARROW);
+            part.arrow_of_length(truth.planar(), colors::TRUTH, TRUTH_ARROW_SHARE * width);
         }
         if layers.best_particle {
-            part.arrow_of_length(frame.best_particle.planar(), colors::PARTICLE, ARROW);
+            part.arrow_of_length(frame.best_particle.planar(), colors::PARTICLE, ARROW_SHARE * width);
         }
-        part.arrow_of_length(frame.record.pose.planar(), colors::POSE, ARROW);
+        part.arrow_of_length(frame.record.pose.planar(), colors::POSE, ARROW_SHARE * width);
         part.draw_scale_with("");
         map.painter.rect_stroke(rect, 0.0, stroke(), StrokeKind::Outside);
     }
