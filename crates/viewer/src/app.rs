@@ -25,7 +25,7 @@ use crate::{
     settings::Settings,
     shortcuts::{self, Action, Place},
     toolbar::{PanelKind, Toolbar},
-    walk::WalkPanel,
+    walk::{Beginning, WalkPanel},
 };
 
 /// Content of the window.
@@ -127,16 +127,20 @@ impl ViewerApp {
     }
 
     fn show_opened(&mut self, ctx: &Context, opened: Opened, path: &Path) {
-        // The demonstration has its own entry in the list.
-        if self.demonstration.as_deref() != Some(path) {
+        // The demonstration has its own entry in the list, and greets who sees it for the first time.
+        let beginning = if self.demonstration.as_deref() == Some(path) {
+            Beginning::Gathering
+        } else {
             self.settings.remember(path);
-        }
+            Beginning::Waiting
+        };
         let shown_path = Some(path.to_path_buf());
         match opened {
             Opened::Recording(sequence) => {
                 self.leave_drive();
                 self.drive = Some(DrivePanel::of_recording(sequence.clone()));
-                self.walk = Some(WalkPanel::new(ctx, sequence, &self.devices, &self.settings.walk));
+                let walk = WalkPanel::new(ctx, sequence, &self.devices, &self.settings.walk, beginning);
+                self.walk = Some(walk);
                 (self.shown_path, self.shown) = (shown_path, PanelKind::Walk);
             }
             Opened::Database(archive) => {

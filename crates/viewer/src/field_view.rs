@@ -146,7 +146,11 @@ impl FieldCanvas {
 
     /// Draws an arrow at a pose, a tenth of the view long, with a dark rim.
     pub fn arrow(&self, pose: Pose2, color: Color32) {
-        let length = self.arrow_length();
+        self.arrow_of_length(pose, color, self.arrow_length());
+    }
+
+    /// Draws an arrow of a length, points, at a pose, with a dark rim.
+    pub fn arrow_of_length(&self, pose: Pose2, color: Color32, length: f32) {
         let tail = self.at(pose.position_in_world());
         let direction = vec2(pose.yaw_rad.cos() as f32, -pose.yaw_rad.sin() as f32);
         let (tip, side) = (tail + length * direction, direction.rot90());
@@ -166,6 +170,14 @@ impl FieldCanvas {
         let corner = self.rect.right_bottom() - vec2(8.0, 6.0);
         let color = colors::LINE.gamma_multiply(0.6);
         self.painter.text(corner, Align2::RIGHT_BOTTOM, text, FontId::proportional(11.0), color);
+    }
+
+    /// Writes a text along the upper edge, on a dark ground.
+    pub fn title(&self, text: &str) {
+        let galley = self.painter.layout_no_wrap(text.to_owned(), FontId::proportional(14.0), colors::LINE);
+        let ground = Align2::CENTER_TOP.anchor_size(self.rect.center_top() + vec2(0.0, 6.0), galley.size());
+        self.painter.rect_filled(ground.expand2(vec2(8.0, 3.0)), 4.0, Color32::from_black_alpha(190));
+        self.painter.galley(ground.min, galley, colors::LINE);
     }
 
     /// Returns the screen position of the tip of a pose's arrow.
@@ -212,10 +224,33 @@ impl FieldCanvas {
         }
     }
 
-    /// Draws a scale bar of a round length, at most a quarter of the view.
+    /// Returns a part of the canvas that shows the ground around a position, this wide, metres.
+    pub fn part(&self, rect: Rect, middle_in_world: DVec2, width_m: f64) -> Self {
+        Self {
+            painter: self.painter.with_clip_rect(rect.intersect(self.rect)),
+            rect,
+            response: self.response.clone(),
+            px_per_m: rect.width() / width_m as f32,
+            middle_in_world,
+        }
+    }
+
+    /// Draws a scale bar of a round length, at most a quarter of the view, and writes the directions beside it.
     pub fn draw_scale(&self) {
-        const LENGTHS: [(f64, &str); 6] =
-            [(5.0, "5 m"), (1.0, "1 m"), (0.5, "50 cm"), (0.2, "20 cm"), (0.1, "10 cm"), (0.02, "2 cm")];
+        self.draw_scale_with(" · +x to the right, +y up");
+    }
+
+    /// Draws a scale bar of a round length, at most a quarter of the view, and writes a text after its length.
+    pub fn draw_scale_with(&self, text: &str) {
+        const LENGTHS: [(f64, &str); 7] = [
+            (5.0, "5 m"),
+            (1.0, "1 m"),
+            (0.5, "50 cm"),
+            (0.2, "20 cm"),
+            (0.1, "10 cm"),
+            (0.05, "5 cm"),
+            (0.02, "2 cm"),
+        ];
         let fits = |(length_m, _): &(f64, &str)| self.points(*length_m) < 0.25 * self.rect.width();
         let (length_m, name) = LENGTHS.into_iter().find(fits).unwrap_or(LENGTHS[LENGTHS.len() - 1]);
         let (corner, length) = (self.rect.left_bottom() + vec2(10.0, -10.0), self.points(length_m));
@@ -226,7 +261,7 @@ impl FieldCanvas {
         for end in ends {
             self.painter.line_segment([end - vec2(0.0, 3.0), end + vec2(0.0, 3.0)], stroke);
         }
-        let text = format!("{name} · +x to the right, +y up");
+        let text = format!("{name}{text}");
         self.painter.text(corner - vec2(0.0, 4.0), Align2::LEFT_BOTTOM, text, font, colors::LINE);
     }
 }

@@ -20,8 +20,8 @@ use reality_sim_db::{Database, PoseEstimate, PoseSource};
 use tempfile::{TempDir, tempdir};
 
 use common::{
-    Memory, SIZE, Viewer, click, demonstration, press, shows, texts, type_text, until, until_label, viewer,
-    viewer_with, walk,
+    Memory, SIZE, Viewer, click, press, shows, texts, type_text, until, until_label, viewer, viewer_of_walk,
+    viewer_with, viewer_with_demonstration, walk,
 };
 
 /// Returns a database of the walk's first pictures, in a folder of its own.
@@ -84,8 +84,8 @@ fn has_tabs(viewer: &Viewer<'_>) -> [bool; 2] {
 }
 
 #[test]
-fn the_demonstration_opens_with_walk_and_drive() {
-    let viewer = demonstration();
+fn a_recording_opens_with_walk_and_drive() {
+    let viewer = viewer_of_walk();
     assert_eq!(has_tabs(&viewer), [true, true]);
     assert!(!shows(&viewer, "Dismiss"));
 }
@@ -101,7 +101,7 @@ fn a_database_opens_with_drive_alone() {
 #[test]
 fn a_database_takes_the_place_of_a_recording() {
     let (_folder, path) = database();
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     drop_on(&mut viewer, &[&path]);
     until(&mut viewer, "Walk goes", |viewer| has_tabs(viewer) == [false, true]);
 }
@@ -120,7 +120,7 @@ fn what_cannot_be_opened_is_named_and_what_was_open_stays() {
     let empty = folder.path().join("empty");
     fs::create_dir(&empty).unwrap();
 
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     for path in [&cut_off, &folder.path().join("missing"), &no_database, &truncated, &empty] {
         drop_on(&mut viewer, &[path]);
         let message = problem(&mut viewer, path);
@@ -145,7 +145,7 @@ fn a_broken_first_recording_leaves_a_window_that_opens_others() {
 
 #[test]
 fn two_problems_are_shown_at_once_and_dismissed_one_by_one() {
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     for name in ["/first-missing", "/second-missing"] {
         drop_on(&mut viewer, &[Path::new(name)]);
         until(&mut viewer, name, |viewer| texts(viewer, name).iter().any(|text| text.contains(": ")));
@@ -160,7 +160,7 @@ fn two_problems_are_shown_at_once_and_dismissed_one_by_one() {
 
 #[test]
 fn more_problems_than_fit_are_counted_and_come_up_later() {
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     for number in 0..6 {
         let name = format!("/missing-{number}");
         drop_on(&mut viewer, &[Path::new(&name)]);
@@ -182,7 +182,7 @@ fn viewer_is_opening(viewer: &Viewer<'_>) -> bool {
 #[test]
 fn a_typed_path_is_opened_by_enter() {
     let (_folder, copy) = copy_of_walk();
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     press(&mut viewer, Modifiers::COMMAND, Key::O);
     viewer.run_steps(2);
     viewer.event(Event::Text("/no/such/recording".to_owned()));
@@ -212,7 +212,7 @@ fn press_open_until_recent(viewer: &mut Viewer<'_>, path: &Path) {
 #[test]
 fn recent_recordings_are_listed_and_open_by_a_click() {
     let (_folder, copy) = copy_of_walk();
-    let mut viewer = viewer(&copy);
+    let mut viewer = viewer_with_demonstration(&copy);
     until_label(&mut viewer, "Walk");
     drop_on(&mut viewer, &[&walk().join("sequence.toml")]);
     until(&mut viewer, "opened", |viewer| !viewer_is_opening(viewer));
@@ -228,7 +228,7 @@ fn recent_recordings_are_listed_and_open_by_a_click() {
 
 #[test]
 fn escape_closes_the_open_window_and_the_list_of_keys() {
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     press(&mut viewer, Modifiers::COMMAND, Key::O);
     assert!(shows(&viewer, "Choose a folder…"));
     press(&mut viewer, Modifiers::NONE, Key::Escape);
@@ -276,7 +276,7 @@ fn the_first_of_several_dropped_things_is_opened_and_the_others_are_mentioned() 
 
 #[test]
 fn f1_and_the_question_mark_list_every_key() {
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     let question_mark_with_shift = (Modifiers::SHIFT, Key::Questionmark);
     let question_mark = (Modifiers::NONE, Key::Questionmark);
     for (modifiers, key) in [(Modifiers::NONE, Key::F1), question_mark_with_shift, question_mark] {
@@ -293,7 +293,7 @@ fn f1_and_the_question_mark_list_every_key() {
 
 #[test]
 fn a_key_that_is_held_down_acts_once() {
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     for repeat in [false, true, true] {
         let (key, modifiers, physical_key) = (Key::F1, Modifiers::NONE, None);
         viewer.event(Event::Key { key, pressed: true, modifiers, repeat, physical_key });
@@ -309,7 +309,7 @@ fn theme(viewer: &Viewer<'_>) -> &'static str {
 
 #[test]
 fn light_dark_and_the_systems_follow_each_other_by_button_and_by_key() {
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     assert_eq!(theme(&viewer), "System");
     click(&mut viewer, "System");
     assert_eq!((theme(&viewer), viewer.ctx.global_style().visuals.dark_mode), ("Light", false));
@@ -321,7 +321,7 @@ fn light_dark_and_the_systems_follow_each_other_by_button_and_by_key() {
 
 #[test]
 fn typing_a_path_triggers_no_keys() {
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     press(&mut viewer, Modifiers::COMMAND, Key::O);
     viewer.run_steps(2);
     type_text(&mut viewer, "what? wasdqe");
@@ -333,7 +333,7 @@ fn typing_a_path_triggers_no_keys() {
 
 #[test]
 fn keys_with_ctrl_work_while_a_text_field_has_the_focus() {
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     press(&mut viewer, Modifiers::COMMAND, Key::O);
     viewer.run_steps(2);
     assert!(viewer.get_by_role(Role::TextInput).is_focused());
@@ -343,7 +343,7 @@ fn keys_with_ctrl_work_while_a_text_field_has_the_focus() {
 
 #[test]
 fn ctrl_q_closes_the_window() {
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     let closes = |viewer: &Viewer<'_>| {
         let viewports = &viewer.output().viewport_output;
         viewports.values().any(|viewport| viewport.commands.contains(&ViewportCommand::Close))
@@ -378,7 +378,7 @@ fn settings_survive_a_restart() {
 #[test]
 fn settings_that_cannot_be_read_are_the_defaults() {
     let mut written = Memory::default();
-    demonstration().state_mut().save(&mut written);
+    viewer_of_walk().state_mut().save(&mut written);
     let keys: Vec<String> = written.0.keys().cloned().collect();
     assert!(!keys.is_empty());
     for garbage in
@@ -394,7 +394,7 @@ fn settings_that_cannot_be_read_are_the_defaults() {
 #[test]
 fn a_part_of_the_settings_that_cannot_be_read_leaves_the_others() {
     let mut memory = Memory::default();
-    let mut first = demonstration();
+    let mut first = viewer_of_walk();
     press(&mut first, Modifiers::COMMAND, Key::T);
     first.state_mut().save(&mut memory);
     assert!(memory.0.contains_key("walk") && memory.0.contains_key("drive"));
@@ -409,7 +409,7 @@ fn a_screenshot_goes_to_the_current_folder_and_the_window_says_where() {
     let folder = tempdir().unwrap();
     // No other test depends on the current folder: their paths are absolute.
     std::env::set_current_dir(folder.path()).unwrap();
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     click(&mut viewer, "Screenshot");
     until(&mut viewer, "saved", |viewer| !texts(viewer, "saved ").is_empty());
     let picture = image::open(folder.path().join("reality-sim-1.png")).unwrap();
@@ -421,7 +421,7 @@ fn a_screenshot_goes_to_the_current_folder_and_the_window_says_where() {
 
 #[test]
 fn nothing_is_drawn_while_nothing_happens() {
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     // This panics if every frame requests another one.
     viewer.run();
     for _ in 0..3 {
@@ -438,7 +438,7 @@ fn nothing_is_drawn_while_nothing_happens() {
 #[test]
 fn every_button_has_a_name_and_every_letter_a_glyph() {
     // The harness panics if a button has no name or a letter no glyph.
-    let mut viewer = demonstration();
+    let mut viewer = viewer_of_walk();
     drop_on(&mut viewer, &[Path::new("/missing")]);
     until_label(&mut viewer, "Dismiss");
     press(&mut viewer, Modifiers::COMMAND, Key::O);

@@ -18,7 +18,8 @@ use egui_kittest::{SnapshotOptions, image_snapshot_options, kittest::Queryable};
 use image::RgbaImage;
 
 use common::{
-    PATIENCE, SIZE, choose, click, drag, rect_of, shows, until, until_label, until_part, viewer_with, walk,
+    PATIENCE, SIZE, choose, click, drag, rect_of, shows, until, until_label, until_part, viewer_with,
+    viewer_with_demonstration, walk,
 };
 
 type Window = common::Viewer<'static>;
@@ -26,8 +27,9 @@ type Window = common::Viewer<'static>;
 const POSE: [u8; 3] = [255, 45, 160];
 const TRUTH: [u8; 3] = [20, 130, 255];
 const BORDER: [u8; 3] = [255, 205, 0];
+const PARTICLE: [u8; 3] = [255, 150, 30];
 
-/// Returns a window on the demonstration, with its first picture.
+/// Returns a window on the walk, with its first picture.
 fn window() -> Window {
     window_on(&walk(), SIZE)
 }
@@ -76,6 +78,33 @@ fn the_first_picture_is_there_with_its_lines_and_nothing_moves() {
     // Nothing changes any more: no frame is requested until something happens.
     window.run();
     assert!(!window.ctx.has_requested_repaint());
+}
+
+#[test]
+fn the_demonstration_plays_at_once_after_its_particles_have_gathered() {
+    let mut window = viewer_with_demonstration(&walk());
+    until_part(&mut window, "gathering, ");
+    assert!(shows(&window, "Pause"));
+    // Without a value: the curves are of the walk.
+    assert!(shows(&window, "spread, cm") && shows(&window, "error, cm"));
+    until_part(&mut window, "picture 3 of 60");
+    assert!(shows(&window, "Pause"));
+    window.key_press(Key::Home);
+    until_part(&mut window, "gathering, ");
+}
+
+#[test]
+fn particles_too_close_together_to_be_told_apart_are_shown_enlarged() {
+    let mut window = window();
+    let field = rect_of(&window, "Field from above");
+    let mut particles = || {
+        window.run_steps(2);
+        let count = count(&window.render().unwrap(), field, PARTICLE);
+        click(&mut window, "Enlarged particles");
+        count
+    };
+    let (on, off, again) = (particles(), particles(), particles());
+    assert!(on > off + 50 && again == on, "{on} {off} {again}");
 }
 
 #[test]

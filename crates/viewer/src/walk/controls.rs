@@ -126,6 +126,13 @@ pub fn layers(ui: &mut Ui, layers: &mut Layers, has_truth: bool) {
     }
     switch(ui, &mut layers.border, colors::BORDER, "Field's border", "As it was found in the picture");
     switch(ui, &mut layers.particles, colors::PARTICLE, "Particles", "The heavier, the brighter and larger");
+    switch(
+        ui,
+        &mut layers.inset,
+        colors::PARTICLE,
+        "Enlarged particles",
+        "A small square of the field around the pose found, while the particles lie too close together to be told apart",
+    );
     switch(ui, &mut layers.path, colors::POSE, "Way found", "The places found so far");
     switch(
         ui,

@@ -90,7 +90,13 @@ impl Curve {
         let point = |record: &Record| Some([timeline.at_s(record.index), (self.value)(record)?]);
         let grey = ui.visuals().weak_text_color();
         let dot = ui.visuals().strong_text_color();
-        let response = plot(self.title, timeline, height).show(ui, |plot| {
+        let is_empty = records.points.is_empty();
+        let mut plot = plot(self.title, timeline, height);
+        if is_empty {
+            // Without a value, the axis would have its zero in the middle and mean nothing.
+            plot = plot.include_y(1.0).y_axis_formatter(|_, _| String::new());
+        }
+        let response = plot.show(ui, |plot| {
             plot.vline(VLine::new("", timeline.at_s(at)).color(grey).width(1.0).allow_hover(false));
             for &index in history.changes() {
                 let change = VLine::new("", timeline.at_s(index)).color(grey).width(1.0).allow_hover(false);
@@ -108,6 +114,10 @@ impl Curve {
             plot.points(Points::new("searched", searched).color(dot).radius(2.5));
             plot.pointer_coordinate()
         });
+        if is_empty {
+            let (center, font) = (response.response.rect.center(), egui::FontId::proportional(12.0));
+            ui.painter().text(center, egui::Align2::CENTER_CENTER, "no values yet", font, grey);
+        }
         let clicked_s = response.response.clicked().then_some(response.inner?.x)?;
         Some(timeline.frame_at(clicked_s))
     }

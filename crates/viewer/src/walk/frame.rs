@@ -7,7 +7,7 @@ use eframe::egui::ColorImage;
 use glam::DVec2;
 use reality_sim_core::{
     field::{project_lines, project_polygon},
-    filter::{best_index, normalise},
+    filter::{FilterEstimate, best_index, normalise},
     localization::LocalizedFrame,
     mount::MountPose,
     observation::CpuScorer,
@@ -40,19 +40,33 @@ pub struct Record {
 
 impl Record {
     pub fn new(index: usize, tagged: &LocalizedFrame, truth: Option<CameraPose>) -> Self {
-        let pose = tagged.pose;
+        Self {
+            milliseconds: 1000.0 * tagged.seconds,
+            sure: tagged.sure,
+            searched: tagged.searched,
+            ..Self::of_filter(index, tagged.pose, &tagged.filter, truth)
+        }
+    }
+
+    /// Makes the record of a filter alone, which is never sure.
+    pub fn of_filter(
+        index: usize,
+        pose: CameraPose,
+        filter: &FilterEstimate,
+        truth: Option<CameraPose>,
+    ) -> Self {
         let offset_m = |truth: CameraPose| (pose.x_m - truth.x_m).hypot(pose.y_m - truth.y_m);
         Self {
             index,
             pose,
             error_m: truth.map(offset_m),
             error_yaw_rad: truth.map(|truth| wrap_angle(pose.yaw_rad - truth.yaw_rad).abs()),
-            effective_sample_size: tagged.filter.effective_sample_size,
-            spread_m: tagged.filter.spread_m,
-            particles: tagged.filter.particles,
-            milliseconds: 1000.0 * tagged.seconds,
-            sure: tagged.sure,
-            searched: tagged.searched,
+            effective_sample_size: filter.effective_sample_size,
+            spread_m: filter.spread_m,
+            particles: filter.particles,
+            milliseconds: 0.0,
+            sure: false,
+            searched: false,
         }
     }
 }
@@ -65,9 +79,27 @@ pub struct WeightedParticle {
     pub relative_weight: f32,
 }
 
+/// Step of the gathering with which the demonstration begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct GatheringStep {
+    /// Updates so far; at 0 the particles are spread over the field.
+    pub number: u32,
+    /// Updates in all.
+    pub of: u32,
+}
+
+impl GatheringStep {
+    /// Whether the particles are only spread: none weighs more than another, and there is no pose yet.
+    pub fn is_spread(self) -> bool {
+        self.number == 0
+    }
+}
+
 /// Everything shown of one picture.
 pub struct FrameView {
     pub record: Record,
+    /// `None` while the recording is followed.
+    pub gathering: Option<GatheringStep>,
     pub picture: Arc<ColorImage>,
     pub veil: Option<Arc<ColorImage>>,
     pub particles: Vec<WeightedParticle>,
@@ -82,27 +114,41 @@ pub struct FrameView {
     pub border: Vec<Vec<DVec2>>,
 }
 
-/// Localized picture with the data for drawing it.
-pub struct Seen {
-    pub index: usize,
-    pub prepared: Prepared,
-    pub mount: MountPose,
-    pub tagged: LocalizedFrame,
+impl FrameView {
+    /// Whether a pose has been found, however doubtful.
+    pub fn has_pose(&self) -> bool {
+        !self.gathering.is_some_and(GatheringStep::is_spread)
+    }
+}
+
+/// Pose and particles found in a picture.
+pub struct Found {
+    pub record: Record,
+    pub best_particle: CameraPose,
     pub particles: Vec<CameraPose>,
-    /// Converted once: only the veil changes while the picture stays.
-    pub picture: Arc<ColorImage>,
+    /// `None` while the recording is followed.
+    pub gathering: Option<GatheringStep>,
+}
+
+impl Found {
+    fn is_spread(&self) -> bool {
+        self.gathering.is_some_and(GatheringStep::is_spread)
+    }
+}
+
+/// Picture and what was found in it, with the data for drawing them.
+pub struct Seen {
+    prepared: Prepared,
+    mount: MountPose,
+    /// Converted once: only the veil and what was found change while the picture stays.
+    picture: Arc<ColorImage>,
+    pub found: Found,
 }
 
 impl Seen {
-    pub fn new(
-        index: usize,
-        prepared: Prepared,
-        mount: MountPose,
-        tagged: LocalizedFrame,
-        particles: Vec<CameraPose>,
-    ) -> Self {
+    pub fn new(prepared: Prepared, mount: MountPose, found: Found) -> Self {
         let picture = color_image(&prepared.picture);
-        Self { index, prepared, mount, tagged, particles, picture }
+        Self { prepared, mount, picture, found }
     }
 
     /// Prepares everything shown of the picture.
@@ -116,19 +162,25 @@ impl Seen {
         let (camera, field) = (&sequence.setup.camera, &sequence.field);
         let half_width_m = 0.5 * field.line_width_m;
         let lines = |pose, sideways_m| project_lines(camera, field, pose, sideways_m);
-        let edges = |pose| [lines(pose, -half_width_m), lines(pose, half_width_m)].concat();
+        let has_pose = !self.found.is_spread();
+        let edges = |pose| match has_pose {
+            true => [lines(pose, -half_width_m), lines(pose, half_width_m)].concat(),
+            false => Vec::new(),
+        };
         let corners: Vec<DVec2> =
             self.prepared.border.outline_in_heading.iter().map(|corner| corner.as_dvec2()).collect();
-        let truth = sequence.frames[self.index].reference_pose;
+        let Found { record, best_particle, gathering, .. } = self.found;
+        let truth = sequence.frames[record.index].reference_pose;
         FrameView {
-            record: Record::new(self.index, &self.tagged, truth),
+            record,
+            gathering,
             picture: self.picture.clone(),
             veil: self.veil(veil, blur_sigma_px),
             particles: self.weighted_particles(scorer),
-            best_particle: self.tagged.filter.pose,
+            best_particle,
             truth,
-            pose_lines: edges(self.tagged.pose),
-            best_lines: edges(self.tagged.filter.pose),
+            pose_lines: edges(record.pose),
+            best_lines: edges(best_particle),
             truth_lines: truth.map_or_else(Vec::new, |truth| lines(truth, 0.0)),
             border: project_polygon(camera, &corners, self.mount.at(Pose2::default())),
         }
@@ -146,17 +198,22 @@ impl Seen {
 
     /// Returns the particles weighted by the observation model: every n-th of many, and always the best one.
     fn weighted_particles(&self, scorer: &mut CpuScorer) -> Vec<WeightedParticle> {
-        scorer.set_picture(&self.prepared);
-        let log_weights = scorer.log_weights_of(&self.particles);
+        let particles = &self.found.particles;
+        let log_weights = if self.found.is_spread() {
+            vec![0.0; particles.len()]
+        } else {
+            scorer.set_picture(&self.prepared);
+            scorer.log_weights_of(particles)
+        };
         let Some(best) = best_index(&log_weights) else { return Vec::new() };
         let weights = normalise(&log_weights);
         let most = weights[best].max(f64::MIN_POSITIVE);
         let weighted = |index: usize| WeightedParticle {
-            pose: self.particles[index].planar(),
+            pose: particles[index].planar(),
             relative_weight: (weights[index] / most) as f32,
         };
-        let step = self.particles.len().div_ceil(SHOWN_PARTICLES).max(1);
-        let others = (0..self.particles.len()).step_by(step).filter(|index| *index != best);
+        let step = particles.len().div_ceil(SHOWN_PARTICLES).max(1);
+        let others = (0..particles.len()).step_by(step).filter(|index| *index != best);
         others.chain([best]).map(weighted).collect()
     }
 }

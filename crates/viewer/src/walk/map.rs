@@ -8,7 +8,8 @@ use reality_sim_core::{
 };
 
 use super::{
-    frame::FrameView,
+    cloud::{self, Inset},
+    frame::{FrameView, GatheringStep},
     history::{History, Thinned, odometry_path, true_path},
     settings::Layers,
 };
@@ -24,6 +25,7 @@ pub struct Map {
     view: FieldView,
     dragged: Option<Pose2>,
     footprint: Footprint,
+    inset: Inset,
 }
 
 impl Map {
@@ -39,6 +41,7 @@ impl Map {
     ) -> Option<Pose2> {
         if let Some(frame) = frame
             && layers.follow
+            && frame.gathering.is_none()
             && self.dragged.is_none()
         {
             self.view.follow(frame.record.pose.planar().position_in_world());
@@ -51,7 +54,8 @@ impl Map {
             // A user who moves the view wants to see another part.
             layers.follow = false;
         }
-        if layers.footprint {
+        // The best of particles all over the field jumps about, and a footprint with it.
+        if layers.footprint && frame.gathering.is_none() {
             canvas.footprint(self.footprint.outline(&sequence.setup.camera, frame.record.pose));
         }
         if layers.odometry {
@@ -64,17 +68,25 @@ impl Map {
             draw_path(&canvas, &history.path(at), colors::POSE);
         }
         if layers.particles {
-            draw_particles(&canvas, frame);
+            cloud::draw(&canvas, frame);
         }
         if let Some(truth) = frame.truth.filter(|_| layers.truth) {
             canvas.arrow(truth.planar(), colors::TRUTH);
         }
-        if layers.best_particle {
+        if layers.best_particle && frame.has_pose() {
             canvas.arrow(frame.best_particle.planar(), colors::PARTICLE);
         }
-        canvas.arrow(frame.record.pose.planar(), colors::POSE);
+        if frame.has_pose() {
+            canvas.arrow(frame.record.pose.planar(), colors::POSE);
+        }
+        if layers.inset && self.dragged.is_none() {
+            self.inset.draw(&canvas, &sequence.field, frame, layers);
+        }
+        if let Some(step) = frame.gathering {
+            explain(&canvas, step);
+        }
         canvas.hint("drag: move the particles away · wheel: zoom");
-        self.drag(ui, &canvas, frame.record.pose.planar())
+        if frame.has_pose() { self.drag(ui, &canvas, frame.record.pose.planar()) } else { None }
     }
 
     /// Drags the particles with the primary button, keeping their heading.
@@ -113,11 +125,11 @@ fn draw_odometry(canvas: &FieldCanvas, sequence: &Sequence, history: &History, a
     }
 }
 
-/// Draws the particles: brighter and larger with more weight.
-fn draw_particles(canvas: &FieldCanvas, frame: &FrameView) {
-    for particle in &frame.particles {
-        let shown = particle.relative_weight.sqrt();
-        let color = colors::PARTICLE.gamma_multiply(0.25 + 0.75 * shown);
-        canvas.painter.circle_filled(canvas.at(particle.pose.position_in_world()), 1.2 + 1.6 * shown, color);
+/// Says what the gathering particles do.
+fn explain(canvas: &FieldCanvas, step: GatheringStep) {
+    if step.is_spread() {
+        canvas.title("Nothing is known yet: particles are spread over the field");
+    } else {
+        canvas.title(&format!("They gather where the picture fits: {} of {}", step.number, step.of));
     }
 }

@@ -1,9 +1,11 @@
 //! Walk: the particle filter running on a recording.
 
 mod camera;
+mod cloud;
 mod controls;
 mod curves;
 mod frame;
+mod gathering;
 mod history;
 mod map;
 mod player;
@@ -18,16 +20,16 @@ use std::sync::Arc;
 use eframe::egui::{self, Context, Ui, vec2};
 use reality_sim_core::sequence::Sequence;
 
-pub use self::settings::WalkSettings;
 use self::{
     camera::CameraTextures,
     controls::fact,
-    frame::{FrameView, Record},
+    frame::FrameView,
     history::History,
     map::Map,
     player::{Command, Message, Player, State},
     timeline::Timeline,
 };
+pub use self::{player::Beginning, settings::WalkSettings};
 use crate::{
     device::Device,
     picture_view::PictureCanvas,
@@ -64,10 +66,15 @@ pub struct WalkPanel {
 }
 
 impl WalkPanel {
-    /// Starts a player on a recording; it shows the first picture and waits.
-    pub fn new(ctx: &Context, sequence: Arc<Sequence>, devices: &[Device], settings: &WalkSettings) -> Self {
-        let WalkSettings { filter, speed, layers } = settings.clone();
-        let player = Player::spawn(ctx, sequence.clone(), devices.to_vec(), filter, speed, layers.veil);
+    /// Starts a player on a recording.
+    pub fn new(
+        ctx: &Context,
+        sequence: Arc<Sequence>,
+        devices: &[Device],
+        settings: &WalkSettings,
+        beginning: Beginning,
+    ) -> Self {
+        let player = Player::spawn(ctx, sequence.clone(), devices.to_vec(), settings, beginning);
         Self {
             history: History::default(),
             timeline: Timeline::new(&sequence),
@@ -91,7 +98,10 @@ impl WalkPanel {
                 Message::Begun => self.history = History::default(),
                 Message::Frame(frame) => {
                     self.has_answered = true;
-                    self.history.add(frame.record);
+                    // What is known of the first picture follows from the start, not from the gathering.
+                    if frame.gathering.is_none() {
+                        self.history.add(frame.record);
+                    }
                     self.frame = Some(frame);
                 }
                 Message::State(state) => self.state = state,
@@ -154,7 +164,7 @@ impl WalkPanel {
             .collect();
         egui::Panel::right("walk settings").resizable(false).exact_size(SETTINGS_WIDTH).show(ui, |ui| {
             egui::ScrollArea::vertical().show(ui, |ui| {
-                facts(ui, frame.map(|frame| &frame.record), self.is_working());
+                facts(ui, frame, self.is_working());
                 ui.separator();
                 controls::layers(ui, &mut settings.layers, self.has_truth);
                 ui.separator();
@@ -224,33 +234,34 @@ fn height_within(width: f32, sequence: &Sequence) -> f32 {
 }
 
 /// Shows the results for the current picture.
-fn facts(ui: &mut Ui, record: Option<&Record>, is_working: bool) {
-    let Some(record) = record else {
+fn facts(ui: &mut Ui, frame: Option<&FrameView>, is_working: bool) {
+    let Some(frame) = frame else {
         ui.weak(if is_working { "working …" } else { "nothing seen yet" });
         return;
     };
-    let state = match (record.sure, record.searched) {
-        _ if is_working => "working …",
-        (true, false) => "sure",
-        (true, true) => "sure, after a search",
-        (false, false) => "not sure",
-        (false, true) => "not sure, after a search",
+    let record = &frame.record;
+    let state = match (frame.gathering, record.sure, record.searched) {
+        _ if is_working => "working …".to_owned(),
+        (Some(step), ..) => format!("gathering, {} of {}", step.number, step.of),
+        (None, true, false) => "sure".to_owned(),
+        (None, true, true) => "sure, after a search".to_owned(),
+        (None, false, false) => "not sure".to_owned(),
+        (None, false, true) => "not sure, after a search".to_owned(),
     };
     let pose = record.pose;
+    let known = |text: String| if frame.has_pose() { text } else { "–".to_owned() };
+    let angles = format!("{:.2}°, {:.2}°", pose.pitch_rad.to_degrees(), pose.roll_rad.to_degrees());
     egui::Grid::new("facts").num_columns(2).spacing([8.0, 2.0]).show(ui, |ui| {
         fact(ui, "Pose", state);
-        fact(ui, "x, y", format!("{:.3} m, {:.3} m", pose.x_m, pose.y_m));
-        fact(ui, "heading", format!("{:.2}°", pose.yaw_rad.to_degrees()));
-        fact(ui, "height", format!("{:.3} m", pose.height_m));
-        fact(
-            ui,
-            "pitch, roll",
-            format!("{:.2}°, {:.2}°", pose.pitch_rad.to_degrees(), pose.roll_rad.to_degrees()),
-        );
+        fact(ui, "x, y", known(format!("{:.3} m, {:.3} m", pose.x_m, pose.y_m)));
+        fact(ui, "heading", known(format!("{:.2}°", pose.yaw_rad.to_degrees())));
+        fact(ui, "height", known(format!("{:.3} m", pose.height_m)));
+        fact(ui, "pitch, roll", known(angles));
         if let (Some(error_m), Some(error_yaw_rad)) = (record.error_m, record.error_yaw_rad) {
             let text = format!("{:.2} cm, {:.2}°", 100.0 * error_m, error_yaw_rad.to_degrees());
-            fact(ui, "error", text);
+            fact(ui, "error", known(text));
         }
-        fact(ui, "particles", format!("{} weighed", record.particles));
+        let verb = if frame.has_pose() { "weighed" } else { "spread" };
+        fact(ui, "particles", format!("{} {verb}", record.particles));
     });
 }

@@ -21,14 +21,24 @@ use reality_sim_core::{
 };
 
 use super::{
-    frame::{FrameView, Seen},
-    settings::{FilterSettings, Speed, Veil},
+    frame::{Found, FrameView, Record, Seen},
+    gathering::Gathering,
+    settings::{FilterSettings, Speed, Veil, WalkSettings},
     timeline::Timeline,
 };
 use crate::device::{Device, by_name};
 
 /// Largest number of frames on their way to the window.
 const QUEUE: usize = 2;
+
+/// How a recording begins when it is opened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Beginning {
+    /// The first picture is shown, and the player waits.
+    Waiting,
+    /// It is played at once, and whenever it starts at the first picture, particles gather from all over the field.
+    Gathering,
+}
 
 /// Command of the window.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,19 +85,19 @@ pub struct Player {
 }
 
 impl Player {
-    /// Starts the thread; it shows the first frame and waits. It ends when the handle is dropped.
+    /// Starts the thread. It ends when the handle is dropped.
     pub fn spawn(
         ctx: &Context,
         sequence: Arc<Sequence>,
         devices: Vec<Device>,
-        filter: FilterSettings,
-        speed: Speed,
-        veil: Veil,
+        settings: &WalkSettings,
+        beginning: Beginning,
     ) -> Self {
         let (commands, received) = mpsc::channel();
         let (sender, messages) = mpsc::sync_channel(QUEUE);
         let outbox = Outbox { sender, ctx: ctx.clone() };
-        thread::spawn(move || Playing::new(sequence, devices, filter, speed, veil, outbox).run(&received));
+        let settings = settings.clone();
+        thread::spawn(move || Playing::new(sequence, devices, settings, beginning, outbox).run(&received));
         Self { commands, messages, is_gone: false }
     }
 
@@ -134,6 +144,8 @@ struct Todo {
     restart: bool,
     go_to: Option<usize>,
     place: Option<Pose2>,
+    /// Whether to update the gathering particles.
+    gather: bool,
     /// Whether to send the last frame once more, because the window wants other layers.
     show: bool,
 }
@@ -161,6 +173,15 @@ impl From<LocalizationError> for Fault {
     }
 }
 
+/// What the player does.
+enum Phase {
+    /// Particles are about to be spread over the field.
+    Spreading,
+    Gathering(Box<Gathering>),
+    /// The recording is followed.
+    Following,
+}
+
 /// State of the thread.
 struct Playing {
     sequence: Arc<Sequence>,
@@ -177,6 +198,8 @@ struct Playing {
     localizer: Option<Localizer>,
     /// Whether the localizer has to start again, forgetting what it has seen.
     begins_anew: bool,
+    beginning: Beginning,
+    phase: Phase,
     state: State,
     seen: Option<Seen>,
     timeline: Timeline,
@@ -190,11 +213,11 @@ impl Playing {
     fn new(
         sequence: Arc<Sequence>,
         devices: Vec<Device>,
-        settings: FilterSettings,
-        speed: Speed,
-        veil: Veil,
+        settings: WalkSettings,
+        beginning: Beginning,
         outbox: Outbox,
     ) -> Self {
+        let WalkSettings { filter: settings, speed, layers } = settings;
         let (camera, field) = (&sequence.setup.camera, &sequence.field);
         Self {
             preprocessor: Preprocessor::new(camera, field.line_width_m),
@@ -205,14 +228,16 @@ impl Playing {
             devices,
             settings,
             speed,
-            veil,
+            veil: layers.veil,
             outbox,
             backend: None,
             localizer: None,
             begins_anew: true,
+            beginning,
+            phase: Phase::Following,
             state: State::default(),
             seen: None,
-            due: None,
+            due: (beginning == Beginning::Gathering).then(Instant::now),
         }
     }
 
@@ -269,13 +294,20 @@ impl Playing {
                 let Sequence { setup, field, .. } = &*self.sequence;
                 self.scorer = CpuScorer::new(&setup.camera, field, self.settings.observation);
                 self.localizer = None;
+                if let Phase::Gathering(_) = self.phase {
+                    self.phase = Phase::Spreading;
+                }
             }
             Command::Place(pose) => todo.place = Some(pose),
         }
     }
 
-    /// Returns the work for the next frame, or for the end of the recording.
+    /// Returns the work for the gathering's next step, for the next frame, or for the end of the recording.
     fn advance(&mut self) -> Todo {
+        if let Phase::Gathering(gathering) = &self.phase {
+            let is_over = gathering.is_over();
+            return Todo { gather: !is_over, go_to: is_over.then_some(self.state.at), ..Todo::default() };
+        }
         if self.state.at < self.last() {
             return Todo { go_to: Some(self.state.at + 1), ..Todo::default() };
         }
@@ -293,12 +325,21 @@ impl Playing {
             self.outbox.send(Message::Begun)?;
             self.poses.fill(None);
             self.begins_anew = true;
+            self.phase = match self.beginning {
+                Beginning::Waiting => Phase::Following,
+                Beginning::Gathering => Phase::Spreading,
+            };
         }
-        let looks = todo.restart || todo.go_to.is_some() || todo.place.is_some() || self.localizer.is_none();
-        let worked = if looks { self.look(todo) } else { Ok(()) };
+        if todo.go_to.is_some() || todo.place.is_some() {
+            self.phase = Phase::Following;
+        }
+        let worked = self.process(todo);
+        if worked.is_err() {
+            self.phase = Phase::Following;
+        }
         match worked {
-            Ok(()) if looks || todo.show => self.show()?,
-            Ok(()) => {}
+            Ok(is_new) if is_new || todo.show => self.show()?,
+            Ok(_) => {}
             Err(Fault::Picture(reason)) => self.outbox.send(Message::Problem(reason))?,
             Err(Fault::Device(reason)) => {
                 self.due = None;
@@ -309,10 +350,51 @@ impl Playing {
         self.outbox.send(Message::State(self.state))
     }
 
+    /// Does the work of the phase; returns whether there is something new to show.
+    fn process(&mut self, todo: &Todo) -> Result<bool, Fault> {
+        match &mut self.phase {
+            Phase::Spreading => self.spread()?,
+            Phase::Gathering(gathering) if todo.gather => {
+                // A device that has failed is opened again the next time.
+                gathering.advance().inspect_err(|_| self.backend = None)?;
+                let pause_s = gathering.pause_s();
+                self.schedule(pause_s);
+            }
+            Phase::Gathering(_) => return Ok(false),
+            Phase::Following => {
+                let asks = todo.restart || todo.go_to.is_some() || todo.place.is_some();
+                if !asks && self.localizer.is_some() {
+                    return Ok(false);
+                }
+                self.look(todo)?;
+            }
+        }
+        Ok(true)
+    }
+
+    /// Spreads particles over the field, for the first picture.
+    fn spread(&mut self) -> Result<(), Fault> {
+        self.state.at = 0;
+        let picture = Arc::new(self.load(0)?);
+        let backend = self.backend()?;
+        let Self { sequence, preprocessor, settings, .. } = self;
+        let gathering = Gathering::new(sequence, &picture, preprocessor, settings, &*backend);
+        let gathering = gathering.inspect_err(|_| self.backend = None)?;
+        // Opening a device takes time, and the spread particles are to be seen.
+        self.due = self.due.map(|_| Instant::now());
+        self.schedule(gathering.pause_s());
+        self.phase = Phase::Gathering(Box::new(gathering));
+        Ok(())
+    }
+
     fn show(&mut self) -> Result<(), Closed> {
-        let Some(seen) = &self.seen else { return Ok(()) };
+        let (seen, scorer) = match &mut self.phase {
+            Phase::Gathering(gathering) => (Some(&gathering.seen), &mut gathering.scorer),
+            Phase::Spreading | Phase::Following => (self.seen.as_ref(), &mut self.scorer),
+        };
+        let Some(seen) = seen else { return Ok(()) };
         let blur_sigma_px = self.settings.observation.blur_sigma_px;
-        let view = seen.view(&self.sequence, &mut self.scorer, blur_sigma_px, self.veil);
+        let view = seen.view(&self.sequence, scorer, blur_sigma_px, self.veil);
         self.outbox.send(Message::Frame(Box::new(view)))
     }
 
@@ -322,13 +404,17 @@ impl Playing {
         let before = self.state.at;
         let index = todo.go_to.unwrap_or(if todo.restart { 0 } else { before });
         self.state.at = index;
-        self.schedule(index);
-        let picture = self.sequence.load_image(index).map_err(|error| Fault::Picture(error.to_string()))?;
+        self.schedule(self.timeline.pause_after_s(index));
+        let picture = self.load(index)?;
         let follows = todo.place.is_none() && (before + 1 == index || self.poses[index].is_none());
         if self.begins_anew || self.localizer.is_none() || !follows {
             self.begin(todo.place.or(self.poses[index]).or(self.nearest_known(index)))?;
         }
         self.localize(index, &Arc::new(picture))
+    }
+
+    fn load(&self, index: usize) -> Result<RgbImage, Fault> {
+        self.sequence.load_image(index).map_err(|error| Fault::Picture(error.to_string()))
     }
 
     /// Returns the pose of the last frame seen before this one, or the recording's start, moved by the odometry since then.
@@ -377,15 +463,21 @@ impl Playing {
         let (frame, particles) = found.inspect_err(|_| (self.localizer, self.backend) = (None, None))?;
         let prepared = self.preprocessor.prepare(picture.clone(), observation.mount);
         self.poses[index] = Some(frame.pose.planar());
-        self.seen = Some(Seen::new(index, prepared, observation.mount, frame, particles));
+        let found = Found {
+            record: Record::new(index, &frame, self.sequence.frames[index].reference_pose),
+            best_particle: frame.filter.pose,
+            particles,
+            gathering: None,
+        };
+        self.seen = Some(Seen::new(prepared, observation.mount, found));
         Ok(())
     }
 
-    /// Sets the time when the frame after this one is due, while playing.
-    fn schedule(&mut self, index: usize) {
+    /// Sets the time when the next step is due, while playing: after a pause at the recording's own speed.
+    fn schedule(&mut self, pause_s: f64) {
         let Some(due) = self.due else { return };
-        let pause_s = self.timeline.pause_after_s(index) / self.speed.factor();
+        let pause = Duration::from_secs_f64(pause_s / self.speed.factor());
         // A player that lags behind does not catch up.
-        self.due = Some((due + Duration::from_secs_f64(pause_s)).max(Instant::now()));
+        self.due = Some((due + pause).max(Instant::now()));
     }
 }

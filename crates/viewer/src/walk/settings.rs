@@ -152,6 +152,8 @@ pub struct Layers {
     /// Opacity of the veil, 0 to 1.
     pub veil_opacity: f32,
     pub particles: bool,
+    /// Whether a cloud of particles too small to be seen is shown enlarged.
+    pub inset: bool,
     pub path: bool,
     pub odometry: bool,
     pub footprint: bool,
@@ -169,6 +171,7 @@ impl Default for Layers {
             veil: Veil::None,
             veil_opacity: 0.8,
             particles: true,
+            inset: true,
             path: true,
             odometry: true,
             footprint: true,

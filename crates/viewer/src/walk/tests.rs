@@ -1,6 +1,7 @@
 //! Tests of the player without a window: what it sends after commands.
 
 use std::{
+    f64::consts::FRAC_PI_2,
     path::Path,
     sync::Arc,
     thread,
@@ -13,9 +14,9 @@ use reality_sim_core::{
 };
 
 use super::{
-    frame::FrameView,
-    player::{Command, Message, Player, State},
-    settings::{FilterSettings, Speed, Veil},
+    frame::{FrameView, WeightedParticle},
+    player::{Beginning, Command, Message, Player, State},
+    settings::{FilterSettings, Speed, Veil, WalkSettings},
 };
 use crate::Device;
 
@@ -34,8 +35,13 @@ fn devices() -> Vec<Device> {
     vec![Device::processor(), Device::adapter("broken", broken)]
 }
 
+fn settings(filter: FilterSettings) -> WalkSettings {
+    WalkSettings { filter, speed: Speed::Filter, ..WalkSettings::default() }
+}
+
 fn player(sequence: &Arc<Sequence>, filter: FilterSettings) -> Player {
-    Player::spawn(&Context::default(), sequence.clone(), devices(), filter, Speed::Filter, Veil::None)
+    let ctx = Context::default();
+    Player::spawn(&ctx, sequence.clone(), devices(), &settings(filter), Beginning::Waiting)
 }
 
 fn next(player: &mut Player) -> Message {
@@ -119,7 +125,7 @@ fn particles_that_are_dragged_away_recover() {
     let lost = next_frame(&mut player);
     assert_eq!(lost.record.index, 1);
     assert!(error_m(&lost) > 2.0 && !lost.record.sure);
-    let far = |particle: &super::frame::WeightedParticle| {
+    let far = |particle: &WeightedParticle| {
         particle.pose.position_in_world().distance(glam::DVec2::new(1.5, -1.0)) < 0.6
     };
     assert!(lost.particles.iter().all(far));
@@ -304,4 +310,137 @@ fn the_thread_ends_with_the_window() {
         assert!(begin.elapsed() < PATIENCE, "it goes on");
         thread::sleep(Duration::from_millis(5));
     }
+}
+
+fn demonstration(sequence: &Arc<Sequence>, filter: FilterSettings) -> Player {
+    let ctx = Context::default();
+    Player::spawn(&ctx, sequence.clone(), devices(), &settings(filter), Beginning::Gathering)
+}
+
+/// Returns the steps of the gathering among frames.
+fn steps(frames: &[FrameView]) -> Vec<u32> {
+    frames.iter().filter_map(|frame| frame.gathering).map(|step| step.number).collect()
+}
+
+/// Returns the share of the particles at most half a metre from the true pose or its mirror pose.
+fn share_at_place(frame: &FrameView) -> f64 {
+    let truth = frame.truth.unwrap().planar();
+    let is_near = |pose: Pose2| {
+        let distance_m = |place: Pose2| pose.position_in_world().distance(place.position_in_world());
+        distance_m(truth) < 0.5 || distance_m(truth.mirrored()) < 0.5
+    };
+    let near = frame.particles.iter().filter(|particle| is_near(particle.pose)).count();
+    near as f64 / frame.particles.len() as f64
+}
+
+#[test]
+fn the_demonstration_plays_at_once_and_its_particles_gather_from_all_over_the_field() {
+    let sequence = walk(4);
+    let mut player = demonstration(&sequence, FilterSettings::default());
+    let (frames, problems, _) = until_still(&mut player, 0);
+    assert!(problems.is_empty(), "{problems:?}");
+    let numbers = steps(&frames);
+    let count = numbers.len();
+    assert!((9..=21).contains(&count) && numbers == (0..count as u32).collect::<Vec<_>>(), "{numbers:?}");
+    assert!(frames[..count].iter().all(|frame| frame.record.index == 0 && !frame.record.sure));
+
+    // Every square metre of the carpet has its particles, in all directions.
+    let half = sequence.field.carpet_half_extent_m();
+    for quarter in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
+        for heading in 0..4 {
+            let is_there = |particle: &&WeightedParticle| {
+                let pose = particle.pose;
+                let quadrant = (pose.yaw_rad / FRAC_PI_2).floor() as i32;
+                pose.x_m * quarter.0 > 0.5 * half.x
+                    && pose.y_m * quarter.1 > 0.5 * half.y
+                    && quadrant.rem_euclid(4) == heading
+            };
+            assert!(frames[0].particles.iter().any(|particle| is_there(&particle)), "{quarter:?} {heading}");
+        }
+    }
+    let shares: Vec<f64> = frames[..count].iter().map(share_at_place).collect();
+    assert!(shares[0] < 0.1 && shares[count - 1] > 0.9, "{shares:?}");
+
+    // Then the walk begins, found from its start.
+    let indices: Vec<usize> = frames[count..].iter().map(|frame| frame.record.index).collect();
+    assert_eq!(indices, [0, 1, 2, 3]);
+    assert!(frames[count..].iter().all(|frame| error_m(frame) < 0.02));
+}
+
+#[test]
+fn a_recording_that_waits_gathers_nothing() {
+    let mut player = player(&walk(4), FilterSettings::default());
+    let (frames, _, state) = until_still(&mut player, 0);
+    assert_eq!((frames.len(), steps(&frames).len(), state.at), (1, 0, 0));
+}
+
+#[test]
+fn the_gathering_pauses_and_goes_on_and_a_restart_begins_it_anew() {
+    let mut player = demonstration(&walk(3), FilterSettings::default());
+    assert_eq!(next_frame(&mut player).gathering.unwrap().number, 0);
+    player.tell(Command::Pause);
+    let (before, ..) = until_still(&mut player, 1);
+    player.tell(Command::Veil(Veil::Blurred));
+    let (paused, ..) = until_still(&mut player, 2);
+    // What is shown once more is the step at which it was paused.
+    let at = steps(&before).last().copied().unwrap_or(0);
+    assert!(steps(&paused) == [at] && paused[0].veil.is_some());
+    assert_eq!(steps(&play(&mut player))[0], at + 1);
+    // At the end, playing starts again.
+    let again = play(&mut player);
+    assert_eq!(steps(&again)[..2], [0, 1]);
+    player.tell(Command::Restart);
+    let (frames, _, state) = until_still(&mut player, 5);
+    assert_eq!((steps(&frames), state.at), (vec![0], 0));
+}
+
+#[test]
+fn another_picture_or_pose_ends_the_gathering() {
+    for command in [Command::GoTo(5), Command::Place(Pose2::new(1.5, -1.0, 0.5))] {
+        let mut player = demonstration(&walk(8), FilterSettings::default());
+        next_frame(&mut player);
+        player.tell(Command::Pause);
+        until_still(&mut player, 1);
+        player.tell(command.clone());
+        let (frames, _, state) = until_still(&mut player, 2);
+        assert_eq!((frames.len(), steps(&frames).len()), (1, 0), "{command:?}");
+        let is_there = if state.at == 5 { error_m(&frames[0]) < 0.02 } else { error_m(&frames[0]) > 2.0 };
+        assert!(is_there, "{command:?}");
+    }
+}
+
+#[test]
+fn settings_changed_while_particles_gather_spread_them_anew() {
+    let mut player = demonstration(&walk(3), FilterSettings::default());
+    next_frame(&mut player);
+    player.tell(Command::Pause);
+    until_still(&mut player, 1);
+    player.tell(Command::Filter(FilterSettings { particles: 7000, ..FilterSettings::default() }));
+    let (frames, ..) = until_still(&mut player, 2);
+    assert_eq!((steps(&frames), frames[0].record.particles), (vec![0], 7000));
+    player.tell(Command::Filter(FilterSettings { device: "broken".to_owned(), ..FilterSettings::default() }));
+    assert!(next_problem(&mut player).contains("no such card"));
+}
+
+#[test]
+fn the_particles_gather_with_every_model_and_any_seed() {
+    for kind in ObservationKind::ALL {
+        for seed in 0..3 {
+            let mut filter = FilterSettings { seed, ..FilterSettings::default() };
+            filter.set_model(kind);
+            let mut player = demonstration(&walk(1), filter);
+            let (frames, ..) = until_still(&mut player, 0);
+            let last = frames.iter().rfind(|frame| frame.gathering.is_some()).unwrap();
+            assert!(share_at_place(last) > 0.85, "{kind} {seed}: {}", share_at_place(last));
+        }
+    }
+}
+
+#[test]
+fn without_its_first_picture_the_demonstration_begins_with_the_second() {
+    let mut player = demonstration(&without_picture(4, 0), FilterSettings::default());
+    let (frames, problems, _) = until_still(&mut player, 0);
+    let indices: Vec<usize> = frames.iter().map(|frame| frame.record.index).collect();
+    assert_eq!((indices, steps(&frames).len()), (vec![1, 2, 3], 0));
+    assert!(!problems.is_empty() && problems[0].contains("none.jpg"), "{problems:?}");
 }

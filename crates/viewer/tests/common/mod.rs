@@ -58,23 +58,33 @@ pub fn viewer<'a>(open: &Path) -> Viewer<'a> {
     viewer_with(open, SIZE, None)
 }
 
-/// Returns a window of a size, in points, that opens a path and remembers what is stored.
+/// Returns a window of a size, in points, that opens a path and remembers what is stored. It has no demonstration, so that
+/// the walk waits as a user's recording does.
 pub fn viewer_with<'a>(open: &Path, size: Vec2, storage: Option<&'a dyn Storage>) -> Viewer<'a> {
-    let device = Device::processor();
-    let options = ViewerOptions {
-        open: open.to_path_buf(),
-        demonstration: Some(walk()),
-        model: None,
-        devices: vec![device],
-    };
+    window(open, None, size, storage)
+}
+
+/// Returns a window that opens a path and knows the demonstration.
+pub fn viewer_with_demonstration<'a>(open: &Path) -> Viewer<'a> {
+    window(open, Some(walk()), SIZE, None)
+}
+
+fn window<'a>(
+    open: &Path,
+    demonstration: Option<PathBuf>,
+    size: Vec2,
+    storage: Option<&'a dyn Storage>,
+) -> Viewer<'a> {
+    let devices = vec![Device::processor()];
+    let options = ViewerOptions { open: open.to_path_buf(), demonstration, model: None, devices };
     Harness::builder().with_size(size).build_eframe(|cc| {
         cc.storage = storage;
         ViewerApp::new(cc, options)
     })
 }
 
-/// Returns a window in which the demonstration is open.
-pub fn demonstration<'a>() -> Viewer<'a> {
+/// Returns a window in which the walk is open.
+pub fn viewer_of_walk<'a>() -> Viewer<'a> {
     let mut viewer = viewer(&walk());
     until_label(&mut viewer, "Drive");
     viewer

@@ -21,8 +21,8 @@ use reality_sim_gap::{
 use tempfile::TempDir;
 
 use common::{
-    Memory, SIZE, click, demonstration, drag, press, rect_of, shows, texts, until, until_label, until_part,
-    viewer, viewer_with, walk,
+    Memory, SIZE, click, drag, press, rect_of, shows, texts, until, until_label, until_part, viewer,
+    viewer_of_walk, viewer_with, walk,
 };
 
 use fixture::{report, write, written};
@@ -86,7 +86,7 @@ fn every_verdict_is_shown_in_words() {
 #[test]
 fn a_report_stands_beside_walk_and_drive_and_keys_lead_to_each() {
     let (_folder, path) = written(&report());
-    let mut window = demonstration();
+    let mut window = viewer_of_walk();
     press(&mut window, Modifiers::COMMAND, Key::Num3);
     assert!(!shows(&window, "Gap"), "there is none yet");
     press(&mut window, Modifiers::COMMAND, Key::O);
@@ -110,7 +110,7 @@ fn a_report_stands_beside_walk_and_drive_and_keys_lead_to_each() {
 #[test]
 fn a_report_is_no_recording_to_compare_with() {
     let (_folder, path) = written(&report());
-    let mut window = demonstration();
+    let mut window = viewer_of_walk();
     click(&mut window, "Drive");
     until_part(&mut window, "auto at x");
     click(&mut window, "Compare with a recording…");
