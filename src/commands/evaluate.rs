@@ -89,7 +89,8 @@ pub fn run(args: &EvaluateArgs) -> anyhow::Result<()> {
     let progress = frame_progress(with_truth.len())?;
     let mut results = Vec::new();
     let compared = with_truth.iter().try_for_each(|&(frame, pose)| -> anyhow::Result<()> {
-        let truth = probes.load_image(frame)?;
+        let broken = |error| probes.check_every_picture().err().unwrap_or(error);
+        let truth = probes.load_image(frame).map_err(broken)?;
         let probe = compare_methods(&synthesizer, &renderer, frame, pose, truth)?;
         if let Some(folder) = &pictures {
             save_image(&folder.file(format!("{frame:06}.png"))?, &side_by_side(&probe))?;

@@ -1,6 +1,6 @@
 //! What an output is pointed at.
 
-use std::fs;
+use std::{fs, process::Stdio};
 
 use super::*;
 
@@ -24,6 +24,26 @@ fn devices_and_pipes_are_written_into_and_stay() {
     printed(&[&["tag", walk, "--out", shown(&pipe)], &TAG[..]].concat());
     assert_eq!(reader.join().unwrap().lines().count(), 4);
     assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
+}
+
+/// Other outputs than texts: pictures, databases, folders.
+#[cfg(unix)]
+#[test]
+fn no_command_puts_a_file_in_the_place_of_a_device_or_a_pipe() {
+    use std::os::unix::fs::FileTypeExt;
+    let folder = tempfile::tempdir().unwrap();
+    let (_, walk, database) = short_walk();
+    let pipe = folder.path().join("pipe");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for out in [Path::new("/dev/null"), &pipe] {
+        assert_fails(&["build", shown(walk), "--out", shown(out)], &["not a regular file"]);
+        assert_fails(&["gap", shown(walk), "--out", shown(out)], &[shown(out)]);
+        assert_fails(&["man", "--out", shown(out)], &[shown(out)]);
+        let path = ["render", shown(database), "--pose", "-2.3,0.2,1.6", "--out", shown(out)];
+        assert_fails(&path, &[shown(out), "png"]);
+    }
+    assert!(fs::symlink_metadata("/dev/null").unwrap().file_type().is_char_device());
+    assert!(fs::symlink_metadata(&pipe).unwrap().file_type().is_fifo());
 }
 
 #[cfg(unix)]
@@ -73,7 +93,8 @@ fn a_folder_that_vanishes_is_noticed() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("overlay");
     let mut command = command();
-    let mut running = command.args(["tag", WALK, "--overlay", shown(&out)]).spawn().unwrap();
+    command.args(["tag", WALK, "--overlay", shown(&out)]).stdout(Stdio::null()).stderr(Stdio::null());
+    let mut running = command.spawn().unwrap();
     while names_in_if_there(&out) == 0 && running.try_wait().unwrap().is_none() {
         std::thread::yield_now();
     }
@@ -135,8 +156,8 @@ fn an_interrupted_run_leaves_no_unfinished_file() {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("overlay");
         let mut command = command();
-        let mut running =
-            command.args(["tag", WALK, "--backend", "cpu", "--overlay", shown(&out)]).spawn().unwrap();
+        command.args(["tag", WALK, "--backend", "cpu", "--overlay", shown(&out)]);
+        let mut running = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         std::thread::sleep(std::time::Duration::from_millis(milliseconds));
         let signal = Command::new("kill").args(["-INT", &running.id().to_string()]).status().unwrap();
         let status = running.wait().unwrap();

@@ -81,6 +81,63 @@ fn what_was_done_before_a_broken_picture_is_written() {
     assert_fails(&evaluate, &["holds 6 of 8 probes", shown(&sequence.frames[6].image)]);
 }
 
+/// Spoils pictures of a sequence: one is cut off, of the other the last three quarters are zeros.
+fn spoiled(sequence: &Sequence) {
+    for (frame, is_cut) in [(2, true), (5, false)] {
+        let file = sequence.image_path(frame).unwrap();
+        let mut bytes = fs::read(&file).unwrap();
+        let quarter = bytes.len() / 4;
+        if is_cut {
+            bytes.truncate(quarter);
+        } else {
+            let end = bytes.len() - 2;
+            bytes[quarter..end].fill(0);
+        }
+        fs::write(file, bytes).unwrap();
+    }
+}
+
+#[test]
+fn damaged_pictures_are_counted_and_named_and_the_others_are_stored() {
+    let folder = tempfile::tempdir().unwrap();
+    let walk = copy_of_short_walk(folder.path());
+    let sequence = Sequence::open(&walk).unwrap();
+    let originals: Vec<Vec<u8>> =
+        (0..8).map(|frame| fs::read(sequence.image_path(frame).unwrap()).unwrap()).collect();
+    spoiled(&sequence);
+    let database = folder.path().join("walk.db");
+    let [second, fifth] = [2, 5].map(|frame| shown(&sequence.frames[frame].image));
+    let words = ["2 of its 8 pictures cannot be used", second, fifth, "cut off"];
+    assert_fails(&["tag", shown(&walk)], &words);
+    assert_fails(&["evaluate", shown(&short_walk().2), shown(&walk)], &words);
+    let build = ["build", shown(&walk), "--out", shown(&database)];
+    assert_fails(&[&build[..], &["--tag"]].concat(), &words);
+    assert_fails(&build, &[&words[..], &["walk.db", "the recording's other 6 pictures"]].concat());
+    assert!(printed(&["info", shown(&database)]).contains("6 pictures"));
+    for (frame, bytes) in originals.iter().enumerate() {
+        fs::write(sequence.image_path(frame).unwrap(), bytes).unwrap();
+    }
+    assert!(printed(&build).contains("2 pictures added, 6 already there"));
+}
+
+#[test]
+fn one_is_not_called_many() {
+    let folder = tempfile::tempdir().unwrap();
+    let walk = part_of_walk(folder.path(), "one", 0..1);
+    let database = folder.path().join("one.db");
+    for words in [
+        printed(&["tag", shown(&walk), "--particles", "50"]),
+        printed(&["build", shown(&walk), "--out", shown(&database), "--no-hall"]),
+        printed(&["info", shown(&database)]),
+        printed(&["remove", shown(&database), "--sequence", "one"]),
+    ] {
+        let is_plural =
+            |pair: &[&str]| pair[0] == "1" && pair[1].trim_end_matches([',', ';', '.']).ends_with('s');
+        let all: Vec<&str> = words.split_whitespace().collect();
+        assert!(!all.windows(2).any(is_plural), "{words}");
+    }
+}
+
 #[test]
 fn negative_values_are_values() {
     for (arguments, word) in [

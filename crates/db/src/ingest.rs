@@ -31,6 +31,11 @@ pub struct IngestReport {
 }
 
 impl IngestReport {
+    /// Returns the number of frames that the database now holds.
+    pub fn stored(&self) -> usize {
+        self.added + self.replaced + self.already_there
+    }
+
     fn count(&mut self, insertion: Insertion) {
         match insertion {
             Insertion::Added => self.added += 1,
@@ -86,8 +91,9 @@ impl Database {
         }
         match sequence.unusable_pictures(frames.unusable) {
             None => Ok(report),
+            Some(source) if report.stored() == 0 => Err(source.into()),
             Some(source) => {
-                let stored = report.added + report.replaced + report.already_there;
+                let stored = report.stored();
                 Err(fail(DbFault::LeftOut { stored, source }))
             }
         }
@@ -131,7 +137,8 @@ impl Frames<'_> {
         report: &mut IngestReport,
         goes_on: &mut dyn FnMut(usize) -> bool,
     ) -> Result<usize, DbFault> {
-        let shared = Shared::find_or_add(transaction, &self.recording)?;
+        // Added with the first picture that can be used: of a recording without any, nothing is stored.
+        let mut shared = None;
         let end = self.poses.len().min(first + BATCH_FRAMES);
         let mut held_bytes = 0;
         for index in first..end {
@@ -144,7 +151,11 @@ impl Frames<'_> {
                     Ok(bytes) => {
                         held_bytes += bytes.len();
                         let image = self.image(index, estimate, &bytes)?;
-                        report.count(insert(transaction, &self.recording, &shared, &image)?);
+                        let shared = match &mut shared {
+                            Some(shared) => shared,
+                            none => none.insert(Shared::find_or_add(transaction, &self.recording)?),
+                        };
+                        report.count(insert(transaction, &self.recording, shared, &image)?);
                     }
                     Err(error) => self.unusable.push(error),
                 },

@@ -46,3 +46,23 @@ impl WorkLimit {
         self.left.store(self.most, Ordering::Relaxed);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::DbFault;
+
+    const ENDLESS: &str = "WITH RECURSIVE endless(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM endless) SELECT count(*) FROM endless";
+
+    #[test]
+    fn an_endless_statement_is_ended_and_the_next_transaction_is_not() {
+        let mut connection = Connection::open_in_memory().unwrap();
+        let limit = WorkLimit::new(&mut connection, 1000).unwrap();
+        let count = |connection: &Connection, query: &str| {
+            connection.query_row(query, [], |row| row.get::<_, i64>(0)).map_err(DbFault::from)
+        };
+        assert!(matches!(count(&connection, ENDLESS), Err(DbFault::TooMuchWork)));
+        limit.renew();
+        assert_eq!(count(&connection, "SELECT 2").unwrap(), 2);
+    }
+}

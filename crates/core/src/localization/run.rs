@@ -9,7 +9,7 @@ use super::{
 use crate::sequence::Sequence;
 
 /// Iterator that localizes the frames of a recording in order. A thread decodes the pictures ahead; dropping the iterator
-/// stops it. The iteration ends after an error.
+/// stops it. The iteration ends after an error; that of a picture tells of all pictures that cannot be used.
 #[derive(Debug)]
 pub struct Run<L> {
     localizer: L,
@@ -49,7 +49,11 @@ impl<L: BorrowMut<Localizer>> Run<L> {
     fn step(&mut self) -> Option<Result<LocalizedFrame, LocalizationError>> {
         let observation = match self.playback.next()? {
             Ok(observation) => observation,
-            Err(error) => return Some(Err(error.into())),
+            // Whoever mends the recording wants to know of all its broken pictures.
+            Err(error) => {
+                let all = self.playback.sequence().check_every_picture();
+                return Some(Err(all.err().unwrap_or(error).into()));
+            }
         };
         let localizer = self.localizer.borrow_mut();
         if let Some(next) = self.playback.peek() {

@@ -129,7 +129,7 @@ fn poses_that_differ_by_rounding_or_a_turn_are_the_same() {
 }
 
 #[test]
-fn a_broken_picture_is_named_and_what_was_committed_stays() {
+fn a_broken_picture_is_named_and_the_others_are_stored() {
     let sequence = long_walk(70);
     let folder = tempfile::tempdir().unwrap();
     let copy = folder.path().join("copy");
@@ -146,15 +146,19 @@ fn a_broken_picture_is_named_and_what_was_committed_stays() {
     let path = folder.path().join("a.db");
     let mut database = Database::create_or_open(&path).unwrap();
     fs::write(&file, &bytes[..bytes.len() / 2]).unwrap();
-    assert_message(&add(&mut database, &broken).unwrap_err(), &file, &["cut off"]);
+    assert_message(
+        &add(&mut database, &broken).unwrap_err(),
+        &path,
+        &["other 69 pictures", "68.jpg", "cut off"],
+    );
     fs::write(&file, "hello").unwrap();
-    assert_message(&add(&mut database, &broken).unwrap_err(), &file, &["neither a JPEG nor a PNG"]);
+    assert_message(&add(&mut database, &broken).unwrap_err(), &path, &["68.jpg", "neither a JPEG nor a PNG"]);
     fs::remove_file(&file).unwrap();
-    assert_message(&add(&mut database, &broken).unwrap_err(), &file, &["there is no such file"]);
-    assert_eq!(database.images().unwrap().len(), 64);
+    assert_message(&add(&mut database, &broken).unwrap_err(), &path, &["68.jpg", "there is no such file"]);
+    assert_eq!(database.images().unwrap().len(), 69);
     fs::write(&file, &bytes).unwrap();
     let report = add(&mut database, &broken).unwrap();
-    assert_eq!(report, IngestReport { added: 6, replaced: 0, already_there: 64, without_pose: 0 });
+    assert_eq!(report, IngestReport { added: 1, replaced: 0, already_there: 69, without_pose: 0 });
 }
 
 #[test]
@@ -192,7 +196,7 @@ fn a_picture_of_another_size_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let mut database = Database::create_or_open(&folder.path().join("a.db")).unwrap();
     let error = add(&mut database, &sequence).unwrap_err();
-    assert_message(&error, &sequence.image_path(0).unwrap(), &["pixels and the camera"]);
+    assert_message(&error, &sequence.folder, &["2 of its 2 pictures", "000000.jpg", "pixels and the camera"]);
     assert!(database.images().unwrap().is_empty() && database.sequences().unwrap().is_empty());
 }
 

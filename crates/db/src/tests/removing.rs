@@ -48,7 +48,7 @@ fn of_a_sequence_that_is_removed_nothing_stays_and_others_stay_whole() {
 fn a_name_that_is_not_there_is_an_error() {
     let (_folder, path) = database_of(&short_walk(1));
     let mut database = Database::create_or_open(&path).unwrap();
-    assert_message(&database.remove("wlak", 0..1).unwrap_err(), &path, &["\"wlak\"", "info"]);
+    assert_message(&database.remove("wlak", 0..1).unwrap_err(), &path, &["\"wlak\"", "check the name"]);
     let mut reader = Database::open(&path).unwrap();
     assert_message(&reader.remove("walk", 0..1).unwrap_err(), &path, &["opened for reading"]);
 }
