@@ -9,6 +9,7 @@ use reality_sim::{
     gap::{
         Options, Recording, ReferenceSource, analyse,
         report::{Finding, InputMistake, Report, Verdict, text::summary},
+        shows_lines,
     },
     glam::{DMat3, DQuat, DVec3},
     sensor::Model,
@@ -206,4 +207,65 @@ fn nothing_and_no_effect_is_taken_for_a_mistake() {
         let (_folder, sequence) = recorded(seed, Vec::new());
         assert_eq!(mistakes(&reported(&sequence)), [], "seed {seed}");
     }
+}
+
+#[test]
+fn a_camera_file_that_is_wrong_by_a_factor() {
+    for (factor, percent) in [(1.43, 143_u32), (0.7, 70)] {
+        for seed in [3, 4] {
+            let (_folder, mut sequence) = recorded(seed, Vec::new());
+            let camera = &mut sequence.setup.camera;
+            (camera.fx, camera.fy) = (factor * camera.fx, factor * camera.fy);
+            let found = mistakes(&reported(&sequence));
+            let [InputMistake::FocalLength { percent: found }] = found[..] else { panic!("{found:?}") };
+            assert!(found.abs_diff(percent) <= 4, "seed {seed}: {found} % instead of {percent} %");
+        }
+    }
+    let (_folder, mut sequence) = recorded(3, Vec::new());
+    let camera = &mut sequence.setup.camera;
+    for value in [&mut camera.fx, &mut camera.fy, &mut camera.cx, &mut camera.cy] {
+        *value *= 2.0;
+    }
+    let found = mistakes(&reported(&sequence));
+    assert!(matches!(found[..], [InputMistake::CameraOfOtherSize { percent: 190..=210 }]), "{found:?}");
+}
+
+#[test]
+fn pictures_that_show_no_lines() {
+    for level in [0, 255] {
+        let (_folder, sequence) = recorded(3, Vec::new());
+        for frame in 0..sequence.frames.len() {
+            let [width, height] = [sequence.setup.camera.width, sequence.setup.camera.height];
+            let picture = RgbImage::from_pixel(width, height, image::Rgb([level; 3]));
+            picture.save(sequence.image_path(frame).unwrap()).unwrap();
+        }
+        assert!(!shows_lines(&sequence).unwrap());
+        let report = reported(&sequence);
+        assert_eq!((report.verdict, &report.unexplained[..]), (Verdict::Unknown, &[Finding::NoLines][..]));
+        assert!(summary(&report).starts_with("No picture shows a white line"), "{}", summary(&report));
+    }
+    assert!(shows_lines(&recorded(3, Vec::new()).1).unwrap());
+}
+
+#[test]
+fn pictures_of_another_field() {
+    let (_folder, mut sequence) = recorded(101, Vec::new());
+    sequence.field.length_m = 200.0;
+    let report = reported(&sequence);
+    let [Finding::ForeignLines { share, .. }] = report.unexplained[..] else {
+        panic!("{}", summary(&report))
+    };
+    assert!(share > 0.5 && report.effects.is_empty(), "{share}");
+    assert!(summary(&report).contains("are no lines of the field in field.toml"), "{}", summary(&report));
+}
+
+#[test]
+fn missing_pictures_are_said_before_missing_poses() {
+    let (_folder, sequence) = recorded(3, Vec::new());
+    let poses = vec![None; sequence.frames.len()];
+    for frame in 0..sequence.frames.len() {
+        std::fs::remove_file(sequence.image_path(frame).unwrap()).unwrap();
+    }
+    let error = Recording::new(&sequence, &poses, ReferenceSource::Tagged, None).unwrap_err().to_string();
+    assert!(error.contains("16 of its 16 pictures are missing (no such file: "), "{error}");
 }

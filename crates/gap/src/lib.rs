@@ -69,6 +69,7 @@ pub use self::{
     simplification::Simplification,
     workflow::{
         analysis::{analyse, gap_of},
+        input_mistakes::shows_lines,
         selection::Options,
         shown_photometry::shown_photometry,
     },

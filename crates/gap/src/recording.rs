@@ -55,6 +55,21 @@ pub enum RecordingError {
         /// First picture file that is missing or broken.
         first: PathBuf,
     },
+    /// Most pictures are missing, whatever poses there are.
+    #[error(
+        "{name}: {missing} of its {frames} pictures are missing (no such file: {}): put them there, or give the folder that holds them",
+        first.display()
+    )]
+    PicturesMissing {
+        /// Name of the recording.
+        name: String,
+        /// Number of pictures that are missing.
+        missing: usize,
+        /// Number of frames chosen.
+        frames: usize,
+        /// First picture file that is missing.
+        first: PathBuf,
+    },
     /// The requested frames are not in the recording.
     #[error("{name} has the frames 0 to {last}: {from}..{to} is no range of them")]
     NoSuchFrames {
@@ -141,12 +156,7 @@ impl<'a> Recording<'a> {
         range: Option<Range<usize>>,
     ) -> Result<Self, RecordingError> {
         let name = || sequence.name.clone();
-        let count = sequence.frames.len();
-        let range = range.unwrap_or(0..count);
-        if range.start >= range.end || range.end > count {
-            let (from, to) = (range.start, range.end);
-            return Err(RecordingError::NoSuchFrames { name: name(), last: count - 1, from, to });
-        }
+        let range = Self::check_pictures(sequence, range)?;
         let frames = range.len();
         let posed = |index: usize| {
             let (time_s, pose) = (sequence.frames[index].timestamp_s, poses.get(index).copied()??);
@@ -181,6 +191,34 @@ impl<'a> Recording<'a> {
         let frames = posed.iter().step_by(every).map(frame).collect();
         let (searched, simplification) = Default::default();
         Ok(Self { sequence, trajectory, frames, source, left_out, searched, simplification })
+    }
+
+    /// Checks that enough pictures of the frames chosen are there, before any pose is known; returns the range of these frames.
+    /// A few that are missing are left out later.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the range is none of frames, or if too many pictures are missing.
+    pub fn check_pictures(
+        sequence: &Sequence,
+        range: Option<Range<usize>>,
+    ) -> Result<Range<usize>, RecordingError> {
+        let (name, count) = (|| sequence.name.clone(), sequence.frames.len());
+        let range = range.unwrap_or(0..count);
+        if range.start >= range.end || range.end > count {
+            let (from, to) = (range.start, range.end);
+            return Err(RecordingError::NoSuchFrames { name: name(), last: count - 1, from, to });
+        }
+        let files = sequence.frames[range.clone()].iter().map(|frame| sequence.folder.join(&frame.image));
+        let missing: Vec<PathBuf> = files.filter(|file| !file.is_file()).collect();
+        match missing.first() {
+            // Fewer frames than needed are too few even with all of their pictures.
+            Some(first) if range.len() >= LEAST_FRAMES && range.len() - missing.len() < LEAST_FRAMES => {
+                let (missing, frames, first) = (missing.len(), range.len(), first.clone());
+                Err(RecordingError::PicturesMissing { name: name(), missing, frames, first })
+            }
+            _ => Ok(range),
+        }
     }
 
     /// Returns the recording for an analysis in a simpler way.

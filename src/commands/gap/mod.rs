@@ -43,7 +43,10 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
     let of_earlier = earlier.as_ref().map_or_else(Vec::new, |earlier| earlier.files.clone());
     let inputs = [sequence.files.clone(), of_earlier, Vec::from_iter(pictures)].concat();
     let out = &OutputFolder::check(&args.out, &inputs)?;
-    let poses = poses::reference(args, &sequence)?;
+    let frames = args.frames_among(sequence.frames.len());
+    // Before the filter fails for want of them.
+    Recording::check_pictures(&sequence, frames.clone())?;
+    let poses = poses::reference(args, &sequence).map_err(|error| poses::true_cause(&sequence, error))?;
     let progress = stages()?;
     progress.set_message("reading the pictures");
     let options = Options { seed: args.seed, without: args.without.clone() };
@@ -52,8 +55,7 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
         given.clone_from(&earlier.model);
         sequence.setup.photometry = Some(earlier.photometry);
     }
-    let recording =
-        Recording::new(&sequence, &poses.poses, poses.source, args.frames_among(sequence.frames.len()))?;
+    let recording = Recording::new(&sequence, &poses.poses, poses.source, frames)?;
     let run = Run { args, out, given: &given, options: &options, progress: &progress };
     let controls = Controls { recording: &recording, source: poses.source, args, options: &options };
     if let Some(Control::One(id, size)) = &args.inject {

@@ -5,7 +5,11 @@ use std::sync::Arc;
 use reality_sim::{
     CameraPose, Pose2, Sequence,
     db::PoseSource,
-    gap::ReferenceSource,
+    gap::{
+        ReferenceSource,
+        report::{Finding, text::finding_place},
+        shows_lines,
+    },
     pipeline::{Event, FoundPoses, Plan, PoseChoice},
 };
 
@@ -46,6 +50,16 @@ pub fn reference(args: &GapArgs, sequence: &Sequence) -> anyhow::Result<Referenc
         PoseSource::File { .. } => estimated(sequence, poses.map(|pose| pose.map(CameraPose::planar))),
         PoseSource::Filter { .. } => estimated(sequence, settled.into_iter()),
     })
+}
+
+/// Returns the reason why no pose was found, where the pictures tell it: they show no lines.
+pub fn true_cause(sequence: &Sequence, error: anyhow::Error) -> anyhow::Error {
+    match shows_lines(sequence) {
+        Ok(false) => {
+            error.context(format!("{}: {}", sequence.folder.display(), finding_place(&Finding::NoLines)))
+        }
+        _ => error,
+    }
 }
 
 /// Plans the localization without smoothing, which would absorb an error of the mount pose.

@@ -17,6 +17,15 @@ pub enum Finding {
         /// The mistake.
         mistake: InputMistake,
     },
+    /// Pictures without any white line.
+    NoLines,
+    /// Most white lines of the pictures are not those of the field, or not where the poses see these.
+    ForeignLines {
+        /// Share of the white pixels on the ground that lie beside every line of the field, 0 to 1.
+        share: f64,
+        /// Share of the pieces of line in view that are not found, 0 to 1.
+        missed: f64,
+    },
     /// Residuals with the same mean in every part of the recording.
     Pattern {
         /// Channel of the residuals.
@@ -188,9 +197,11 @@ impl Finding {
         match self {
             Self::Pattern { channel, .. } | Self::Scatter { channel, .. } => *channel,
             Self::Flicker { .. } | Self::Obstruction { .. } => Channel::Photometry,
-            Self::MissingLine { .. } | Self::UnexplainedLines { .. } | Self::InputMistake { .. } => {
-                Channel::Geometry
-            }
+            Self::MissingLine { .. }
+            | Self::UnexplainedLines { .. }
+            | Self::InputMistake { .. }
+            | Self::NoLines
+            | Self::ForeignLines { .. } => Channel::Geometry,
             Self::Odometry { .. } => Channel::Motion,
             Self::NominalValue { value, .. } => value.channel(),
         }
@@ -203,10 +214,12 @@ impl Finding {
             | Self::Flicker { size, .. }
             | Self::Odometry { size, .. }
             | Self::Scatter { size, .. } => *size,
-            Self::Obstruction { share, .. } | Self::UnexplainedLines { share } => *share,
+            Self::Obstruction { share, .. }
+            | Self::UnexplainedLines { share }
+            | Self::ForeignLines { share, .. } => *share,
             Self::MissingLine { found_share, usual_share, .. } => 1.0 - found_share / usual_share,
             Self::NominalValue { off_by, .. } => *off_by,
-            Self::InputMistake { .. } => 1.0,
+            Self::InputMistake { .. } | Self::NoLines => 1.0,
         }
     }
 
@@ -218,10 +231,17 @@ impl Finding {
             | Self::Obstruction { .. }
             | Self::MissingLine { .. }
             | Self::UnexplainedLines { .. }
-            | Self::InputMistake { .. } => "1",
+            | Self::InputMistake { .. }
+            | Self::NoLines
+            | Self::ForeignLines { .. } => "1",
             Self::Odometry { component, .. } => component.unit(),
             Self::NominalValue { value, .. } => value.unit(),
         }
+    }
+
+    /// Whether the finding is about the recording's files, so that nothing else can be said of the recording.
+    pub fn stops_the_analysis(&self) -> bool {
+        matches!(self, Self::InputMistake { .. } | Self::NoLines | Self::ForeignLines { .. })
     }
 
     /// Returns the p-value; `None` for findings that are counted and not tested.

@@ -39,6 +39,16 @@ pub enum InputMistake {
     FieldSwapped,
     /// The field is the one of another league: the preset with this number.
     FieldOfAnotherLeague(usize),
+    /// The focal length of the camera file is not that of the pictures.
+    FocalLength {
+        /// Focal length of the file, percent of that of the pictures.
+        percent: u32,
+    },
+    /// The camera file was made for pictures of another size.
+    CameraOfOtherSize {
+        /// Width of those pictures, percent of the width of these.
+        percent: u32,
+    },
     /// Pitch and roll by joints and IMU are in degrees.
     AnglesInDegrees,
     /// Pitch by joints and IMU is positive up.

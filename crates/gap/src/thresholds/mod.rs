@@ -40,7 +40,7 @@ pub(crate) use self::{
     },
     recording::RecordingThresholds,
     report::ReportThresholds,
-    workflow::{InputMistakeThresholds, WorkflowThresholds},
+    workflow::{InputMistakeThresholds, WhiteLineThresholds, WorkflowThresholds},
 };
 
 /// Every number that decides something, by the layer that it decides in.

@@ -33,7 +33,7 @@ use crate::{
     report::data::{EffectReport, Estimate, Gap, Limit, NotFoundReport, PosesReport, Report, Unobservable},
     report::maps::maps,
     thresholds::{ReportThresholds, Thresholds},
-    workflow::input_mistakes::input_mistake,
+    workflow::input_mistakes::fault,
     workflow::selection::{Options, as_given, find},
     workflow::stopped::stopped,
     workflow::verdict::verdict,
@@ -42,7 +42,7 @@ use crate::{
 const THRESHOLDS: ReportThresholds = Thresholds::DEFAULT.report;
 
 /// Runs the whole workflow: finds the effects that a model lacks, adds them, and evaluates the result on held-out frames. A
-/// mistake in the recording's files is all that is reported where there is one. `progress` is called at every stage.
+/// mistake in the recording's files, or pictures that do not show its field, is all that is reported where there is one. `progress` is called at every stage.
 ///
 /// # Errors
 ///
@@ -53,8 +53,8 @@ pub fn analyse(
     options: &Options,
     progress: &dyn Fn(Progress),
 ) -> Result<Analysis, MeasureError> {
-    if let Some(mistake) = input_mistake(recording)? {
-        return Ok(stopped(recording, model, options.seed, mistake));
+    if let Some(fault) = fault(recording)? {
+        return Ok(stopped(recording, model, options.seed, fault));
     }
     let found = find(recording, model, options, progress)?;
     progress(Progress::Evaluating);

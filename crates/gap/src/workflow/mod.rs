@@ -3,7 +3,7 @@
 pub(crate) mod analysis;
 pub(crate) mod coarse_alignment;
 mod fixed_values;
-mod input_mistakes;
+pub(crate) mod input_mistakes;
 pub(crate) mod selection;
 pub(crate) mod shown_photometry;
 mod simpler_selection;

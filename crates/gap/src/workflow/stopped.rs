@@ -1,11 +1,11 @@
-//! Report of a recording whose files hold a mistake: nothing is compared.
+//! Report of a recording whose files hold a mistake, or whose pictures do not show the field: nothing is compared.
 
 use std::collections::BTreeMap;
 
 use reality_sim_sensor::Model;
 
 use crate::{
-    diagnostics::{finding::Finding, input_mistake::InputMistake},
+    diagnostics::finding::Finding,
     recording::Recording,
     report::{
         analysis::Analysis,
@@ -14,12 +14,7 @@ use crate::{
 };
 
 /// Returns the analysis that says what is wrong with the files, with the model as it was given.
-pub(super) fn stopped(
-    recording: &Recording<'_>,
-    model: &Model,
-    seed: u64,
-    mistake: InputMistake,
-) -> Analysis {
+pub(super) fn stopped(recording: &Recording<'_>, model: &Model, seed: u64, fault: Finding) -> Analysis {
     let poses =
         PosesReport { source: recording.source, rotation_sigma_rad: [0.0; 3], position_sigma_m: [0.0; 3] };
     let report = Report {
@@ -30,7 +25,7 @@ pub(super) fn stopped(
         verdict: Verdict::Unknown,
         effects: Vec::new(),
         in_model: Vec::new(),
-        unexplained: vec![Finding::InputMistake { mistake }],
+        unexplained: vec![fault],
         objects: Vec::new(),
         gap: Gap { before: 0.0, after: 0.0, floor: 0.0, channels: BTreeMap::new() },
         not_found: Vec::new(),

@@ -16,6 +16,12 @@ use crate::{
 pub fn finding_place(finding: &Finding) -> String {
     match finding {
         Finding::InputMistake { mistake } => input_mistake(*mistake),
+        Finding::NoLines => {
+            "no picture shows a white line where the field's lines should be, or anywhere: check that the \
+                             pictures are those of this recording, and their exposure"
+                .to_owned()
+        }
+        Finding::ForeignLines { share, missed } => foreign_lines(*share, *missed),
         Finding::Pattern { strongest, .. } => pattern(*strongest),
         Finding::Flicker { .. } => {
             "bands along the rows that differ from picture to picture, as of lamps that flicker".to_owned()
@@ -60,6 +66,18 @@ pub(super) fn place_has_size(finding: &Finding) -> bool {
             | Finding::MissingLine { .. }
             | Finding::UnexplainedLines { .. }
             | Finding::InputMistake { .. }
+            | Finding::NoLines
+            | Finding::ForeignLines { .. }
+    )
+}
+
+/// Returns how many lines do not belong to the field, and what to check.
+fn foreign_lines(share: f64, missed: f64) -> String {
+    format!(
+        "{} of the white lines in the pictures are no lines of the field in field.toml as the poses see it, and {} of the \
+         lines that should be there are not found: field.toml, camera.toml or the poses do not belong to these pictures",
+        percent(share),
+        percent(missed)
     )
 }
 

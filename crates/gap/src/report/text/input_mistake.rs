@@ -7,12 +7,16 @@ use crate::diagnostics::input_mistake::InputMistake;
 /// File of the reference poses.
 const POSES: &str = "groundtruth.tum";
 const FIELD: &str = "field.toml";
+const CAMERA: &str = "camera.toml";
 const FRAMES: &str = "frames.csv";
 /// Folder of the pictures.
 const PICTURES: &str = "images";
 
 /// Returns the file, what it seems to hold and the remedy: "the file groundtruth.tum seems to hold millimetres: write metres".
 pub(super) fn input_mistake(mistake: InputMistake) -> String {
+    if let Some(camera) = of_camera(mistake) {
+        return camera;
+    }
     let [file, holds, remedy] = words(mistake);
     let remedy = match mistake {
         InputMistake::FieldOfAnotherLeague(preset) => {
@@ -22,6 +26,26 @@ pub(super) fn input_mistake(mistake: InputMistake) -> String {
     };
     let kind = if file == PICTURES { "folder" } else { "file" };
     format!("the {kind} {file} seems to hold {holds}: {remedy}")
+}
+
+/// Returns the sentence on a camera file that is wrong by a factor; `None` for mistakes in other files.
+fn of_camera(mistake: InputMistake) -> Option<String> {
+    let factor = |percent: u32| 100.0 / f64::from(percent);
+    Some(match mistake {
+        InputMistake::FocalLength { percent } => format!(
+            "the file {CAMERA} seems to hold a focal length about {} % too {}: calibrate the camera, or write fx and fy times \
+             {:.2}",
+            percent.abs_diff(100),
+            if percent > 100 { "large" } else { "small" },
+            factor(percent)
+        ),
+        InputMistake::CameraOfOtherSize { percent } => format!(
+            "the file {CAMERA} seems to hold the camera of pictures about {percent} % as wide: calibrate the camera, or write fx, \
+             fy, cx and cy times {:.2}",
+            factor(percent)
+        ),
+        _ => return None,
+    })
 }
 
 /// Returns the file, what it seems to hold, and the remedy.
@@ -100,5 +124,11 @@ mod tests {
         let league = "the file field.toml seems to hold the field of another league: take the field `spl`";
         let spl = preset_names().position(|name| name == "spl").unwrap();
         assert_eq!(input_mistake(InputMistake::FieldOfAnotherLeague(spl)), league);
+        let focal = "the file camera.toml seems to hold a focal length about 43 % too large: calibrate the camera, or write fx \
+                     and fy times 0.70";
+        assert_eq!(input_mistake(InputMistake::FocalLength { percent: 143 }), focal);
+        let size = "the file camera.toml seems to hold the camera of pictures about 200 % as wide: calibrate the camera, or \
+                    write fx, fy, cx and cy times 0.50";
+        assert_eq!(input_mistake(InputMistake::CameraOfOtherSize { percent: 200 }), size);
     }
 }

@@ -24,7 +24,7 @@ const NAMED: usize = 2;
 
 /// Returns the verdict as one to a few sentences.
 pub fn summary(report: &Report) -> String {
-    if let [finding @ Finding::InputMistake { .. }] = report.unexplained.as_slice() {
+    if let Some(finding) = report.unexplained.first().filter(|finding| finding.stops_the_analysis()) {
         return sentence(&finding_place(finding));
     }
     let verdict = match report.verdict {
@@ -241,6 +241,8 @@ fn sentence(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use reality_sim_sensor::EffectIndex;
+
     use super::*;
     use crate::{
         diagnostics::finding::PatternCell,
@@ -404,5 +406,18 @@ mod tests {
             summary(&Report { unobservable: vec![shutter], ..inconclusive }),
             format!("These frames cannot tell whether {name}: to find out, {remedy}.")
         );
+    }
+
+    #[test]
+    fn all_effects_that_cannot_be_seen_are_named() {
+        let effects: Vec<_> = EffectIndex::all().take(9).map(|index| index.effect()).collect();
+        let cause = UnobservableCause::CameraAtRest;
+        let unobservable =
+            effects.iter().map(|known| Unobservable { id: known.id().to_owned(), cause }).collect();
+        let said = summary(&Report { unobservable, ..of(Verdict::Inconclusive, &[], &[]) });
+        for (index, known) in effects.iter().enumerate() {
+            let name = if index < NAMED { known.name() } else { known.id() };
+            assert!(said.contains(name), "{name}: {said}");
+        }
     }
 }

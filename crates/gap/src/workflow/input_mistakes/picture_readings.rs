@@ -4,12 +4,15 @@ use glam::{DMat3, DQuat, DVec3};
 use image::{RgbImage, imageops};
 use rayon::prelude::*;
 use reality_sim_core::{
+    camera::Camera,
     field::{FieldDimensions, preset_names},
     pose::CameraPose,
     preprocess::{Texture, luma},
+    sequence::CameraSetup,
 };
 use reality_sim_sensor::{Chain, Trajectory};
 
+use super::camera_readings;
 use crate::{
     diagnostics::input_mistake::InputMistake,
     linear_model::linearization::MeasureError,
@@ -49,34 +52,39 @@ const POSE_READINGS: [(InputMistake, PoseReading); 12] = [
 ];
 
 /// Returns the mistake under whose reading far more lines are where they should be than as the files stand.
-pub(super) fn mistake(recording: &Recording<'_>) -> Result<Option<InputMistake>, MeasureError> {
-    let sample = Sample::new(recording)?;
+pub(super) fn mistake(sample: &Sample<'_>) -> Option<InputMistake> {
+    let recording = sample.recording;
     let as_it_stands = Reading::as_it_stands(recording);
     let before = sample.found_share(&as_it_stands);
     // Fields have many lines in common: where most are found, another reading has to find nearly all.
     let rules = THRESHOLDS.found_before_and_after;
-    let Some([_, least_after]) = rules.into_iter().find(|[most_before, _]| before < *most_before) else {
-        return Ok(None);
-    };
+    let [_, least_after] = rules.into_iter().find(|[most_before, _]| before < *most_before)?;
     let readings = readings(recording, &as_it_stands);
     let found = |(mistake, reading): &(InputMistake, Reading)| (*mistake, sample.found_share(reading));
-    let tried: Vec<(InputMistake, f64)> = readings.par_iter().map(found).collect();
-    // The first of equals: sides that are swapped rather than a league that has them so.
-    let best = tried.into_iter().rev().max_by(|a, b| a.1.total_cmp(&b.1));
-    Ok(best.filter(|(_, found)| *found >= least_after).map(|(mistake, _)| mistake))
+    let best_of = |readings: &[(InputMistake, Reading)]| {
+        let tried: Vec<(InputMistake, f64)> = readings.par_iter().map(found).collect();
+        // The first of equals: sides that are swapped rather than a league that has them so.
+        tried.into_iter().rev().max_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let (best, _) = best_of(&readings).filter(|(_, found)| *found >= least_after)?;
+    let near = camera_readings::near(&as_it_stands.camera, best).into_iter();
+    let near = near.map(|(mistake, camera)| (mistake, Reading { camera, ..as_it_stands.clone() }));
+    best_of(&near.collect::<Vec<_>>()).map_or(Some(best), |(nearer, _)| Some(nearer))
 }
 
 /// Way to read a recording.
 #[derive(Clone)]
-struct Reading {
+pub(super) struct Reading {
     pose: PoseReading,
     picture: fn(&RgbImage) -> RgbImage,
     field: FieldDimensions,
+    camera: Camera,
 }
 
 impl Reading {
-    fn as_it_stands(recording: &Recording<'_>) -> Self {
-        Self { pose: |pose| pose, picture: RgbImage::clone, field: recording.sequence.field.clone() }
+    pub(super) fn as_it_stands(recording: &Recording<'_>) -> Self {
+        let (field, camera) = (recording.sequence.field.clone(), recording.sequence.setup.camera.clone());
+        Self { pose: |pose| pose, picture: RgbImage::clone, field, camera }
     }
 }
 
@@ -97,6 +105,8 @@ fn readings(recording: &Recording<'_>, as_it_stands: &Reading) -> Vec<(InputMist
     let fields = std::iter::once((InputMistake::FieldSwapped, swapped)).chain(presets);
     let fields = fields.filter(|(_, field)| field.validate().is_ok());
     readings.extend(fields.map(|(mistake, field)| (mistake, Reading { field, ..as_it_stands.clone() })));
+    let cameras = camera_readings::cameras(&as_it_stands.camera).into_iter();
+    readings.extend(cameras.map(|(mistake, camera)| (mistake, Reading { camera, ..as_it_stands.clone() })));
     // Poses that were found in the pictures fit these however the files were meant.
     if recording.reference() == ReferenceKind::Whole {
         let poses = POSE_READINGS.into_iter();
@@ -106,13 +116,13 @@ fn readings(recording: &Recording<'_>, as_it_stands: &Reading) -> Vec<(InputMist
 }
 
 /// Some pictures of a recording with their reference poses as they stand.
-struct Sample<'a> {
-    recording: &'a Recording<'a>,
-    pictures: Vec<(CameraPose, RgbImage)>,
+pub(super) struct Sample<'a> {
+    pub(super) recording: &'a Recording<'a>,
+    pub(super) pictures: Vec<(CameraPose, RgbImage)>,
 }
 
 impl<'a> Sample<'a> {
-    fn new(recording: &'a Recording<'a>) -> Result<Self, MeasureError> {
+    pub(super) fn new(recording: &'a Recording<'a>) -> Result<Self, MeasureError> {
         let every = recording.frames.len().div_ceil(THRESHOLDS.pictures).max(1);
         let picture = |frame: &Frame| -> Result<_, MeasureError> {
             Ok((recording.trajectory.at(frame.time_s), recording.picture(frame)?.0))
@@ -123,8 +133,14 @@ impl<'a> Sample<'a> {
 
     /// Returns the share of the pieces of line that are found where a reading expects them; 0 if it expects few.
     fn found_share(&self, reading: &Reading) -> f64 {
-        let setup = &self.recording.sequence.setup;
-        let chain = Chain::nominal(setup, &reading.field);
+        let [found, expected] = self.counts(reading);
+        if expected < THRESHOLDS.least_pieces * self.pictures.len() as f64 { 0.0 } else { found / expected }
+    }
+
+    /// Returns the numbers of pieces of line that are found and expected.
+    pub(super) fn counts(&self, reading: &Reading) -> [f64; 2] {
+        let setup = CameraSetup { camera: reading.camera.clone(), ..self.recording.sequence.setup.clone() };
+        let chain = Chain::nominal(&setup, &reading.field);
         let near_px = Thresholds::DEFAULT.workflow.alignment_near * f64::from(setup.camera.width);
         let (mut found, mut expected) = (0.0, 0.0);
         for (pose, picture) in &self.pictures {
@@ -138,7 +154,7 @@ impl<'a> Sample<'a> {
             found += search(&texture, &lines, near_px, |_| Some(())).len() as f64;
             expected += lines.len() as f64;
         }
-        if expected < THRESHOLDS.least_pieces * self.pictures.len() as f64 { 0.0 } else { found / expected }
+        [found, expected]
     }
 }
 
