@@ -175,7 +175,7 @@ pub enum DbFault {
         /// Number of pictures of the recording that the database holds.
         stored: usize,
         /// The pictures, and what is wrong with them.
-        source: SequenceError,
+        source: Box<SequenceError>,
     },
     /// The number of poses is not the number of frames.
     #[error("{found} poses were given for the {expected} frames of a sequence: give one entry a frame")]

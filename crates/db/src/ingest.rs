@@ -94,7 +94,7 @@ impl Database {
             Some(source) if report.stored() == 0 => Err(source.into()),
             Some(source) => {
                 let stored = report.stored();
-                Err(fail(DbFault::LeftOut { stored, source }))
+                Err(fail(DbFault::LeftOut { stored, source: source.into() }))
             }
         }
     }
@@ -105,7 +105,7 @@ impl Database {
         insert::check(self.path(), recording, image)?;
         self.write(|transaction| {
             let shared = Shared::find_or_add(transaction, recording)?;
-            Ok(insert(transaction, recording, &shared, image)?)
+            insert(transaction, recording, &shared, image)
         })
     }
 }

@@ -107,7 +107,7 @@ pub(crate) fn effect_report(id: &str, value: f64) -> EffectReport {
     let parameters = effect(id).map_or(&[][..], |known| known.parameters());
     let estimate = |parameter: &Parameter| {
         let unit = Some(parameter.unit.to_owned());
-        (parameter.name.to_owned(), Estimate { value, sigma: 0.01 * value.abs(), unit })
+        (parameter.name.to_owned(), Estimate { value, sigma: 0.01 * value.abs(), unit, at_range_end: false })
     };
     EffectReport {
         id: id.to_owned(),
@@ -115,7 +115,7 @@ pub(crate) fn effect_report(id: &str, value: f64) -> EffectReport {
         correlations: BTreeMap::new(),
         given: BTreeMap::new(),
         p_value: 1e-9,
-        held_out_gain: Estimate { value: 310.0, sigma: 12.0, unit: None },
+        held_out_gain: Estimate { value: 310.0, sigma: 12.0, unit: None, at_range_end: false },
         confusable_with: Vec::new(),
         closes: BTreeMap::new(),
     }

@@ -41,6 +41,10 @@ pub struct Estimate {
     /// Unit of the number, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
+    /// Whether the value lies at the end of what is plausible: it is then no measurement, and the standard deviation means
+    /// nothing.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub at_range_end: bool,
 }
 
 /// Effect of the extended model.

@@ -14,6 +14,8 @@ pub(crate) struct ReportThresholds {
     pub(crate) least_open_gap: f64,
     /// Smallest part of that distance that is told. Chosen; no measurement.
     pub(crate) least_closed_part: f64,
+    /// Part of a parameter's range within which a value is at its end. Chosen: the fits stop at the end itself.
+    pub(crate) range_end: f64,
     /// Largest residual that counts as it is where the frame to show is chosen, standard deviations. Chosen; no measurement.
     pub(crate) most_shown_sigmas: f64,
     /// Columns and rows of the map of the picture. Chosen: squares of 20 px at 320 × 240.
@@ -31,6 +33,7 @@ impl ReportThresholds {
         shown_p_value: 0.05,
         least_open_gap: 0.1,
         least_closed_part: 0.1,
+        range_end: 0.01,
         most_shown_sigmas: 10.0,
         map_picture_grid: [16, 12],
         map_field_cell_m: 0.5,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::DVector;
 use rayon::prelude::*;
-use reality_sim_sensor::{EffectIndex, Model, Role};
+use reality_sim_sensor::{EffectIndex, Model, Parameter, Role};
 
 use crate::{
     diagnostics::DETECTORS,
@@ -41,8 +41,9 @@ use crate::{
 
 const THRESHOLDS: ReportThresholds = Thresholds::DEFAULT.report;
 
-/// Runs the whole workflow: finds the effects that a model lacks, adds them, and evaluates the result on held-out frames. A
-/// mistake in the recording's files, or pictures that do not show its field, is all that is reported where there is one. `progress` is called at every stage.
+/// Runs the whole workflow: finds the effects that a model lacks, adds them, and evaluates the result on held-out frames. Where
+/// the recording's files hold a mistake, or its pictures do not show its field, that is all that is reported. `progress` is called
+/// at every stage.
 ///
 /// # Errors
 ///
@@ -165,7 +166,7 @@ fn effect_reports(
 
 /// Returns a gain as an estimate without a unit.
 fn gain(gain: Gain) -> Estimate {
-    Estimate { value: gain.value, sigma: gain.sigma, unit: None }
+    Estimate { value: gain.value, sigma: gain.sigma, unit: None, at_range_end: false }
 }
 
 /// Reports a tested effect. `closes` is the part of each channel's gap that the effect closes.
@@ -201,10 +202,18 @@ fn estimates(fits: &EffectFits<'_>, test: &EffectTest, model: &Model) -> BTreeMa
         let coordinate = fits.evidence.base[index.0];
         let (value, sigma) = (column.value(coordinate), column.value_sigma(coordinate, sigma));
         let parameter = column.parameter();
-        (parameter.name.to_owned(), Estimate { value, sigma, unit: Some(parameter.unit.to_owned()) })
+        let (unit, at_range_end) = (Some(parameter.unit.to_owned()), is_at_range_end(parameter, value));
+        (parameter.name.to_owned(), Estimate { value, sigma, unit, at_range_end })
     };
     let fitted = fits.columns_of(&[test.effect]).into_iter().map(estimate);
     fitted.chain(fixed(test.effect, model)).collect()
+}
+
+/// Whether a value lies at an end of its parameter's range. Where the effect vanishes is no such end.
+fn is_at_range_end(parameter: &Parameter, value: f64) -> bool {
+    let [low, high] = parameter.range;
+    let near = THRESHOLDS.range_end * (high - low);
+    [low, high].iter().any(|end| (value - end).abs() <= near && (parameter.neutral - end).abs() > near)
 }
 
 /// Iterates over the parameters that the recording gives.
@@ -213,7 +222,8 @@ fn fixed(effect: EffectIndex, model: &Model) -> impl Iterator<Item = (String, Es
     let values = model.values(effect.effect().id()).unwrap_or_default();
     let given = parameters.zip(values).filter(|(parameter, _)| parameter.role == Role::Fixed);
     given.map(|(parameter, &value)| {
-        (parameter.name.to_owned(), Estimate { value, sigma: 0.0, unit: Some(parameter.unit.to_owned()) })
+        let unit = Some(parameter.unit.to_owned());
+        (parameter.name.to_owned(), Estimate { value, sigma: 0.0, unit, at_range_end: false })
     })
 }
 

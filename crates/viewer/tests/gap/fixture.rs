@@ -18,8 +18,12 @@ use reality_sim_gap::{
 use tempfile::TempDir;
 
 fn effect(id: &str, parameter: &str) -> EffectReport {
-    let estimate =
-        |value, sigma, unit: Option<&str>| Estimate { value, sigma, unit: unit.map(str::to_owned) };
+    let estimate = |value, sigma, unit: Option<&str>| Estimate {
+        value,
+        sigma,
+        unit: unit.map(str::to_owned),
+        at_range_end: false,
+    };
     EffectReport {
         id: id.to_owned(),
         parameters: [(parameter.to_owned(), estimate(0.42, 0.01, Some("1")))].into(),
@@ -89,7 +93,7 @@ pub fn report() -> Report {
             parameter: "readout_s".to_owned(),
             detection_limit: Limit { value: 0.021, unit: "s".to_owned() },
             p_value: 1.0,
-            held_out_gain: Estimate { value: -1.0, sigma: 2.0, unit: None },
+            held_out_gain: Estimate { value: -1.0, sigma: 2.0, unit: None, at_range_end: false },
         }],
         unobservable: vec![Unobservable {
             id: "time_offset".to_owned(),

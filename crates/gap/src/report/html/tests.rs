@@ -35,7 +35,7 @@ fn not_found(id: &str) -> NotFoundReport {
         parameter: parameter.name.to_owned(),
         detection_limit: Limit { value: 2.0 * parameter.material, unit: parameter.unit.to_owned() },
         p_value: 0.4,
-        held_out_gain: Estimate { value: -1.2, sigma: 0.8, unit: None },
+        held_out_gain: Estimate { value: -1.2, sigma: 0.8, unit: None, at_range_end: false },
     }
 }
 
@@ -133,7 +133,8 @@ fn hollow() -> Report {
     let nothing = channel([f64::NAN; 3]);
     let mut effect = found(library()[12].id());
     effect.p_value = f64::NAN;
-    effect.held_out_gain = Estimate { value: f64::NAN, sigma: f64::INFINITY, unit: None };
+    effect.held_out_gain =
+        Estimate { value: f64::NAN, sigma: f64::INFINITY, unit: None, at_range_end: false };
     effect.closes = [(Channel::Geometry, f64::NAN)].into();
     let gap = Gap {
         before: f64::NAN,

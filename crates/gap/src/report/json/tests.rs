@@ -111,7 +111,7 @@ fn full() -> Report {
         parameter: "readout_s".to_owned(),
         detection_limit: Limit { value: 0.007, unit: "s".to_owned() },
         p_value: 0.4,
-        held_out_gain: Estimate { value: -0.375, sigma: 1.0, unit: None },
+        held_out_gain: Estimate { value: -0.375, sigma: 1.0, unit: None, at_range_end: false },
     };
     let unseen = |cause| Unobservable { id: "time_offset".to_owned(), cause };
     Report {

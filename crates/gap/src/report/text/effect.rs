@@ -1,7 +1,7 @@
 //! Effects in words.
 
 use reality_sim_sensor::{
-    Effect, Estimates, effect,
+    Effect, Estimates, Stage, effect,
     text::{Uncertain, digits, with_sigma},
 };
 
@@ -18,8 +18,12 @@ pub fn effect_because(report: &EffectReport) -> &'static str {
     effect(&report.id).map_or("", |known| name_and_signature(known, report).1)
 }
 
-/// Returns the effect's size with a 95 % interval: "at the corner 42 % of the light is lost (± 1 %)".
+/// Returns the effect's size with a 95 % interval: "at the corner 42 % of the light is lost (± 1 %)". A value at the end of its
+/// range is no measurement, and has no interval.
 pub fn effect_size(report: &EffectReport) -> String {
+    if report.parameters.values().any(|estimate| estimate.at_range_end) {
+        return at_range_end(report);
+    }
     let (values, correlation) = (values(report), |one: &str, other: &str| correlation(report, one, other));
     let estimates = Estimates::new(&values, &correlation);
     effect(&report.id).map_or_else(|| estimates.listed(), |known| known.size_in_words(&estimates))
@@ -36,9 +40,24 @@ pub fn library_name(id: &str) -> &str {
     effect(id).map_or(id, |known| known.name())
 }
 
-/// Returns a number with its standard deviation and its unit: "0.0178 ± 0.0004 rad".
+/// Returns "at the end of the plausible range (k1 = 0.15): camera.toml is probably wrong".
+fn at_range_end(report: &EffectReport) -> String {
+    let ends = report.parameters.iter().filter(|(_, value)| value.at_range_end);
+    let ends: Vec<String> = ends.map(|(name, value)| format!("{name} = {}", estimate(value))).collect();
+    let file = match effect(&report.id).map(<dyn Effect>::stage) {
+        Some(Stage::World) => "field.toml",
+        Some(Stage::Odometry) => "frames.csv",
+        _ => "camera.toml",
+    };
+    format!("at the end of the plausible range ({}): {file} is probably wrong", ends.join(", "))
+}
+
+/// Returns a number with its standard deviation and its unit: "0.0178 ± 0.0004 rad"; without the former at the end of its range.
 pub fn estimate(estimate: &Estimate) -> String {
     let unit = estimate.unit.as_deref().filter(|unit| *unit != "1").unwrap_or("");
+    if estimate.at_range_end {
+        return format!("{} {unit}", digits(estimate.value, 2)).trim_end().to_owned();
+    }
     format!("{} {unit}", with_sigma(estimate.value, estimate.sigma)).trim_end().to_owned()
 }
 
@@ -101,9 +120,25 @@ mod tests {
     }
 
     #[test]
+    fn a_value_at_the_end_of_its_range_is_no_measurement() {
+        let mut pitch = effect_report("mount_pitch", 0.02);
+        assert!(effect_size(&pitch).contains('±'));
+        pitch.parameters.get_mut("pitch_rad").unwrap().at_range_end = true;
+        let said = effect_size(&pitch);
+        let expected =
+            "at the end of the plausible range (pitch_rad = 0.020 rad): camera.toml is probably wrong";
+        assert_eq!(said, expected);
+    }
+
+    #[test]
     fn estimates_have_their_unit_unless_they_are_plain_numbers() {
         let of = |unit: Option<&str>| {
-            estimate(&Estimate { value: 0.421, sigma: 0.0051, unit: unit.map(str::to_owned) })
+            estimate(&Estimate {
+                value: 0.421,
+                sigma: 0.0051,
+                unit: unit.map(str::to_owned),
+                at_range_end: false,
+            })
         };
         assert_eq!(
             [of(Some("px")), of(Some("1")), of(None)],

@@ -341,7 +341,7 @@ mod tests {
             parameter: effect(id).unwrap().parameters()[0].name.to_owned(),
             detection_limit: Limit { value, unit: unit.to_owned() },
             p_value: 0.4,
-            held_out_gain: Estimate { value: -1.0, sigma: 1.0, unit: None },
+            held_out_gain: Estimate { value: -1.0, sigma: 1.0, unit: None, at_range_end: false },
         };
         let not_found = vec![
             limit("odometry_scale", 0.03, "1"),
@@ -410,7 +410,7 @@ mod tests {
 
     #[test]
     fn all_effects_that_cannot_be_seen_are_named() {
-        let effects: Vec<_> = EffectIndex::all().take(9).map(|index| index.effect()).collect();
+        let effects: Vec<_> = EffectIndex::all().take(9).map(EffectIndex::effect).collect();
         let cause = UnobservableCause::CameraAtRest;
         let unobservable =
             effects.iter().map(|known| Unobservable { id: known.id().to_owned(), cause }).collect();
