@@ -403,7 +403,7 @@ fn broken_pictures_are_left_out_and_named() {
     assert_eq!(report["left_out"].as_array().unwrap().len(), 2);
     fs::remove_dir_all(folder.path().join("images")).unwrap();
     let refused = ["gap", text(folder.path()), "--out", text(&out)];
-    assert_refused(&refused, &["0 of the 32 frames", "picture", "000000.jpg"]);
+    assert_refused(&refused, &["32 of its 32 pictures are missing", "000000.jpg"]);
 }
 
 #[test]

@@ -159,7 +159,7 @@ fn poses_details_and_overlays_have_one_entry_a_frame() {
     let table = fs::read_to_string(&details).unwrap();
     let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(rows.len(), 4);
-    assert!(rows.iter().all(|row| row.len() == 21), "{table}");
+    assert!(rows.iter().all(|row| row.len() == 22), "{table}");
     assert_eq!(rows[0][..4], ["timestamp_s", "x_m", "y_m", "yaw_rad"]);
     assert!(rows[1..].iter().all(|row| row[7].parse::<f64>().unwrap() > 0.0), "sigma_x_m");
 

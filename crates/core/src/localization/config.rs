@@ -172,27 +172,30 @@ pub struct TrackConfig {
     pub lost_ratio: f64,
     /// Line fraction below which the filter may be lost whatever the average, 0.15: random poses have about 0.
     pub lost_line_fraction: f64,
-    /// Line fraction from which a pose fits, 0.35, provided that it also passes [`TrackConfig::fitting_ratio`].
+    /// Line fraction from which a pose fits, 0.35 (right places in 143 real pictures have 0.41 and more), provided that it also passes [`TrackConfig::fitting_ratio`].
     pub fitting_line_fraction: f64,
     /// Fraction of the slow average from which a pose fits, 0.55: a little above [`TrackConfig::lost_ratio`], so that
     /// no pose both fits and is lost.
     pub fitting_ratio: f64,
     /// Fraction of the white lines in the picture that a pose must explain to fit, 0.4, provided that it also passes
-    /// [`TrackConfig::fitting_explained_ratio`].
+    /// [`TrackConfig::fitting_explained_ratio`]. Robots and people are white, too: right places in 143 real pictures explain 0.49
+    /// and more, and the rule was made on these.
     pub fitting_explained_fraction: f64,
-    /// Fraction of the slow average of the explained fraction from which a pose fits, 0.6.
+    /// Fraction of the slow average of the explained fraction from which a pose fits, 0.6: a robot that comes into view rarely adds
+    /// as much white as half of the lines.
     pub fitting_explained_ratio: f64,
-    /// Fraction of the slow average of the explained fraction below which the filter may be lost, 0.5.
+    /// Fraction of the slow average of the explained fraction below which the filter may be lost, 0.5: less than what fits.
     pub lost_explained_ratio: f64,
     /// Line fraction from which, with [`TrackConfig::convincing_explained_fraction`], a place needs no search for others, 0.5. Of
-    /// the poses that a search of the whole field ranked first in 143 real pictures, it leaves 60 % of the right ones and 2 % of
-    /// the wrong ones unsearched.
+    /// the places that a search of the whole field ranked first in 143 real pictures, 98 of 130 right ones pass both, and 2 of 13
+    /// wrong ones; the rule was made on these.
     pub convincing_line_fraction: f64,
     /// Explained fraction from which it needs none, 0.9.
     pub convincing_explained_fraction: f64,
-    /// Largest distance of a pose from the best fit around it for the pose to be sure, 0.15 m and 0.1 rad.
+    /// Largest distance of a pose from the best fit around it for the pose to be sure, 0.15 m and 0.1 rad: three times
+    /// a line's width.
     pub fit_distance: PlanarSigma,
-    /// Largest number of other places that are followed, 6.
+    /// Largest number of other places that are followed, 6: each takes a fit a picture.
     pub most_rivals: usize,
     /// Largest change of a rival's log-odds by one picture, 3: a picture in which something else hides the lines of the right
     /// place must not decide alone.

@@ -212,8 +212,10 @@ impl Localizer {
             || self.line_fraction_near(pose, mount, least) < least
     }
 
+    /// Returns whether the place was never verified, and the picture leaves so much open that the field has to be searched for
+    /// others.
     fn may_be_elsewhere(&self, track: &Track, pose: CameraPose, mount: MountPose) -> bool {
-        track.needs_verification(self.agreement(pose, mount, track.fits_from()))
+        !track.is_verified() && !track.is_convincing(self.agreement(pose, mount, track.fits_from()))
     }
 
     /// Returns the line fraction of a pose. If it is less than `enough`, returns that of the pose next to it that fits the

