@@ -146,19 +146,14 @@ impl Localizer {
             beginning = Beginning::Searched { is_clear: self.config.relocalization.is_clear(&modes) };
             found = modes;
         }
-        let mut estimate = self.filter.update(observation.mount, self.config.filter.noise.sigma(None))?;
+        let estimate = self.filter.update(observation.mount, self.config.filter.noise.sigma(None))?;
         let pose = estimate.pose.planar();
         let mut track = Track::new(self.config.track, pose, self.odometry(observation), beginning);
         if let Some(best) = found.first() {
             self.add_rivals(&mut track, &found, best);
             track.verify();
         }
-        let mut searched = self.start.is_none();
-        if self.config.relocalizes && self.may_be_elsewhere(&track, estimate.pose, observation.mount) {
-            searched = true;
-            estimate = self.recover(&mut track, picture, observation.mount, estimate)?;
-        }
-        Ok(Posterior { track, estimate, motion: None, searched })
+        Ok(Posterior { track, estimate, motion: None, searched: self.start.is_none() })
     }
 
     /// Handles any later picture: predicts and updates; relocalizes if the prediction is too uncertain or the picture

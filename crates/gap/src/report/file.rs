@@ -5,6 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use reality_sim_core::sequence::{Printable, on_one_line};
 use serde::{Deserialize, de::IgnoredAny};
 
 use crate::{
@@ -19,7 +20,7 @@ const FILE: &str = "report.json";
 
 /// Error for a report that cannot be read.
 #[derive(Debug, thiserror::Error)]
-#[error("{}{}: {fault}", .path.display(), Line(*.line))]
+#[error("{}{}: {fault}", Printable(.path), Line(*.line))]
 pub struct ReportError {
     /// Path of the file.
     pub path: PathBuf,
@@ -82,10 +83,10 @@ pub enum Contradiction {
     Times,
 }
 
-/// Returns the parser's message without its line and column.
+/// Returns the parser's message without its line and column, on one line: it quotes the file.
 fn without_place(error: &serde_json::Error) -> String {
     let place = format!(" at line {} column {}", error.line(), error.column());
-    error.to_string().replace(&place, "")
+    on_one_line(&error.to_string().replace(&place, ""))
 }
 
 impl Report {
