@@ -20,8 +20,8 @@ const ROUGHLY_EVERY: usize = 3;
 /// picture without making its place wrong.
 const TOLERANCE_RAD: f64 = 0.01;
 
-/// Largest distance on the ground by which a pixel may be off its line, metres, however far away it is: less than a third of the
-/// distance of any two parallel lines but the goal area's on a small field.
+/// Largest distance on the ground by which a pixel may be off its line, metres, however far away it is: a quarter of the depth of the
+/// smallest goal area among the presets, whose lines are the closest parallel ones.
 const MOST_TOLERANCE_M: f64 = 0.15;
 
 /// White lines of one picture, as rays from the camera through some of their pixels.
