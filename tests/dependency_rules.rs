@@ -31,10 +31,12 @@ const PARTS: &[&str] = &[
     "reality-sim-pipeline",
     "reality-sim-sensor",
     "reality-sim-gap",
+    "reality-sim-formats",
+    "reality-sim-calibration",
 ];
 
 /// Packages of this workspace that each package may use.
-const MAY_USE: [(&str, &[&str]); 10] = [
+const MAY_USE: [(&str, &[&str]); 12] = [
     ("reality-sim-core", &[]),
     (GPU, &["reality-sim-core"]),
     ("reality-sim-db", &["reality-sim-core"]),
@@ -43,6 +45,8 @@ const MAY_USE: [(&str, &[&str]); 10] = [
     ("reality-sim-sensor", &["reality-sim-core"]),
     ("reality-sim-hidden", &["reality-sim-core"]),
     ("reality-sim-gap", &["reality-sim-core", "reality-sim-sensor"]),
+    ("reality-sim-formats", &["reality-sim-core"]),
+    ("reality-sim-calibration", &["reality-sim-core"]),
     (LIBRARY, PARTS),
     ("reality-sim-viewer", PARTS),
 ];
