@@ -2,6 +2,7 @@
 
 mod advice;
 mod build;
+mod calibrate;
 mod choice;
 mod device;
 #[cfg(feature = "gpu")]
@@ -31,6 +32,8 @@ pub use self::{advice::advice, output::be_quiet};
 pub enum Command {
     /// Find the camera's pose for every picture of a recording
     Tag(Box<tag::TagArgs>),
+    /// Find the camera's lens and mount from the lines of the field
+    Calibrate(calibrate::CalibrateArgs),
     /// Store recordings with their poses in a database
     Build(build::BuildArgs),
     /// Make the picture at a pose, or the pictures along a path, from a database
@@ -63,7 +66,9 @@ impl Command {
             Self::Build(args) => args.check_usage(),
             Self::Render(args) => args.check_usage(),
             Self::Evaluate(args) => args.check_usage(),
-            Self::Info(_) | Self::Remove(_) | Self::Completions(_) | Self::Man(_) => Ok(()),
+            Self::Calibrate(_) | Self::Info(_) | Self::Remove(_) | Self::Completions(_) | Self::Man(_) => {
+                Ok(())
+            }
             Self::Gap(args) => args.check_usage(),
             #[cfg(feature = "gpu")]
             Self::Doctor(_) => Ok(()),
@@ -76,6 +81,7 @@ impl Command {
     pub fn run<Program: CommandFactory>(&self) -> anyhow::Result<()> {
         match self {
             Self::Tag(args) => tag::run(args),
+            Self::Calibrate(args) => calibrate::run(args),
             Self::Build(args) => build::run(args),
             Self::Render(args) => render::run(args),
             Self::Evaluate(args) => evaluate::run(args),

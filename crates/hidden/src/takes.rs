@@ -217,6 +217,7 @@ impl Takes {
             frames,
             poses_between_frames: Vec::new(),
             start: Some(logger.start()),
+            calibration: None,
             corrected_by: None,
             field: if other_field { drawn::another_league(field) } else { field.clone() },
         };

@@ -10,6 +10,7 @@
 //! | read a recording, its camera, its field | [`Sequence`], [`Camera`], [`FieldDimensions`] |
 //! | describe the pose of a camera | [`CameraPose`], [`Pose2`] |
 //! | find the pose of every picture, live or from a recording | [`Localizer`], [`Observation`], [`LocalizedFrame`] |
+//! | find a camera's lens and mount from the lines of the field | [`calibration`] |
 //! | store pictures by pose, in one file | [`db::Database`] |
 //! | make the picture at a pose from recorded ones | [`Archive`], [`Synthesizer`], [`synthesis`] |
 //! | make the picture at a pose from the field's model | [`sensor::Renderer`] |
@@ -86,6 +87,7 @@ pub use reality_sim_gpu as gpu;
 // The crates whose types appear in public signatures.
 pub use {glam, image, nalgebra};
 
+pub use reality_sim_calibration as calibration;
 pub use reality_sim_core::{
     backend, camera, field, filter, localization, mount, names, observation, pose, preprocess, refine,
     search, sequence, warp,

@@ -47,6 +47,7 @@ fn walk() -> Sequence {
         frames: frames.collect(),
         start: None,
         poses_between_frames: Vec::new(),
+        calibration: None,
         corrected_by: None,
     }
 }

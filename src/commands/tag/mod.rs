@@ -37,7 +37,11 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     let config = args.config();
     let device = args.device()?;
     let builder = Localizer::builder(&sequence.setup.camera, &sequence.field);
-    let builder = builder.config(config).start(sequence.start).backend(device.backend.clone());
+    let builder = builder
+        .config(config)
+        .start(sequence.start)
+        .calibration(sequence.calibration.clone())
+        .backend(device.backend.clone());
     let mut localizer = builder.build()?;
     let wanted = sequence.frames.len();
     let progress = frame_progress(wanted)?;

@@ -62,6 +62,15 @@ impl Distortion {
         }
     }
 
+    /// Returns the names of the parameters, in the order of [`Distortion::parameters`].
+    pub fn names(&self) -> &'static [&'static str] {
+        match self {
+            Self::Pinhole => &[],
+            Self::Opencv(_) => &["k1", "k2", "p1", "p2", "k3"],
+            Self::OpencvFisheye(_) => &["k1", "k2", "k3", "k4"],
+        }
+    }
+
     /// Returns the angle from the optical axis at which the distortion stops growing, radians.
     fn natural_max_angle_rad(&self) -> f64 {
         match self {

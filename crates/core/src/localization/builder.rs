@@ -10,7 +10,7 @@ use crate::{
     goal_colors::GoalColors,
     pose::Pose2,
     preprocess::Preprocessor,
-    refine::Refiner,
+    refine::{CalibrationUncertainty, Refiner},
     search::GlobalSearch,
 };
 
@@ -22,6 +22,7 @@ pub struct LocalizerBuilder<'a> {
     config: LocalizerConfig,
     backend: Arc<dyn Backend>,
     start: Option<Pose2>,
+    calibration: Option<CalibrationUncertainty>,
 }
 
 impl Localizer {
@@ -29,7 +30,14 @@ impl Localizer {
     /// and does not know where the camera starts.
     pub fn builder<'a>(camera: &'a Camera, field: &'a FieldDimensions) -> LocalizerBuilder<'a> {
         let backend = Arc::new(CpuBackend);
-        LocalizerBuilder { camera, field, config: LocalizerConfig::default(), backend, start: None }
+        LocalizerBuilder {
+            camera,
+            field,
+            config: LocalizerConfig::default(),
+            backend,
+            start: None,
+            calibration: None,
+        }
     }
 }
 
@@ -49,10 +57,19 @@ impl LocalizerBuilder<'_> {
         Self { start: start.into(), ..self }
     }
 
+    /// Sets how far lens and mount can be trusted, which becomes part of the covariances; `None` takes them as exact. Where it
+    /// says how far height, pitch and roll are from the mount's, this replaces the settings' own value.
+    pub fn calibration(self, calibration: Option<CalibrationUncertainty>) -> Self {
+        Self { calibration, ..self }
+    }
+
     /// Builds the localizer. Fails if the device cannot do what the settings ask for.
     pub fn build(self) -> Result<Localizer, LocalizationError> {
-        let Self { camera, field, config, backend, start } = self;
-        let refiner = Refiner::new(camera, field, config.refine, config.mount_sigma);
+        let Self { camera, field, config, backend, start, calibration } = self;
+        let measured = calibration.as_ref().and_then(CalibrationUncertainty::mount_sigma);
+        let config = measured.map_or(config, |sigma| config.with_mount_sigma(sigma));
+        let refiner =
+            Refiner::new(camera, field, config.refine, config.mount_sigma).with_calibration(calibration);
         Ok(Localizer {
             config,
             size: [camera.width, camera.height],

@@ -1,11 +1,13 @@
 //! Refinement of approximate poses: of single pictures to a fraction of a pixel, and of whole trajectories.
 
+mod calibration;
 mod config;
 mod measure;
 mod picture;
 mod trajectory;
 
 pub use self::{
+    calibration::{CalibrationUncertainty, InvalidCovariance},
     config::{RefineConfig, SmoothingConfig},
     measure::{LineOffset, MeasureConfig, measure_offsets},
     picture::{PoseFit, Reach, Refiner},

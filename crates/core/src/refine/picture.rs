@@ -5,6 +5,7 @@ use glam::DVec3;
 use nalgebra::{Matrix6, Vector6};
 
 use super::{
+    calibration::{CalibrationUncertainty, Coupling, lens_parameters},
     config::RefineConfig,
     measure::{LineOffset, MeasureConfig, measure_offsets},
 };
@@ -31,8 +32,12 @@ pub enum Reach {
 pub struct PoseFit {
     /// Fitted pose.
     pub pose: CameraPose,
-    /// Covariance of x, y, yaw, height, pitch and roll (metres and radians), given the picture and the mount pose.
+    /// Covariance of x, y, yaw, height, pitch and roll (metres and radians), given the picture and the mount pose. It contains
+    /// the calibration's part.
     pub covariance: Matrix6<f64>,
+    /// Part of the covariance that comes from the uncertainty of the calibration, 0 where none is stated. Neighbouring pictures
+    /// share this error: it does not average out.
+    pub of_calibration: Matrix6<f64>,
     /// Inverse covariance of the six numbers, given the picture alone.
     pub information: Matrix6<f64>,
     /// Robust standard deviation of the residual line offsets, pixels.
@@ -63,6 +68,7 @@ impl PoseFit {
         Self {
             pose: self.pose.mirrored(),
             covariance: turned(self.covariance),
+            of_calibration: turned(self.of_calibration),
             information: turned(self.information),
             ..self
         }
@@ -77,6 +83,7 @@ pub struct Refiner {
     samples: Vec<LineSample>,
     config: RefineConfig,
     mount_sigma: MountPoseSigma,
+    calibration: Option<CalibrationUncertainty>,
 }
 
 /// Returns the pose moved by a step in its six numbers.
@@ -104,7 +111,24 @@ impl Refiner {
             .into_iter()
             .filter(|sample| sample.clearance_m > clearance_m)
             .collect();
-        Self { camera: camera.clone(), field: field.clone(), samples, config, mount_sigma }
+        Self { camera: camera.clone(), field: field.clone(), samples, config, mount_sigma, calibration: None }
+    }
+
+    /// Sets the uncertainty of the calibration, which becomes part of every pose's covariance; `None` takes lens and mount
+    /// as exact.
+    ///
+    /// # Panics
+    ///
+    /// If the uncertainty is that of a lens with another number of parameters.
+    pub fn with_calibration(self, calibration: Option<CalibrationUncertainty>) -> Self {
+        if let Some(calibration) = &calibration {
+            assert_eq!(
+                calibration.covariance().nrows(),
+                lens_parameters(&self.camera) + 3,
+                "parameters of lens and mount"
+            );
+        }
+        Self { calibration, ..self }
     }
 
     /// Returns the uncertainty of the mount pose.
@@ -144,6 +168,7 @@ impl Refiner {
             fit = Some(PoseFit {
                 pose,
                 covariance: step.covariance,
+                of_calibration: step.of_calibration,
                 information: step.information,
                 residual_px: step.residual_px,
                 found: offsets.len() as f64 / visible.len().max(1) as f64,
@@ -178,8 +203,29 @@ impl Refiner {
             step = (information + prior).cholesky()?.solve(&(right - prior * mount_error));
             sigma = robust_sigma(rows.iter().map(|(g, o)| o - g.dot(&step))).max(self.config.offset_sigma_px);
         }
-        let covariance = (information + prior).try_inverse()?;
-        Some(Step { step, covariance, information, residual_px: sigma })
+        let of_picture = (information + prior).try_inverse()?;
+        let of_calibration = self.of_calibration(pose, offsets, &step, (sigma, repeats), &of_picture);
+        let covariance = of_picture + of_calibration;
+        Some(Step { step, covariance, of_calibration, information, residual_px: sigma })
+    }
+
+    /// Returns the part of the covariance that comes from the calibration.
+    fn of_calibration(
+        &self,
+        pose: CameraPose,
+        offsets: &[LineOffset],
+        step: &Vector6<f64>,
+        (sigma, repeats): (f64, f64),
+        of_picture: &Matrix6<f64>,
+    ) -> Matrix6<f64> {
+        let Some(calibration) = &self.calibration else { return Matrix6::zeros() };
+        let mut coupling = Coupling::of_mount(lens_parameters(&self.camera), &self.mount_sigma.information());
+        for offset in offsets {
+            let Some(gradient) = self.gradient(pose, offset) else { continue };
+            let weight = tukey((offset.offset_px - gradient.dot(step)) / sigma) / (sigma * sigma * repeats);
+            coupling.add(&self.camera, pose, offset, &gradient, weight);
+        }
+        coupling.of_pose(of_picture, calibration)
     }
 
     /// Returns the derivatives of the sample's offset along its normal by the six numbers of the pose, pixels per metre
@@ -202,6 +248,7 @@ impl Refiner {
 struct Step {
     step: Vector6<f64>,
     covariance: Matrix6<f64>,
+    of_calibration: Matrix6<f64>,
     information: Matrix6<f64>,
     residual_px: f64,
 }
@@ -275,6 +322,7 @@ mod tests {
         let fit = PoseFit {
             pose: test_scene::poses()[0],
             covariance: Matrix6::from_fn(|i, j| if i == j { 2.0 } else { 0.1 * (i + j) as f64 }),
+            of_calibration: Matrix6::zeros(),
             information: Matrix6::identity(),
             residual_px: 0.1,
             found: 1.0,

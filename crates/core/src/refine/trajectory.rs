@@ -72,12 +72,36 @@ pub fn smooth_trajectory(
             }
         }
     }
-    let smoothed = poses.into_iter().zip(covariances).zip(used);
+    let of_calibration = errors_of_calibration(frames, &used);
+    let smoothed = poses.into_iter().zip(covariances).zip(used).zip(of_calibration);
     Some(
         smoothed
-            .map(|((pose, covariance), picture_used)| SmoothedPose { pose, covariance, picture_used })
+            .map(|(((pose, covariance), picture_used), of_calibration)| SmoothedPose {
+                pose,
+                covariance: covariance + of_calibration,
+                picture_used,
+            })
             .collect(),
     )
+}
+
+/// Returns the part of each pose's covariance that comes from the calibration: that of its own picture, or of the nearest one that
+/// is used. All pictures share the calibration's error, so that smoothing does not reduce it.
+fn errors_of_calibration(frames: &[TrajectoryFrame], used: &[bool]) -> Vec<Matrix6<f64>> {
+    let known: Vec<(usize, Matrix6<f64>)> = (0..frames.len())
+        .filter(|&index| used[index])
+        .filter_map(|index| Some((index, frames[index].fit?.of_calibration)))
+        .collect();
+    let mut nearest = 0;
+    let of_frame = |index: usize| {
+        while nearest + 1 < known.len()
+            && known[nearest + 1].0.abs_diff(index) <= known[nearest].0.abs_diff(index)
+        {
+            nearest += 1;
+        }
+        known.get(nearest).map_or_else(Matrix6::zeros, |(_, of_calibration)| *of_calibration)
+    };
+    (0..frames.len()).map(of_frame).collect()
 }
 
 /// Steps of all poses, and their marginal covariances.
@@ -244,8 +268,10 @@ impl OdometryNoise {
 /// Returns the variances of a fit forwards, sideways and in heading. The first two are both the mean variance of the
 /// position, which does not depend on the heading.
 fn planar_variances(fit: &PoseFit) -> Vector3<f64> {
-    let place = 0.5 * (fit.covariance[(0, 0)] + fit.covariance[(1, 1)]);
-    Vector3::new(place, place, fit.covariance[(2, 2)])
+    // Neighbours share the calibration's error, which their motion does not contain.
+    let covariance = fit.covariance - fit.of_calibration;
+    let place = 0.5 * (covariance[(0, 0)] + covariance[(1, 1)]);
+    Vector3::new(place, place, covariance[(2, 2)])
 }
 
 /// Comparison of what a picture alone tells with what all the rest does: its mount pose, and the other pictures.

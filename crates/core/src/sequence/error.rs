@@ -3,7 +3,7 @@
 use std::{fmt, io, path::Path, path::PathBuf};
 
 use super::{format_error::FormatError, printable::Printable};
-use crate::{camera::InvalidCamera, field::InvalidField};
+use crate::{camera::InvalidCamera, field::InvalidField, refine::InvalidCovariance};
 
 /// Maximum length of an excerpt of a file in a message, characters.
 const EXCERPT_LENGTH: usize = 60;
@@ -113,6 +113,9 @@ pub enum Fault {
     /// The camera's parameters cannot be used.
     #[error("{0}: correct the camera's numbers")]
     Camera(#[source] InvalidCamera),
+    /// The uncertainty of the calibration is none.
+    #[error("`covariance` {0}: write the table [calibration] anew, or remove it")]
+    Covariance(#[source] InvalidCovariance),
     /// The field cannot be drawn.
     #[error("{0}: correct the field's dimensions")]
     Field(#[source] InvalidField),

@@ -4,6 +4,7 @@
 //! is a [`SequenceError`] that names file, line, fault and remedy in one line.
 
 mod atomic;
+mod calibration_file;
 mod camera_file;
 mod corrected_by;
 mod error;
@@ -32,6 +33,7 @@ use rayon::prelude::*;
 
 pub use self::{
     atomic::{hold_writing, write_atomically},
+    calibration_file::{camera_with_uncertainty, read_calibration},
     camera_file::{CameraSetup, Photometry, Trust, read_camera, read_mounting},
     corrected_by::{camera_with_model, model_of_camera},
     error::{Fault, SequenceError},
@@ -55,6 +57,7 @@ use self::{
 use crate::{
     field::FieldDimensions,
     pose::{CameraPose, Pose2},
+    refine::CalibrationUncertainty,
 };
 
 /// Recording, loaded into memory except for its pictures.
@@ -76,6 +79,8 @@ pub struct Sequence {
     pub poses_between_frames: Vec<StampedPose>,
     /// Pose of the first frame in the world, if known.
     pub start: Option<Pose2>,
+    /// How far lens and mount can be trusted, if the camera's file says it.
+    pub calibration: Option<CalibrationUncertainty>,
     /// Text of the model by which camera, field, poses and odometry have been corrected, if one has been used.
     pub corrected_by: Option<String>,
 }
@@ -89,14 +94,25 @@ impl Sequence {
 
     /// Works as [`Sequence::open`], with another camera file, if one is given, in place of the sequence's own.
     pub fn open_with_camera(folder: &Path, camera: Option<&Path>) -> Result<Self, SequenceError> {
+        let camera = camera.map_or_else(|| Self::camera_file(folder), |camera| Ok(camera.to_path_buf()))?;
+        let (setup, mounting) = (read_camera(&camera)?, read_mounting(&camera)?);
+        let calibration = read_calibration(&camera, &setup.camera)?;
+        Self::open_with(folder, CameraFile { setup, mounting, calibration })
+    }
+
+    /// Works as [`Sequence::open`], with a camera that is made here, not read: that of a recording which is not calibrated yet.
+    pub fn open_with_setup(folder: &Path, setup: CameraSetup) -> Result<Self, SequenceError> {
+        Self::open_with(folder, CameraFile { setup, mounting: Mounting::default(), calibration: None })
+    }
+
+    fn open_with(folder: &Path, camera: CameraFile) -> Result<Self, SequenceError> {
         check_folder(folder)?;
         let main_file = folder.join(SEQUENCE_FILE);
         let table = read_and_parse(&main_file, MAX_TOML_BYTES, parse_sequence)?;
         let parts = [&table.camera, &table.field, &table.frames];
         let parts = parts.into_iter().chain(&table.groundtruth).map(|name| folder.join(name));
         let files = std::iter::once(main_file).chain(parts).collect();
-        let camera = camera.map_or_else(|| folder.join(&table.camera), Path::to_path_buf);
-        let (setup, mounting) = (read_camera(&camera)?, read_mounting(&camera)?);
+        let CameraFile { setup, mounting, calibration } = camera;
         let field = read_field(&folder.join(&table.field))?;
         let mut frames = read_and_parse(&folder.join(&table.frames), MAX_TABLE_BYTES, parse_frames)?;
         let mut poses_between_frames = Vec::new();
@@ -120,6 +136,7 @@ impl Sequence {
             frames,
             poses_between_frames,
             start: table.start.map(Pose2::from),
+            calibration,
             corrected_by: None,
         })
     }
@@ -208,6 +225,13 @@ impl Sequence {
         })?;
         Ok(self.folder.join(&frame.image))
     }
+}
+
+/// What a camera's file says.
+struct CameraFile {
+    setup: CameraSetup,
+    mounting: Mounting,
+    calibration: Option<CalibrationUncertainty>,
 }
 
 fn check_folder(folder: &Path) -> Result<(), SequenceError> {

@@ -5,6 +5,7 @@ use std::{fs, path::Path};
 use super::{
     CameraSetup, Sequence,
     atomic::write_atomically,
+    calibration_file::camera_with_uncertainty,
     error::{Fault, SequenceError},
     frames::{FrameRecord, parse_frames, print_frames},
     sequence_file::{SEQUENCE_FILE, SequenceTable, StartTable, parse_sequence},
@@ -35,6 +36,10 @@ impl Sequence {
         let path = folder.join(CAMERA_FILE);
         let camera = self.setup.to_toml(&path)?;
         CameraSetup::from_toml(&path, &camera)?;
+        let camera = match &self.calibration {
+            Some(calibration) => camera_with_uncertainty(&camera, &self.setup.camera, calibration),
+            None => camera,
+        };
         let path = folder.join(FIELD_FILE);
         let field = self.field.to_toml(&path)?;
         FieldDimensions::from_toml(&path, &field)?;

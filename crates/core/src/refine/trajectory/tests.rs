@@ -47,7 +47,15 @@ fn fitted(truth: CameraPose, picture: Matrix6<f64>, error: Vector6<f64>, mount: 
     let (information, prior) = (picture.try_inverse().unwrap(), MOUNT_SIGMA.information());
     let covariance = (information + prior).try_inverse().unwrap();
     let step = covariance * (information * error - prior * mount_error(truth, mount));
-    PoseFit { pose: moved(truth, &step), covariance, information, residual_px: 0.1, found: 1.0, offsets: 100 }
+    PoseFit {
+        pose: moved(truth, &step),
+        covariance,
+        of_calibration: Matrix6::zeros(),
+        information,
+        residual_px: 0.1,
+        found: 1.0,
+        offsets: 100,
+    }
 }
 
 /// Simulates a walk whose pictures, odometry and mount poses err as their covariances say; every third picture shows

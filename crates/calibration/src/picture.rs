@@ -1,0 +1,162 @@
+//! One picture of the recording, and the lines that are measured in it.
+
+use glam::{DMat3, DVec2, DVec3};
+use nalgebra::{DVector, Vector6};
+use reality_sim_core::{
+    field::{FieldDimensions, LineSample, VisibleSample, sample_lines, visible_samples},
+    mount::MountPose,
+    pose::{CameraPose, wrap_angle},
+    preprocess::Texture,
+    refine::{LineOffset, MeasureConfig, RefineConfig, measure_offsets},
+};
+
+use crate::{parameter::Parameter, state::State};
+
+/// Step of the numeric derivatives by the numbers of a pose, metres and radians.
+const STEP: f64 = 1e-5;
+
+/// Picture that lines are measured in.
+#[derive(Debug, Clone)]
+pub(crate) struct Picture {
+    /// Frame of the recording, counted from 0.
+    pub frame: usize,
+    /// Whiteness.
+    pub texture: Texture,
+    /// Usual difference between lines and carpet, grey levels.
+    pub contrast: f64,
+    /// Pitch and roll as the recording states them; the height is not used.
+    pub stated: MountPose,
+}
+
+/// A line found beside its projection: the offset between the two, and its derivatives.
+#[derive(Debug, Clone)]
+pub(crate) struct Row {
+    /// Distance from the projected to the measured centre across the line, pixels.
+    pub offset_px: f64,
+    /// Derivatives of the projection, along the same direction, by x, y, yaw, height, pitch and roll.
+    pub by_pose: Vector6<f64>,
+    /// Derivatives by the parameters.
+    pub by_parameters: DVector<f64>,
+    /// Where the line is projected, pixels.
+    pub pixel: DVec2,
+    /// Line of the field, by its place in [`FieldDimensions::curves`].
+    pub curve: usize,
+}
+
+/// Lines of a field, prepared for measuring them.
+#[derive(Debug, Clone)]
+pub(crate) struct Lines {
+    field: FieldDimensions,
+    samples: Vec<LineSample>,
+    config: RefineConfig,
+}
+
+/// Lines measured in one picture.
+#[derive(Debug, Clone)]
+pub(crate) struct Measured {
+    /// Lines that were found.
+    pub rows: Vec<Row>,
+    /// Number of places at which one was looked for.
+    pub looked_at: usize,
+}
+
+impl Lines {
+    /// Prepares the lines of a field.
+    pub fn new(field: &FieldDimensions, config: RefineConfig) -> Self {
+        let clearance_m = config.min_clearance_line_widths * field.line_width_m;
+        let samples = sample_lines(field, config.spacing_m);
+        let samples = samples.into_iter().filter(|sample| sample.clearance_m > clearance_m).collect();
+        Self { field: field.clone(), samples, config }
+    }
+
+    /// Returns the settings with which lines are measured.
+    pub fn config(&self) -> &RefineConfig {
+        &self.config
+    }
+
+    /// Returns the places at which a camera sees lines.
+    pub fn visible(&self, state: &State, pose: CameraPose) -> Vec<VisibleSample> {
+        visible_samples(&self.field, &self.samples, &state.camera, pose, self.config.spacing_px)
+    }
+
+    /// Measures the lines in a picture, at most so many pixels from where they are projected.
+    pub fn measure(
+        &self,
+        picture: &Picture,
+        (state, pose): (&State, CameraPose),
+        parameters: &[Parameter],
+        search_px: f64,
+    ) -> Measured {
+        let visible = self.visible(state, pose);
+        let config = MeasureConfig { search_px, min_contrast: self.config.min_contrast * picture.contrast };
+        let offsets = measure_offsets(&picture.texture, &visible, config);
+        let gradients = Gradients::new(state, pose, parameters);
+        let rows = offsets.iter().filter_map(|offset| gradients.row(offset)).collect();
+        Measured { rows, looked_at: visible.len() }
+    }
+}
+
+/// Derivatives at one pose.
+pub(crate) struct Gradients<'a> {
+    state: &'a State,
+    parameters: &'a [Parameter],
+    pose: CameraPose,
+    camera_from_world: DMat3,
+    /// Poses a step behind and a step ahead in each number.
+    beside: [[(DMat3, DVec3); 2]; 6],
+}
+
+impl<'a> Gradients<'a> {
+    pub fn new(state: &'a State, pose: CameraPose, parameters: &'a [Parameter]) -> Self {
+        let placed =
+            |pose: CameraPose| (pose.rotation_world_from_camera().transpose(), pose.position_in_world());
+        let beside = std::array::from_fn(|axis| {
+            [-STEP, STEP].map(|step| {
+                let mut change = Vector6::zeros();
+                change[axis] = step;
+                placed(moved(pose, &change))
+            })
+        });
+        let camera_from_world = placed(pose).0;
+        Self { state, parameters, pose, camera_from_world, beside }
+    }
+
+    fn row(&self, offset: &LineOffset) -> Option<Row> {
+        let (by_pose, by_parameters) = self.of_sample(&offset.visible)?;
+        let visible = &offset.visible;
+        Some(Row {
+            offset_px: offset.offset_px,
+            by_pose,
+            by_parameters,
+            pixel: visible.pixel,
+            curve: visible.sample.curve,
+        })
+    }
+
+    /// Returns the derivatives of a sample's projection across its line, by the pose and by the parameters.
+    pub fn of_sample(&self, visible: &VisibleSample) -> Option<(Vector6<f64>, DVector<f64>)> {
+        let (point, normal) = (visible.sample.point_in_world.extend(0.0), visible.normal_in_image);
+        let in_camera = self.camera_from_world * (point - self.pose.position_in_world());
+        let (_, [du, dv]) = self.state.camera.project_with_gradients(in_camera).ok()?;
+        let across = normal.x * du + normal.y * dv;
+        let by_pose = Vector6::from_fn(|axis, _| {
+            let [behind, ahead] = self.beside[axis].map(|(rotation, place)| rotation * (point - place));
+            across.dot(ahead - behind) / (2.0 * STEP)
+        });
+        let lens = self.state.lens_gradients(self.parameters, in_camera)?;
+        let by_parameters = DVector::from_iterator(lens.len(), lens.iter().map(|lens| normal.dot(*lens)));
+        Some((by_pose, by_parameters))
+    }
+}
+
+/// Returns the pose moved by a step in its six numbers.
+pub(crate) fn moved(pose: CameraPose, step: &Vector6<f64>) -> CameraPose {
+    CameraPose {
+        x_m: pose.x_m + step[0],
+        y_m: pose.y_m + step[1],
+        yaw_rad: wrap_angle(pose.yaw_rad + step[2]),
+        height_m: pose.height_m + step[3],
+        pitch_rad: pose.pitch_rad + step[4],
+        roll_rad: pose.roll_rad + step[5],
+    }
+}
