@@ -7,11 +7,13 @@ use std::{collections::HashSet, error::Error, path::Path};
 use glam::DVec2;
 use image::GrayImage;
 use nalgebra::{Matrix2, Matrix2x6, Vector2};
+use reality_sim_calibration::assess;
 use reality_sim_core::{
     camera::Camera,
     localization::{LocalizedFrame, Localizer},
     pose::CameraPose,
     preprocess::whiteness,
+    refine::CalibrationUncertainty,
     sequence::Sequence,
 };
 
@@ -32,10 +34,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let builder = Localizer::builder(camera, &sequence.field).start(sequence.start);
     let mut localizer = builder.calibration(sequence.calibration.clone()).build()?;
     let frames = localizer.run(&sequence).collect::<Result<Vec<_>, _>>()?;
+    let fits: Vec<(usize, CameraPose)> = frames
+        .iter()
+        .enumerate()
+        .filter_map(|(index, frame)| Some((index, frame.fit.filter(|_| frame.settled)?.pose)))
+        .collect();
+    let assessed = if sequence.calibration.is_none() { assess(&sequence, &fits)? } else { None };
+    let uncertainty = assessed.map(|assessed| assessed.uncertainty).or_else(|| sequence.calibration.clone());
     let mut misses = Vec::new();
     for (index, frame) in frames.iter().enumerate() {
         let picture = whiteness(&sequence.load_image(index)?);
-        misses.extend(marks(&sequence, frame, &picture));
+        misses.extend(marks(&sequence, frame, &picture, uncertainty.as_ref()));
     }
     report(&misses);
     Ok(())
@@ -47,8 +56,14 @@ struct Miss {
     covariance: Matrix2<f64>,
 }
 
-fn marks(sequence: &Sequence, frame: &LocalizedFrame, picture: &GrayImage) -> Vec<Miss> {
+fn marks(
+    sequence: &Sequence,
+    frame: &LocalizedFrame,
+    picture: &GrayImage,
+    uncertainty: Option<&CalibrationUncertainty>,
+) -> Vec<Miss> {
     let Some(fit) = frame.fit.filter(|_| frame.settled) else { return Vec::new() };
+    let fit = fit.with_calibration(uncertainty);
     let (camera, field) = (&sequence.setup.camera, &sequence.field);
     let along_m = 0.5 * field.length_m - field.penalty_mark_distance_m;
     let places = [DVec2::new(along_m, 0.0), DVec2::new(-along_m, 0.0)];

@@ -115,30 +115,42 @@ impl Calibration {
 
 impl Calibration {
     /// Returns the covariance of all parameters of lens and mount, those that were not fitted taken as exact, for a camera's file.
+    /// Fails if rounding has spoiled it.
     pub fn uncertainty_for_file(&self) -> Result<CalibrationUncertainty, InvalidCovariance> {
-        let lens = 4 + self.camera.distortion.parameters().len();
-        let mut of_all = DMatrix::zeros(lens + 3, self.parameters.len());
-        for (column, parameter) in self.parameters.iter().enumerate() {
-            match parameter {
-                Parameter::FocalLength => {
-                    of_all[(0, column)] = 1.0;
-                    of_all[(1, column)] = self.camera.fy / self.camera.fx;
-                }
-                Parameter::AspectRatio => of_all[(1, column)] = self.camera.fx,
-                Parameter::PrincipalX => of_all[(2, column)] = 1.0,
-                Parameter::PrincipalY => of_all[(3, column)] = 1.0,
-                Parameter::Distortion(index) => of_all[(4 + index, column)] = 1.0,
-                Parameter::Height => of_all[(lens, column)] = 1.0,
-                Parameter::MountPitch => of_all[(lens + 1, column)] = 1.0,
-                Parameter::MountRoll => of_all[(lens + 2, column)] = 1.0,
-            }
-        }
-        let covariance = &of_all * &self.covariance * of_all.transpose();
-        let symmetric = 0.5 * (&covariance + covariance.transpose());
-        let mount_sigma = MountPoseSigma {
-            height_m: self.noise.height_m,
-            angle_rad: self.noise.pitch_rad.max(self.noise.roll_rad),
-        };
-        Ok(CalibrationUncertainty::new(&self.camera, symmetric)?.with_mount_sigma(mount_sigma))
+        let covariance = of_all_parameters(&self.camera, &self.parameters, &self.covariance);
+        Ok(CalibrationUncertainty::new(&self.camera, covariance)?
+            .with_mount_sigma(noise_of_mount(&self.noise)))
     }
+}
+
+/// Returns the covariance of all parameters of lens and mount from that of some of them; the others are exact.
+pub(crate) fn of_all_parameters(
+    camera: &Camera,
+    parameters: &[Parameter],
+    covariance: &DMatrix<f64>,
+) -> DMatrix<f64> {
+    let lens = 4 + camera.distortion.parameters().len();
+    let mut of_all = DMatrix::zeros(lens + 3, parameters.len());
+    for (column, parameter) in parameters.iter().enumerate() {
+        match parameter {
+            Parameter::FocalLength => {
+                of_all[(0, column)] = 1.0;
+                of_all[(1, column)] = camera.fy / camera.fx;
+            }
+            Parameter::AspectRatio => of_all[(1, column)] = camera.fx,
+            Parameter::PrincipalX => of_all[(2, column)] = 1.0,
+            Parameter::PrincipalY => of_all[(3, column)] = 1.0,
+            Parameter::Distortion(index) => of_all[(4 + index, column)] = 1.0,
+            Parameter::Height => of_all[(lens, column)] = 1.0,
+            Parameter::MountPitch => of_all[(lens + 1, column)] = 1.0,
+            Parameter::MountRoll => of_all[(lens + 2, column)] = 1.0,
+        }
+    }
+    let covariance = &of_all * covariance * of_all.transpose();
+    0.5 * (&covariance + covariance.transpose())
+}
+
+/// Returns how far height, pitch and roll are from the mount's from picture to picture.
+pub(crate) fn noise_of_mount(noise: &Noise) -> MountPoseSigma {
+    MountPoseSigma { height_m: noise.height_m, angle_rad: noise.pitch_rad.max(noise.roll_rad) }
 }

@@ -2,6 +2,7 @@
 
 mod adjust;
 mod advice;
+mod assessment;
 mod body_offset;
 mod calibration;
 mod chart;
@@ -20,6 +21,7 @@ mod workflow;
 
 pub use self::{
     advice::Advice,
+    assessment::{Assessment, Shift, assess},
     body_offset::BodyOffset,
     calibration::{Calibration, Confusable},
     error::CalibrationError,

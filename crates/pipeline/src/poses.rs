@@ -53,7 +53,9 @@ impl<'a> PoseFinder<'a> {
         let FilterPlan { config, smooths, keeps_unsure, program, .. } = &self.plan.filter;
         sequence.check_pictures()?;
         let device = self.device()?;
-        let builder = Localizer::builder(&sequence.setup.camera, &sequence.field).start(sequence.start);
+        let builder = Localizer::builder(&sequence.setup.camera, &sequence.field)
+            .start(sequence.start)
+            .calibration(sequence.calibration.clone());
         let localizer = builder.config(*config).backend(device.backend).build()?;
         let (localizer, frames) = self.localize(recording, sequence, localizer)?;
         let smoothed = if *smooths { self.smooth(recording, sequence, &localizer, &frames)? } else { None };

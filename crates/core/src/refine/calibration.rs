@@ -80,8 +80,8 @@ impl CalibrationUncertainty {
 #[derive(Debug, Clone)]
 pub(super) struct Coupling(SMatrix<f64, 6, MOST>);
 
-/// Largest number of parameters: Brown–Conrady with three radial terms.
-const MOST: usize = 4 + 5 + OF_MOUNT;
+/// Largest number of parameters of lens and mount: Brown–Conrady with three radial terms.
+pub const MOST: usize = 4 + 5 + OF_MOUNT;
 
 impl Coupling {
     /// Starts with the mount pose, which holds the height, pitch and roll of the pose to those of the mount.
@@ -111,13 +111,40 @@ impl Coupling {
         }
     }
 
-    /// Returns the covariance of the pose that comes from the calibration: to first order the pose moves by −C B δ when the
-    /// parameters are off by δ, with C the covariance of the pose and B this coupling.
-    pub fn of_pose(&self, pose: &Matrix6<f64>, calibration: &CalibrationUncertainty) -> Matrix6<f64> {
-        let count = calibration.covariance.nrows();
-        let by_parameters = pose * self.0.columns(0, count);
-        let covariance = &by_parameters * &calibration.covariance * by_parameters.transpose();
+    /// Returns how the pose moves with the parameters, from its covariance C: to first order by −C B δ when they are off by δ, with
+    /// B this coupling.
+    pub fn by_calibration(&self, pose: &Matrix6<f64>) -> ByCalibration {
+        ByCalibration(-pose * self.0)
+    }
+}
+
+/// Derivatives of a fitted pose by the parameters of the calibration, metres and radians for each of their units. There are as many
+/// columns as any lens has parameters; those beyond this lens's are zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ByCalibration(SMatrix<f64, 6, MOST>);
+
+impl Default for ByCalibration {
+    fn default() -> Self {
+        Self(SMatrix::zeros())
+    }
+}
+
+impl ByCalibration {
+    /// Returns the derivatives by each parameter, one column each.
+    pub fn derivatives(&self) -> &SMatrix<f64, 6, MOST> {
+        &self.0
+    }
+
+    /// Returns the covariance of the pose that comes from the calibration.
+    pub(super) fn covariance(&self, calibration: &CalibrationUncertainty) -> Matrix6<f64> {
+        let by_parameters = self.0.columns(0, calibration.covariance.nrows());
+        let covariance = by_parameters * &calibration.covariance * by_parameters.transpose();
         Matrix6::from_fn(|row, column| 0.5 * (covariance[(row, column)] + covariance[(column, row)]))
+    }
+
+    /// Returns the derivatives of the pose in other axes.
+    pub(super) fn turned(&self, turn: &Matrix6<f64>) -> Self {
+        Self(turn * self.0)
     }
 }
 

@@ -7,7 +7,7 @@ mod picture;
 mod trajectory;
 
 pub use self::{
-    calibration::{CalibrationUncertainty, InvalidCovariance},
+    calibration::{ByCalibration, CalibrationUncertainty, InvalidCovariance, MOST as MOST_PARAMETERS},
     config::{RefineConfig, SmoothingConfig},
     measure::{LineOffset, MeasureConfig, measure_offsets},
     picture::{PoseFit, Reach, Refiner},

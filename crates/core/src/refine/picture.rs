@@ -5,7 +5,7 @@ use glam::DVec3;
 use nalgebra::{Matrix6, Vector6};
 
 use super::{
-    calibration::{CalibrationUncertainty, Coupling, lens_parameters},
+    calibration::{ByCalibration, CalibrationUncertainty, Coupling, lens_parameters},
     config::RefineConfig,
     measure::{LineOffset, MeasureConfig, measure_offsets},
 };
@@ -38,6 +38,8 @@ pub struct PoseFit {
     /// Part of the covariance that comes from the uncertainty of the calibration, 0 where none is stated. Neighbouring pictures
     /// share this error: it does not average out.
     pub of_calibration: Matrix6<f64>,
+    /// How the pose moves with the parameters of the calibration.
+    pub by_calibration: ByCalibration,
     /// Inverse covariance of the six numbers, given the picture alone.
     pub information: Matrix6<f64>,
     /// Robust standard deviation of the residual line offsets, pixels.
@@ -49,6 +51,18 @@ pub struct PoseFit {
 }
 
 impl PoseFit {
+    /// Returns the fit with the part of its covariance that comes from the uncertainty of the calibration; `None` takes lens and
+    /// mount as exact. It replaces the part that was there.
+    ///
+    /// # Panics
+    ///
+    /// If the uncertainty has more parameters than any lens.
+    pub fn with_calibration(self, calibration: Option<&CalibrationUncertainty>) -> Self {
+        let of_calibration = calibration
+            .map_or_else(Matrix6::zeros, |calibration| self.by_calibration.covariance(calibration));
+        Self { covariance: self.covariance - self.of_calibration + of_calibration, of_calibration, ..self }
+    }
+
     /// Returns the gradient, at a pose, of the log-likelihood of the picture alone. At the fitted pose the picture and the
     /// mount pose pull against each other with equal force, so that the picture's pull there is known from the mount pose's.
     pub(super) fn pull_of_picture(
@@ -69,6 +83,7 @@ impl PoseFit {
             pose: self.pose.mirrored(),
             covariance: turned(self.covariance),
             of_calibration: turned(self.of_calibration),
+            by_calibration: self.by_calibration.turned(&signs),
             information: turned(self.information),
             ..self
         }
@@ -151,7 +166,7 @@ impl Refiner {
             Reach::Narrow => self.config.narrow_search_px,
         };
         let mut pose = guess;
-        let mut fit = None;
+        let mut last = None;
         for search_px in rounds {
             let visible =
                 visible_samples(&self.field, &self.samples, &self.camera, pose, self.config.spacing_px);
@@ -161,71 +176,75 @@ impl Refiner {
                 return None;
             }
             let step = self.solve(pose, &offsets, mount)?;
+            let from = pose;
             pose = moved(pose, &step.step);
             if !pose.is_finite() || pose.height_m < self.config.min_height_ratio * mount.height_m {
                 return None;
             }
-            fit = Some(PoseFit {
-                pose,
-                covariance: step.covariance,
-                of_calibration: step.of_calibration,
-                information: step.information,
-                residual_px: step.residual_px,
-                found: offsets.len() as f64 / visible.len().max(1) as f64,
-                offsets: offsets.len(),
-            });
+            last = Some((from, step, offsets.len(), visible.len()));
         }
-        fit
+        let (from, step, offsets, visible) = last?;
+        let fit = PoseFit {
+            pose,
+            covariance: step.covariance,
+            of_calibration: Matrix6::zeros(),
+            by_calibration: self.by_calibration(from, &step),
+            information: step.information,
+            residual_px: step.residual_px,
+            found: offsets as f64 / visible.max(1) as f64,
+            offsets,
+        };
+        Some(fit.with_calibration(self.calibration.as_ref()))
     }
 
     /// Runs iteratively reweighted Gauss–Newton steps on one set of offsets.
     fn solve(&self, pose: CameraPose, offsets: &[LineOffset], mount: MountPose) -> Option<Step> {
-        let rows: Vec<(Vector6<f64>, f64)> = offsets
-            .iter()
-            .filter_map(|offset| Some((self.gradient(pose, offset)?, offset.offset_px)))
-            .collect();
+        let rows: Vec<(Vector6<f64>, LineOffset)> =
+            offsets.iter().filter_map(|offset| Some((self.gradient(pose, offset)?, *offset))).collect();
         let prior = self.mount_sigma.information();
         let mount_error = mount_error(pose, mount);
-        // Densely spaced samples share their errors: only one in `repeats` of them is independent.
-        let repeats = (self.config.correlation_px / self.config.spacing_px).max(1.0);
         let mut step = Vector6::zeros();
-        let mut sigma = robust_sigma(rows.iter().map(|(_, offset)| *offset)).max(self.config.offset_sigma_px);
+        let mut sigma =
+            robust_sigma(rows.iter().map(|(_, offset)| offset.offset_px)).max(self.config.offset_sigma_px);
         let mut information = Matrix6::zeros();
         for _ in 0..self.config.iterations {
             let mut right = Vector6::zeros();
             information = Matrix6::zeros();
-            let scale = 1.0 / (sigma * sigma * repeats);
             for (gradient, offset) in &rows {
-                let weight = tukey((offset - gradient.dot(&step)) / sigma);
-                information += scale * weight * gradient * gradient.transpose();
-                right += scale * weight * offset * gradient;
+                let weight = self.weight(gradient, offset, &step, sigma);
+                information += weight * gradient * gradient.transpose();
+                right += weight * offset.offset_px * gradient;
             }
             step = (information + prior).cholesky()?.solve(&(right - prior * mount_error));
-            sigma = robust_sigma(rows.iter().map(|(g, o)| o - g.dot(&step))).max(self.config.offset_sigma_px);
+            sigma = robust_sigma(rows.iter().map(|(g, o)| o.offset_px - g.dot(&step)))
+                .max(self.config.offset_sigma_px);
         }
-        let of_picture = (information + prior).try_inverse()?;
-        let of_calibration = self.of_calibration(pose, offsets, &step, (sigma, repeats), &of_picture);
-        let covariance = of_picture + of_calibration;
-        Some(Step { step, covariance, of_calibration, information, residual_px: sigma })
+        let covariance = (information + prior).try_inverse()?;
+        Some(Step { step, covariance, information, residual_px: sigma, rows })
     }
 
-    /// Returns the part of the covariance that comes from the calibration.
-    fn of_calibration(
+    /// Returns the weight of an offset when the pose has moved by a step.
+    fn weight(
         &self,
-        pose: CameraPose,
-        offsets: &[LineOffset],
+        gradient: &Vector6<f64>,
+        offset: &LineOffset,
         step: &Vector6<f64>,
-        (sigma, repeats): (f64, f64),
-        of_picture: &Matrix6<f64>,
-    ) -> Matrix6<f64> {
-        let Some(calibration) = &self.calibration else { return Matrix6::zeros() };
+        sigma_px: f64,
+    ) -> f64 {
+        // Densely spaced samples share their errors: only one in `repeats` of them is independent.
+        let repeats = (self.config.correlation_px / self.config.spacing_px).max(1.0);
+        let scale = 1.0 / (sigma_px * sigma_px * repeats);
+        scale * tukey((offset.offset_px - gradient.dot(step)) / sigma_px)
+    }
+
+    /// Returns how the pose moves with the parameters of the calibration.
+    fn by_calibration(&self, pose: CameraPose, step: &Step) -> ByCalibration {
         let mut coupling = Coupling::of_mount(lens_parameters(&self.camera), &self.mount_sigma.information());
-        for offset in offsets {
-            let Some(gradient) = self.gradient(pose, offset) else { continue };
-            let weight = tukey((offset.offset_px - gradient.dot(step)) / sigma) / (sigma * sigma * repeats);
-            coupling.add(&self.camera, pose, offset, &gradient, weight);
+        for (gradient, offset) in &step.rows {
+            let weight = self.weight(gradient, offset, &step.step, step.residual_px);
+            coupling.add(&self.camera, pose, offset, gradient, weight);
         }
-        coupling.of_pose(of_picture, calibration)
+        coupling.by_calibration(&step.covariance)
     }
 
     /// Returns the derivatives of the sample's offset along its normal by the six numbers of the pose, pixels per metre
@@ -248,9 +267,10 @@ impl Refiner {
 struct Step {
     step: Vector6<f64>,
     covariance: Matrix6<f64>,
-    of_calibration: Matrix6<f64>,
     information: Matrix6<f64>,
     residual_px: f64,
+    /// Offsets with their derivatives.
+    rows: Vec<(Vector6<f64>, LineOffset)>,
 }
 
 pub(super) fn mount_error(pose: CameraPose, mount: MountPose) -> Vector6<f64> {
@@ -307,6 +327,32 @@ mod tests {
         }
     }
 
+    /// The truth is a second fit, with a lens or a mount that is off.
+    #[test]
+    fn a_pose_moves_with_the_calibration_as_its_derivatives_say() {
+        let (camera, field) = (test_scene::fisheye(), test_scene::field());
+        let fitted = |camera: &Camera, pose: CameraPose, mount: MountPose, texture: &Texture| {
+            let refiner = Refiner::new(camera, &field, RefineConfig::default(), MountPoseSigma::default());
+            refiner.fit(texture, pose, mount, 160.0, Reach::Wide).unwrap()
+        };
+        for pose in test_scene::poses() {
+            let texture = Texture::pack(&whiteness(&test_scene::render(&camera, pose, &field)));
+            let mount = MountPose::of(pose);
+            let right = fitted(&camera, pose, mount, &texture);
+            let other_lens = Camera { fx: camera.fx + 1.0, ..camera.clone() };
+            let other_mount = MountPose { pitch_rad: mount.pitch_rad + 0.01, ..mount };
+            let off = [
+                (0, 1.0, fitted(&other_lens, pose, mount, &texture)),
+                (lens_parameters(&camera) + 1, 0.01, fitted(&camera, pose, other_mount, &texture)),
+            ];
+            for (parameter, step, off) in off {
+                let moved = pose_difference(right.pose, off.pose);
+                let told: Vector6<f64> = step * right.by_calibration.derivatives().column(parameter);
+                assert!((moved - told).norm() < 0.001 + 0.25 * told.norm(), "{moved} instead of {told}");
+            }
+        }
+    }
+
     #[test]
     fn nothing_is_fitted_where_no_line_is() {
         let (camera, field, pose) = (test_scene::fisheye(), test_scene::field(), test_scene::poses()[0]);
@@ -323,6 +369,7 @@ mod tests {
             pose: test_scene::poses()[0],
             covariance: Matrix6::from_fn(|i, j| if i == j { 2.0 } else { 0.1 * (i + j) as f64 }),
             of_calibration: Matrix6::zeros(),
+            by_calibration: ByCalibration::default(),
             information: Matrix6::identity(),
             residual_px: 0.1,
             found: 1.0,

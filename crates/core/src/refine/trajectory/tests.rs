@@ -1,6 +1,9 @@
 use nalgebra::{DMatrix, DVector};
 
-use super::{super::picture::pose_difference, *};
+use super::{
+    super::{calibration::ByCalibration, picture::pose_difference},
+    *,
+};
 use crate::filter::{Purpose, Stream};
 
 /// Odometry noise of the simulated walk, which does not grow with the motion.
@@ -51,6 +54,7 @@ fn fitted(truth: CameraPose, picture: Matrix6<f64>, error: Vector6<f64>, mount: 
         pose: moved(truth, &step),
         covariance,
         of_calibration: Matrix6::zeros(),
+        by_calibration: ByCalibration::default(),
         information,
         residual_px: 0.1,
         found: 1.0,
