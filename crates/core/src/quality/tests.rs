@@ -96,7 +96,7 @@ fn without_lines_there_is_no_fraction_and_no_judgement() {
     assert_eq!((nothing, nothing.fraction_within_5px()), (LineAgreement::default(), None));
     let quality = RecordingQuality::new([(nothing, true); 3]);
     assert_eq!((quality.verdict(), quality.completeness), (Verdict::NothingSeen, 1.0));
-    assert_eq!(RecordingQuality::new([]).verdict(), Verdict::NothingSeen);
+    assert_eq!(RecordingQuality::new([]).verdict(), Verdict::Bad);
     // Poses that are not finite project nothing.
     let seen = points(&camera, above(1.2, 1.0), &field);
     let nowhere = CameraPose { x_m: f64::NAN, ..above(1.2, 1.0) };
@@ -129,7 +129,8 @@ fn a_recording_is_the_mean_over_its_solutions() {
     assert_eq!(RecordingQuality::new([(picture(4, 4, 0), true)]).verdict(), Verdict::Good);
     assert_eq!(RecordingQuality::new([(picture(1, 4, 0), true)]).verdict(), Verdict::Bad);
     let unsolved = RecordingQuality::new([(picture(4, 4, 0), false)]);
-    assert_eq!((unsolved.lines_within_5px, unsolved.verdict()), (0.0, Verdict::NothingSeen));
+    assert_eq!((unsolved.lines_within_5px, unsolved.verdict()), (0.0, Verdict::Bad));
+    assert_eq!(unsolved.sentence(), "0 % of the pictures have a solution: bad, as most have none");
     let few = RecordingQuality::new((0..10).map(|index| (picture(4, 4, 0), index < 4)));
     assert!(
         few.sentence().ends_with("40 % of the pictures have a solution: bad, as most have none"),

@@ -17,8 +17,9 @@
 //!
 //! So right poses, and all but one recording's at 2 cm, are good; those 5 cm off are doubtful; those 10 cm off are bad, except on the larger
 //! field of the Middle Size League, where lines are farther away; lost ones are bad everywhere. A focal length 0.5 % off changes nothing
-//! (0.01 at most), and a mirror pose is as good as the right one. Completeness where poses were right: 1.00 on the walks; 0.90, 0.88 and
-//! 0.68 on real stills that are no walk, of which some show one line or none.
+//! (0.01 at most), and a mirror pose is as good as the right one. The thresholds of completeness follow from
+//! what `tag` reaches: 1.00 on the walks, 0.90 and 0.88 on the stills of the NAO, 0.68 on those of the fisheye, which lie up to half a minute
+//! apart and of which some show a line or two.
 
 use super::recording::RecordingQuality;
 
@@ -45,7 +46,10 @@ pub enum Verdict {
 impl RecordingQuality {
     /// Judges the poses.
     pub fn verdict(&self) -> Verdict {
-        self.verdict_of_lines().max(self.verdict_of_completeness())
+        match (self.verdict_of_lines(), self.verdict_of_completeness()) {
+            (Verdict::NothingSeen, Verdict::Bad) => Verdict::Bad,
+            (of_lines, of_completeness) => of_lines.max(of_completeness),
+        }
     }
 
     fn verdict_of_lines(&self) -> Verdict {
@@ -79,7 +83,7 @@ impl RecordingQuality {
 
     /// Returns the word of the judgement, and what it means or comes from.
     fn words(&self) -> &'static str {
-        let by_lines = self.verdict_of_lines() >= self.verdict_of_completeness();
+        let by_lines = self.measured > 0 && self.verdict_of_lines() >= self.verdict_of_completeness();
         match self.verdict() {
             Verdict::Good => "good, as at right poses",
             Verdict::Doubtful if by_lines => "doubtful, as at poses 5 cm off or a focal length 2 % off",
