@@ -104,11 +104,8 @@ pub(super) fn flank_distances(
         return None;
     }
     let per_depression = scale.focal_px * scale.line_width_m / scale.height_m.max(0.01);
-    let across_px = per_depression * depression;
-    Some(
-        [across_px, across_px * depression]
-            .map(|width_px| (FLANK_WIDTHS * width_px + FLANK_MARGIN_PX) as usize),
-    )
+    let across_px = FLANK_WIDTHS * per_depression * depression;
+    Some([across_px, across_px * depression].map(|distance_px| (distance_px + FLANK_MARGIN_PX) as usize))
 }
 
 /// Returns the threshold of Otsu, "A threshold selection method from gray-level histograms", 1979.
