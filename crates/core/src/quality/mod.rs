@@ -33,6 +33,22 @@
 //! | [`LineAgreement`] | the counts of one picture |
 //! | [`RecordingQuality`] | those of a recording as three fractions |
 //! | [`Verdict`] | whether that is good, with the thresholds |
+//!
+//! ```
+//! # use std::path::Path;
+//! # use reality_sim_core::{localization::{Localizer, Observation}, quality::LineMeter, sequence::Sequence};
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let walk = Sequence::open(Path::new("../../assets/walk"))?;
+//! let mut localizer = Localizer::builder(&walk.setup.camera, &walk.field).start(walk.start).build()?;
+//! let frame = localizer.update(&Observation::of_frame(&walk, 0, walk.load_image(0)?))?;
+//!
+//! let meter = LineMeter::new(&walk.setup.camera, &walk.field);
+//! let lines = localizer.line_points().ok_or("there was a picture")?;
+//! let agreement = meter.measure(&lines, frame.pose);
+//! assert_eq!(agreement.fraction_within_5px(), Some(1.0));
+//! # Ok(())
+//! # }
+//! ```
 
 mod line_agreement;
 mod line_meter;

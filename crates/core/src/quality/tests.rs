@@ -1,14 +1,16 @@
 //! Pictures of a camera that looks straight down: whoever moves it by a metre moves all lines by 300 pixels.
 
-use std::f64::consts::FRAC_PI_2;
+use std::{f64::consts::FRAC_PI_2, path::Path};
 
 use super::*;
 use crate::{
     camera::{Camera, Distortion},
     field::FieldDimensions,
+    localization::mount_of_frame,
     mount::MountPose,
     pose::CameraPose,
     preprocess::{LinePoints, Preprocessor},
+    sequence::Sequence,
     test_scene,
 };
 
@@ -137,4 +139,35 @@ fn a_recording_is_the_mean_over_its_solutions() {
         "{}",
         few.sentence()
     );
+}
+
+/// Pictures of two other renderers, with their ground truth.
+#[test]
+fn in_ray_traced_walks_right_poses_are_good_and_wrong_ones_are_not() {
+    for folder in ["../../assets/walk", "../../assets/pitch"] {
+        let walk = Sequence::open(Path::new(folder)).unwrap();
+        let preprocessor = Preprocessor::new(&walk.setup.camera, walk.field.line_width_m);
+        let seen: Vec<(LinePoints, CameraPose)> = (0..walk.frames.len())
+            .step_by(6)
+            .map(|index| {
+                let picture = walk.load_image(index).unwrap();
+                let prepared = preprocessor.prepare(picture, mount_of_frame(&walk, index));
+                (prepared.line_points(), walk.frames[index].reference_pose.unwrap())
+            })
+            .collect();
+        let meter = LineMeter::new(&walk.setup.camera, &walk.field);
+        let quality = |wrong: &dyn Fn(CameraPose) -> CameraPose| {
+            RecordingQuality::new(
+                seen.iter().map(|(points, pose)| (meter.measure(points, wrong(*pose)), true)),
+            )
+        };
+        let right = quality(&|pose| pose);
+        assert!(right.lines_within_5px > 0.95, "{folder}: {right:?}");
+        assert_eq!(right.verdict(), Verdict::Good);
+        assert_eq!(quality(&CameraPose::mirrored).verdict(), Verdict::Good);
+        let beside = quality(&|pose| CameraPose { x_m: pose.x_m + 0.07, y_m: pose.y_m - 0.07, ..pose });
+        assert_eq!(beside.verdict(), Verdict::Bad, "{folder}: {beside:?}");
+        let lost = quality(&|pose| CameraPose { x_m: -0.5 * pose.y_m, yaw_rad: pose.yaw_rad + 1.0, ..pose });
+        assert!(lost.lines_within_10px < 0.2, "{folder}: {lost:?}");
+    }
 }
