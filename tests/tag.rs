@@ -102,6 +102,25 @@ fn without_ground_truth_there_is_no_error() {
     let output = tag(&walk.folder(), &["--json", "--particles", "100"]);
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(report.get("error").is_none(), "{report}");
+    // The pictures tell how good the poses are all the same.
+    assert!(report["lines_within_5px"].as_f64().unwrap() > 0.9, "{report}");
+}
+
+#[test]
+fn the_report_says_how_many_lines_are_met_and_whether_that_is_good() {
+    let report = tag_json(&["--frames", "0..10"]);
+    let fraction = |report: &Value, key: &str| report[key].as_f64().unwrap();
+    let [near, wide] = ["lines_within_5px", "lines_within_10px"].map(|key| fraction(&report, key));
+    assert!(near > 0.9 && near <= wide && wide <= 1.0, "{report}");
+    assert_eq!(fraction(&report, "completeness"), 1.0);
+    assert!(report["lines_verdict"].as_str().unwrap().contains("good"), "{report}");
+    // A focal length 12 % off.
+    let walk = Walk::new(10);
+    walk.edit("camera.toml", |text| text.replace("214.906223", "240"));
+    let output = tag(&walk.folder(), &["--json"]);
+    let wrong: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(fraction(&wrong, "lines_within_5px") < near - 0.1, "{wrong}");
+    assert!(!wrong["lines_verdict"].as_str().unwrap().contains("good"), "{wrong}");
 }
 
 #[test]
@@ -109,7 +128,9 @@ fn in_a_pipe_the_report_comes_without_a_progress_bar() {
     let output = tag(Path::new(WALK), &["--frames", "0..3", "--particles", "200"]);
     let lines = text(&output.stdout);
     assert!(output.status.success() && output.stderr.is_empty(), "{}", text(&output.stderr));
-    for word in ["walk, 3 frames", "contrast, 200 particles", "ms a frame", "mean"] {
+    for word in
+        ["walk, 3 frames", "contrast, 200 particles", "ms a frame", "of the field's lines are met", "mean"]
+    {
         assert!(lines.contains(word), "{word} is not in {lines}");
     }
 }
@@ -159,7 +180,7 @@ fn poses_details_and_overlays_have_one_entry_a_frame() {
     let table = fs::read_to_string(&details).unwrap();
     let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(rows.len(), 4);
-    assert!(rows.iter().all(|row| row.len() == 22), "{table}");
+    assert!(rows.iter().all(|row| row.len() == 28), "{table}");
     assert_eq!(rows[0][..4], ["timestamp_s", "x_m", "y_m", "yaw_rad"]);
     assert!(rows[1..].iter().all(|row| row[7].parse::<f64>().unwrap() > 0.0), "sigma_x_m");
 

@@ -13,6 +13,7 @@
 //! | an exhaustive search of the field | [`search::GlobalSearch`] |
 //! | sub-pixel fits with covariance, whole trajectories | [`refine::Refiner`], [`refine::smooth_trajectory`] |
 //! | everything together, picture by picture | [`localization::Localizer`], [`localization::Observation`] |
+//! | how well poses and pictures agree, in pixels | [`quality::LineMeter`], [`quality::RecordingQuality`] |
 //! | a picture warped from others | [`warp::Warper`], [`warp::blend`] |
 //! | the devices that compute | [`backend::Backend`], [`backend::CpuBackend`] |
 //!
@@ -60,6 +61,7 @@ pub mod names;
 pub mod observation;
 pub mod pose;
 pub mod preprocess;
+pub mod quality;
 pub mod refine;
 pub mod search;
 pub mod sequence;

@@ -89,8 +89,8 @@ pub use {glam, image, nalgebra};
 
 pub use reality_sim_calibration as calibration;
 pub use reality_sim_core::{
-    backend, camera, field, filter, localization, mount, names, observation, pose, preprocess, refine,
-    search, sequence, warp,
+    backend, camera, field, filter, localization, mount, names, observation, pose, preprocess, quality,
+    refine, search, sequence, warp,
 };
 pub use reality_sim_core::{
     camera::Camera,

@@ -1,5 +1,6 @@
 //! `reality-sim tag`: finds the camera pose of every picture of a sequence.
 
+mod lines;
 mod options;
 mod report;
 
@@ -20,7 +21,10 @@ use reality_sim::{
 };
 
 pub use self::options::TagArgs;
-use self::report::{PoseResult, Report, details_csv};
+use self::{
+    lines::LinesOfPictures,
+    report::{PoseResult, Report, details_csv},
+};
 use super::{
     model_file::Use,
     output::{check_distinct, check_output_file, frame_progress, print, print_json},
@@ -45,8 +49,9 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     let mut localizer = builder.build()?;
     let wanted = sequence.frames.len();
     let progress = frame_progress(wanted)?;
-    let mut frames = Vec::with_capacity(wanted);
-    let localized = localize(args, &sequence, &mut localizer, (&progress, overlays.as_ref()), &mut frames);
+    let (mut frames, mut lines) = (Vec::with_capacity(wanted), LinesOfPictures::new(&sequence, args.smooth));
+    let found = (&mut frames, &mut lines);
+    let localized = localize(args, &sequence, &mut localizer, (&progress, overlays.as_ref()), found);
     progress.finish_and_clear();
     // What was found before a picture failed is written all the same.
     sequence.frames.truncate(frames.len());
@@ -56,8 +61,9 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
 
     let results = if args.smooth { smoothed(&sequence, &localizer, &frames)? } else { filtered(&frames) };
     let poses: Vec<CameraPose> = results.iter().map(|result| result.pose).collect();
+    let lines = lines.agreement(&poses);
     if let Some(details) = &args.details {
-        write_atomically(details, details_csv(&sequence, &frames, &results).as_bytes())?;
+        write_atomically(details, details_csv(&sequence, &frames, &results, &lines).as_bytes())?;
     }
     if let Some(out) = &args.out {
         let stamped = sequence.frames.iter().zip(&poses);
@@ -75,6 +81,7 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     let corrections = model.map(|model| model.words(&sequence.setup, &sequence.field, Use::Recording));
     let report =
         Report::new(args, &sequence, &config, &device, &frames, &poses).with_corrections(corrections);
+    let report = report.with_lines(&frames, &lines);
     if args.json { print_json(&report) } else { print(&report.text(&sequence.name)) }
 }
 
@@ -84,7 +91,7 @@ fn localize(
     sequence: &Sequence,
     localizer: &mut Localizer,
     (progress, overlays): (&ProgressBar, Option<&OutputFolder>),
-    frames: &mut Vec<LocalizedFrame>,
+    (frames, lines): (&mut Vec<LocalizedFrame>, &mut LinesOfPictures),
 ) -> anyhow::Result<()> {
     let first = args.frames.map_or(0, |range| range.first);
     let mut path = Vec::new();
@@ -102,6 +109,7 @@ fn localize(
             let truth = sequence.frames[index].reference_pose;
             save_image(&file, &draw(sequence, observation, &frame, truth, run.localizer(), &path)?)?;
         }
+        lines.add(run.localizer(), frame.pose);
         frames.push(frame);
     }
     Ok(())

@@ -8,6 +8,7 @@ use reality_sim::{
     CameraPose, LocalizedFrame, LocalizerConfig, ObservationKind, Sequence,
     evaluation::{ErrorStatistics, PoseError, percentile},
     filter::{Estimator, Resampling},
+    quality::{LineAgreement, RecordingQuality},
     sequence::counted,
 };
 
@@ -22,7 +23,12 @@ pub struct PoseResult {
 }
 
 /// Formats one line per picture; unknown values are left empty.
-pub fn details_csv(sequence: &Sequence, frames: &[LocalizedFrame], results: &[PoseResult]) -> String {
+pub fn details_csv(
+    sequence: &Sequence,
+    frames: &[LocalizedFrame],
+    results: &[PoseResult],
+    lines: &[LineAgreement],
+) -> String {
     const DEGREES_OF_FREEDOM: [&str; 6] = ["x_m", "y_m", "yaw_rad", "height_m", "pitch_rad", "roll_rad"];
     let mut csv = String::from("timestamp_s");
     let sigmas = DEGREES_OF_FREEDOM.map(|name| format!("sigma_{name}"));
@@ -31,7 +37,7 @@ pub fn details_csv(sequence: &Sequence, frames: &[LocalizedFrame], results: &[Po
         csv.push_str(name);
     }
     csv.push_str(
-        ",effective_sample_size,particles,line_fraction,explained_fraction,sure,mirror_probability,searched,error_m,error_yaw_rad\n",
+        ",effective_sample_size,particles,line_fraction,explained_fraction,sure,mirror_probability,searched,error_m,error_yaw_rad,lines_within_5px,lines_within_10px,settled,lines_seen,lines_unseen,lines_unexplained\n",
     );
     for (index, (frame, result)) in frames.iter().zip(results).enumerate() {
         let pose = result.pose;
@@ -58,11 +64,24 @@ pub fn details_csv(sequence: &Sequence, frames: &[LocalizedFrame], results: &[Po
             frame.searched
         );
         let _ = match sequence.frames[index].reference_pose.map(|truth| PoseError::new(pose, truth)) {
-            Some(error) => writeln!(csv, ",{},{}", error.distance_m, error.yaw_rad),
-            None => writeln!(csv, ",,"),
+            Some(error) => write!(csv, ",{},{}", error.distance_m, error.yaw_rad),
+            None => write!(csv, ",,"),
         };
+        add_lines(&mut csv, frame, lines.get(index).copied().unwrap_or_default());
     }
     csv
+}
+
+/// Adds the agreement of one picture's lines with its pose, and ends the line.
+fn add_lines(csv: &mut String, frame: &LocalizedFrame, lines: LineAgreement) {
+    for fraction in [lines.fraction_within_5px(), lines.fraction_within_10px()] {
+        csv.push(',');
+        if let Some(fraction) = fraction {
+            let _ = write!(csv, "{fraction}");
+        }
+    }
+    let LineAgreement { seen, unseen, unexplained, .. } = lines;
+    let _ = writeln!(csv, ",{},{seen},{unseen},{unexplained}", frame.settled);
 }
 
 /// Report that `--json` prints.
@@ -88,6 +107,12 @@ pub struct Report {
     seconds_per_frame: f64,
     sure_frames: usize,
     searched_frames: usize,
+    /// Agreement of poses and pictures as papers on broadcast cameras report it: JaC@5, JaC@10 and completeness.
+    lines_within_5px: f64,
+    lines_within_10px: f64,
+    completeness: f64,
+    /// The same in a sentence that says whether it is good.
+    lines_verdict: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<ErrorStatistics>,
     out: Option<String>,
@@ -129,6 +154,10 @@ impl Report {
             seconds_per_frame: percentile(&seconds, 0.5).unwrap_or(0.0),
             sure_frames: frames.iter().filter(|frame| frame.sure).count(),
             searched_frames: frames.iter().filter(|frame| frame.searched).count(),
+            lines_within_5px: 0.0,
+            lines_within_10px: 0.0,
+            completeness: 0.0,
+            lines_verdict: String::new(),
             error: ErrorStatistics::new(&errors),
             out: args.out.as_deref().map(shown),
             details: args.details.as_deref().map(shown),
@@ -140,6 +169,15 @@ impl Report {
     /// Adds what of the model was used.
     pub fn with_corrections(self, corrections: Option<String>) -> Self {
         Self { corrections, ..self }
+    }
+
+    /// Adds how well poses and pictures agree.
+    pub fn with_lines(self, frames: &[LocalizedFrame], lines: &[LineAgreement]) -> Self {
+        let settled = frames.iter().map(|frame| frame.settled);
+        let quality = RecordingQuality::new(lines.iter().copied().zip(settled));
+        let RecordingQuality { lines_within_5px, lines_within_10px, completeness, .. } = quality;
+        let lines_verdict = quality.sentence();
+        Self { lines_within_5px, lines_within_10px, completeness, lines_verdict, ..self }
     }
 
     fn backend_text(&self) -> String {
@@ -165,6 +203,7 @@ impl Report {
             ("time", format!("{:.1} ms a frame (median)", 1e3 * self.seconds_per_frame)),
             ("sure", format!("{}; {} searched", counted(self.sure_frames, "frame"), self.searched_frames)),
         ];
+        lines.push(("lines", self.lines_verdict.clone()));
         lines.extend(self.corrections.iter().map(|corrections| ("camera", corrections.clone())));
         if let Some(error) = &self.error {
             let cm = |metres: f64| format!("{:.2} cm", 100.0 * metres);

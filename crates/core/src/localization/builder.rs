@@ -85,6 +85,7 @@ impl LocalizerBuilder<'_> {
             goal_colors: GoalColors::new(camera, field, config.goal_colors),
             start,
             track: None,
+            picture: None,
             frame: 0,
         })
     }

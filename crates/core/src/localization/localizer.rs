@@ -18,7 +18,7 @@ use crate::{
     goal_colors::GoalColors,
     mount::MountPose,
     pose::{CameraPose, Motion2, Pose2, wrap_angle},
-    preprocess::{FieldBorder, Prepared, Preprocessor},
+    preprocess::{FieldBorder, LinePoints, Prepared, Preprocessor},
     refine::PoseFit,
     search::{GlobalSearch, Mode, Prior},
 };
@@ -37,6 +37,8 @@ pub struct Localizer {
     pub(super) track: Option<Track>,
     /// Number of pictures so far.
     pub(super) frame: u32,
+    /// Last picture.
+    pub(super) picture: Option<Prepared>,
 }
 
 /// Result of prediction, search and filter for one picture.
@@ -83,6 +85,7 @@ impl Localizer {
         };
         self.resolve_symmetry(&mut track, &mut frame, observation)?;
         self.track = Some(track);
+        self.picture = Some(picture);
         self.frame += 1;
         frame.seconds = begin.elapsed().as_secs_f64();
         Ok(frame)
@@ -97,7 +100,7 @@ impl Localizer {
     pub fn reset_with_seed(&mut self, start: Option<Pose2>, seed: u64) {
         self.config.filter.seed = seed;
         self.filter.reset(seed);
-        (self.start, self.track, self.frame) = (start, None, 0);
+        (self.start, self.track, self.picture, self.frame) = (start, None, None, 0);
     }
 
     /// Hands over early the picture that will be localized after the next one, so that a device can upload it while it
@@ -119,6 +122,12 @@ impl Localizer {
     /// Returns the field's border in a picture, for drawing.
     pub fn border(&self, observation: &Observation) -> FieldBorder {
         self.preprocessor.prepare(observation.picture.pixels().clone(), observation.mount).border
+    }
+
+    /// Finds points on the white lines of the last picture, independently of its pose, for [`crate::quality::LineMeter`];
+    /// `None` before the first picture. Takes half a millisecond for 640 × 480 pixels.
+    pub fn line_points(&self) -> Option<LinePoints> {
+        self.picture.as_ref().map(Prepared::line_points)
     }
 
     fn load(&mut self, observation: &Observation) -> Result<Prepared, LocalizationError> {

@@ -6,6 +6,7 @@
 //! | [`Observation`] | a picture with its time, odometry and mount pose |
 //! | [`Picture`] | RGB or grey; owned, shared or copied from a buffer |
 //! | [`LocalizedFrame`] | the pose of a picture, and how far to trust it |
+//! | [`LiveLocalizer`] | does so on a thread of its own for a camera that does not wait; drops the oldest pictures |
 //! | [`Run`] | iterates over the frames of a recording, by [`Localizer::run`] |
 //! | [`Smoother`] | estimates all frames together, by [`Localizer::smoother`] |
 //! | [`LocalizerConfig`] | every tunable parameter |
@@ -15,7 +16,7 @@
 //! contradicts it, the whole field is searched. The best pose is fitted with sub-pixel accuracy, and the colours of the
 //! goals tell it from its mirror pose.
 //!
-//! A camera that delivers pictures now:
+//! Picture by picture; [`LiveLocalizer`] does the same on a thread of its own:
 //!
 //! ```
 //! use std::path::Path;
@@ -67,6 +68,7 @@ mod config;
 mod error;
 mod frame;
 mod half_evidence;
+mod live;
 mod localizer;
 mod observation;
 mod picture;
@@ -82,6 +84,7 @@ pub use self::{
     config::{LocalizerConfig, RelocalizationConfig, TrackConfig},
     error::LocalizationError,
     frame::LocalizedFrame,
+    live::{LiveError, LiveFeed, LiveFrame, LiveLocalizer, Pushed},
     localizer::Localizer,
     observation::{Observation, mount_of_frame},
     picture::{InvalidPicture, Picture},

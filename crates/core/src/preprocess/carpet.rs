@@ -16,6 +16,9 @@ const DRIFT: f32 = 0.15;
 const MAX_DRIFT: f32 = 0.12;
 /// Squared distance, in spreads, up to which a pixel may be carpet.
 const GATE: f32 = 12.0;
+/// Factor of that gate beside white lines, where JPEG's colour noise and the lines' own light reach. With 1, half of the lines' points
+/// in real pictures were refused, with 3 a quarter, with 10 none; people and robots are refused with all.
+const BESIDE_LINE: f32 = 10.0;
 
 /// Gaussian distribution in chromaticity (r, g) = (R, G)/(R + G + B), together with a brightness: light changes
 /// brightness more than colour.
@@ -82,6 +85,11 @@ impl CarpetColor {
     /// Returns whether a chromaticity is that of the carpet.
     pub(super) fn is_near(&self, chroma: [f32; 2]) -> bool {
         self.distance_squared(chroma) < GATE
+    }
+
+    /// Returns whether a pixel beside a line may be carpet: not clearly of another colour.
+    pub(super) fn may_be_carpet(&self, rgb: [u8; 3]) -> bool {
+        chromaticity(rgb).is_some_and(|(chroma, _)| self.distance_squared(chroma) < BESIDE_LINE * GATE)
     }
 
     /// Returns this colour moved a little towards another, but never far from the learned one.

@@ -6,6 +6,7 @@ mod border;
 mod carpet;
 mod distance;
 mod grey;
+mod line_points;
 mod prepared;
 mod texture;
 mod white_line;
@@ -16,6 +17,7 @@ pub use self::{
     carpet::CarpetColor,
     distance::{DISTANCE_RADIUS_PX, DISTANCE_UNITS_PER_PX, distance_field},
     grey::{LUMA_WEIGHTS, luma, whiteness},
+    line_points::LinePoints,
     prepared::{Prepared, Preprocessor},
     texture::Texture,
     white_line::{LineScale, WhiteLevels, white_levels, white_line_evidence},

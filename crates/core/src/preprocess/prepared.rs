@@ -6,7 +6,9 @@ use std::sync::Arc;
 use image::{GrayImage, RgbImage};
 
 use super::{
-    BorderDetector, FieldBorder, LineScale, WhiteLevels, luma, white_levels, white_line_evidence, whiteness,
+    BorderDetector, FieldBorder, LineScale, WhiteLevels,
+    line_points::{LinePoints, LineScan},
+    luma, white_levels, white_line_evidence, whiteness,
 };
 use crate::camera::Camera;
 
@@ -35,6 +37,14 @@ impl Prepared {
     /// Computes the white pixels (255) inside the border. The result is not cached, as with [`Prepared::luma`].
     pub fn evidence(&self) -> GrayImage {
         white_line_evidence(&self.whiteness, &self.border, self.scale, &self.levels)
+    }
+
+    /// Finds points on the centres of the white lines inside the border. Of the camera's
+    /// pose only the mount's part is used, to know about how broad lines are. The result is not cached, as with
+    /// [`Prepared::luma`].
+    pub fn line_points(&self) -> LinePoints {
+        let Self { picture, whiteness, border, scale, levels, .. } = self;
+        LineScan { picture, whiteness, border, scale: *scale, levels }.line_points()
     }
 }
 

@@ -76,16 +76,11 @@ fn ridges(whiteness: &GrayImage, border: &FieldBorder, scale: LineScale, every: 
     let (width, height) = (whiteness.width() as usize, whiteness.height() as usize);
     let values = whiteness.as_raw();
     let mut ridges = vec![0_u8; values.len()];
-    let per_depression = scale.focal_px * scale.line_width_m / scale.height_m.max(0.01);
     ridges.par_chunks_mut(width.max(1)).enumerate().filter(|(v, _)| v % every == 0).for_each(|(v, row)| {
         for (u, ridge) in row.iter_mut().enumerate() {
-            let depression = border.depression(u as u32, v as u32);
-            if depression <= 0.0 {
-                continue;
-            }
+            let flanks = flank_distances(border, scale, [u as u32, v as u32]);
+            let Some([across, along]) = flanks else { continue };
             let value = values[v * width + u];
-            let across = (FLANK_WIDTHS * per_depression * depression + FLANK_MARGIN_PX) as usize;
-            let along = (FLANK_WIDTHS * per_depression * depression * depression + FLANK_MARGIN_PX) as usize;
             let rise = |a: usize, b: usize| value.saturating_sub(values[a].max(values[b]));
             let beside = (u >= across && u + across < width)
                 .then(|| rise(v * width + u - across, v * width + u + across));
@@ -96,6 +91,21 @@ fn ridges(whiteness: &GrayImage, border: &FieldBorder, scale: LineScale, every: 
     });
     // The buffer holds exactly one value per pixel, as its size requires.
     GrayImage::from_raw(whiteness.width(), whiteness.height(), ridges).unwrap_or_default()
+}
+
+/// Returns the distances of a pixel's flanks along the row and along the column, pixels; `None` outside the border.
+pub(super) fn flank_distances(
+    border: &FieldBorder,
+    scale: LineScale,
+    [u, v]: [u32; 2],
+) -> Option<[usize; 2]> {
+    let depression = border.depression(u, v);
+    if depression <= 0.0 {
+        return None;
+    }
+    let per_depression = scale.focal_px * scale.line_width_m / scale.height_m.max(0.01);
+    let across_px = FLANK_WIDTHS * per_depression * depression;
+    Some([across_px, across_px * depression].map(|distance_px| (distance_px + FLANK_MARGIN_PX) as usize))
 }
 
 /// Returns the threshold of Otsu, "A threshold selection method from gray-level histograms", 1979.
