@@ -41,7 +41,10 @@ const MAY_USE: [(&str, &[&str]); 12] = [
     (GPU, &["reality-sim-core"]),
     ("reality-sim-db", &["reality-sim-core"]),
     ("reality-sim-synthesis", &["reality-sim-core", "reality-sim-db", "reality-sim-sensor"]),
-    ("reality-sim-pipeline", &["reality-sim-core", "reality-sim-db", "reality-sim-synthesis"]),
+    (
+        "reality-sim-pipeline",
+        &["reality-sim-calibration", "reality-sim-core", "reality-sim-db", "reality-sim-synthesis"],
+    ),
     ("reality-sim-sensor", &["reality-sim-core"]),
     ("reality-sim-hidden", &["reality-sim-core"]),
     ("reality-sim-gap", &["reality-sim-core", "reality-sim-sensor"]),

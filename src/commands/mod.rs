@@ -15,6 +15,7 @@ mod info;
 mod model_file;
 mod output;
 mod output_folder;
+mod parameter;
 mod picture_at;
 mod remove;
 mod render;

@@ -35,6 +35,7 @@ pub fn assert_fails(arguments: &[&str], words: &[&str]) -> String {
 }
 
 /// Copies the walk's text files with these frames, and their pictures, into a folder of their own.
+#[allow(dead_code, reason = "not every test that shares this file needs a part")]
 pub fn part_of_walk(folder: &Path, name: &str, frames: std::ops::Range<usize>) -> PathBuf {
     let mut walk = Sequence::open(Path::new(WALK)).unwrap();
     walk.frames = walk.frames[frames].to_vec();

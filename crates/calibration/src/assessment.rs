@@ -7,7 +7,7 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 use reality_sim_core::{
     camera::Camera,
-    localization::mount_of_frame,
+    localization::{LocalizedFrame, mount_of_frame},
     pose::CameraPose,
     preprocess::{Preprocessor, Texture},
     refine::{CalibrationUncertainty, RefineConfig},
@@ -115,4 +115,25 @@ fn assessment(stated: &State, parameters: &[Parameter], adjusted: &Adjusted) -> 
         uncertainty: uncertainty.ok()?.with_mount_sigma(noise_of_mount(&adjusted.noise)),
         shifts: shifts.collect(),
     })
+}
+
+/// Makes what the calibration is worth a part of the covariances of localized frames, one for each frame of the sequence from the first
+/// on, where the sequence does not state it itself. Returns the assessment, if one could be made. Fails if a picture cannot be read.
+pub fn assess_frames(
+    sequence: &Sequence,
+    frames: &mut [LocalizedFrame],
+) -> Result<Option<Assessment>, Box<SequenceError>> {
+    if sequence.calibration.is_some() {
+        return Ok(None);
+    }
+    let fitted = frames.iter().enumerate().filter(|(_, frame)| frame.settled);
+    let poses: Vec<(usize, CameraPose)> =
+        fitted.filter_map(|(index, frame)| Some((index, frame.fit?.pose))).collect();
+    let assessment = assess(sequence, &poses)?;
+    if let Some(Assessment { uncertainty, .. }) = &assessment {
+        for frame in frames {
+            frame.fit = frame.fit.map(|fit| fit.with_calibration(Some(uncertainty)));
+        }
+    }
+    Ok(assessment)
 }

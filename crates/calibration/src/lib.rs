@@ -21,7 +21,7 @@ mod workflow;
 
 pub use self::{
     advice::Advice,
-    assessment::{Assessment, Shift, assess},
+    assessment::{Assessment, Shift, assess, assess_frames},
     body_offset::BodyOffset,
     calibration::{Calibration, Confusable},
     error::CalibrationError,

@@ -2,6 +2,7 @@
 
 use std::{path::Path, sync::Arc};
 
+use reality_sim_calibration::assess_frames;
 use reality_sim_core::{
     localization::{LocalizedFrame, Localizer, Picture, Run},
     pose::CameraPose,
@@ -57,7 +58,8 @@ impl<'a> PoseFinder<'a> {
             .start(sequence.start)
             .calibration(sequence.calibration.clone());
         let localizer = builder.config(*config).backend(device.backend).build()?;
-        let (localizer, frames) = self.localize(recording, sequence, localizer)?;
+        let (localizer, mut frames) = self.localize(recording, sequence, localizer)?;
+        assess_frames(sequence, &mut frames).map_err(|error| PipelineError::from(*error))?;
         let smoothed = if *smooths { self.smooth(recording, sequence, &localizer, &frames)? } else { None };
         let estimates = PoseEstimate::of_localized(&frames, smoothed.as_deref(), *keeps_unsure);
         if estimates.iter().all(Option::is_none) {

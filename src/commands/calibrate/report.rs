@@ -10,7 +10,7 @@ use reality_sim::{
 };
 
 use super::{CalibrateArgs, start::Start};
-use crate::commands::output::aligned;
+use crate::commands::{output::aligned, parameter::of_parameter};
 
 /// Standard deviations above which the place and the heading of the camera on the body count as undetermined, metres and radians: what
 /// a person measures with a rule.
@@ -161,19 +161,8 @@ impl Report {
 const FIELD_SCALE: &str = "field_scale";
 
 impl Estimate {
-    /// Formats the estimate with the unit that its name ends in.
     fn words(&self, name: &str) -> String {
-        let (value, sigma) = (self.value, self.sigma);
-        let plain = name.trim_end_matches("_m").trim_end_matches("_rad").replace('_', " ");
-        if name.ends_with("_rad") {
-            format!("{plain} {:.2}° ± {:.2}°", value.to_degrees(), sigma.to_degrees())
-        } else if name.ends_with("_m") {
-            format!("{plain} {:.1} cm ± {:.1} cm", 100.0 * value, 100.0 * sigma)
-        } else if name.starts_with(['f', 'c']) {
-            format!("{plain} {value:.2} px ± {sigma:.2} px")
-        } else {
-            format!("{plain} {value:.4} ± {sigma:.4}")
-        }
+        of_parameter(name, self.value, self.sigma)
     }
 }
 

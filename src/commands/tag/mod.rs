@@ -12,6 +12,7 @@ use indicatif::ProgressBar;
 
 use reality_sim::{
     CameraPose, LocalizedFrame, Localizer, Observation, Pose2, Sequence, StampedPose,
+    calibration::{Assessment, assess_frames},
     evaluation::PoseError,
     localization::Picture,
     overlay::{BorderOutline, Overlay},
@@ -59,6 +60,7 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
         return localized;
     }
 
+    let assessed = assessed(args, &sequence, &mut frames)?;
     let results = if args.smooth { smoothed(&sequence, &localizer, &frames)? } else { filtered(&frames) };
     let poses: Vec<CameraPose> = results.iter().map(|result| result.pose).collect();
     let lines = lines.agreement(&poses);
@@ -81,7 +83,7 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     let corrections = model.map(|model| model.words(&sequence.setup, &sequence.field, Use::Recording));
     let report =
         Report::new(args, &sequence, &config, &device, &frames, &poses).with_corrections(corrections);
-    let report = report.with_lines(&frames, &lines);
+    let report = report.with_lines(&frames, &lines).with_calibration(&sequence, assessed.as_ref());
     if args.json { print_json(&report) } else { print(&report.text(&sequence.name)) }
 }
 
@@ -113,6 +115,15 @@ fn localize(
         frames.push(frame);
     }
     Ok(())
+}
+
+/// Makes what the calibration is worth a part of the covariances, if they are asked for: it takes looking at some pictures once more.
+fn assessed(
+    args: &TagArgs,
+    sequence: &Sequence,
+    frames: &mut [LocalizedFrame],
+) -> anyhow::Result<Option<Assessment>> {
+    Ok(if args.details.is_some() { assess_frames(sequence, frames)? } else { None })
 }
 
 /// Returns the filter's pose of every picture, from this and earlier pictures only.

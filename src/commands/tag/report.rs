@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use reality_sim::{
     CameraPose, LocalizedFrame, LocalizerConfig, ObservationKind, Sequence,
+    calibration::{Assessment, Shift},
     evaluation::{ErrorStatistics, PoseError, percentile},
     filter::{Estimator, Resampling},
     quality::{LineAgreement, RecordingQuality},
@@ -13,7 +14,10 @@ use reality_sim::{
 };
 
 use super::options::TagArgs;
-use crate::commands::{device::Device, output::aligned};
+use crate::commands::{device::Device, output::aligned, parameter::of_parameter};
+
+/// Standard deviations by which a recording must contradict the calibration for that to be said.
+const CONTRADICTED: f64 = 4.0;
 
 /// Resulting pose with its uncertainty.
 pub struct PoseResult {
@@ -121,6 +125,9 @@ pub struct Report {
     /// What of the model was used.
     #[serde(skip_serializing_if = "Option::is_none")]
     corrections: Option<String>,
+    /// By how much the recording contradicts the calibration.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    calibration: Option<String>,
 }
 
 impl Report {
@@ -163,6 +170,7 @@ impl Report {
             details: args.details.as_deref().map(shown),
             overlay: args.overlay.as_deref().map(shown),
             corrections: None,
+            calibration: None,
         }
     }
 
@@ -178,6 +186,24 @@ impl Report {
         let RecordingQuality { lines_within_5px, lines_within_10px, completeness, .. } = quality;
         let lines_verdict = quality.sentence();
         Self { lines_within_5px, lines_within_10px, completeness, lines_verdict, ..self }
+    }
+
+    /// Adds by how much the recording contradicts the calibration, if it does.
+    pub fn with_calibration(self, sequence: &Sequence, assessed: Option<&Assessment>) -> Self {
+        let distortion = &sequence.setup.camera.distortion;
+        let is_clear = |shift: &&Shift| shift.by.abs() > CONTRADICTED * shift.sigma;
+        let shifts: Vec<String> = assessed
+            .iter()
+            .flat_map(|assessed| assessed.shifts.iter().filter(is_clear))
+            .map(|shift| of_parameter(shift.parameter.name(distortion), shift.by, shift.sigma))
+            .collect();
+        let calibration = (!shifts.is_empty()).then(|| {
+            format!(
+                "the lines fit a camera better that differs by {}: run `reality-sim calibrate`",
+                shifts.join(", ")
+            )
+        });
+        Self { calibration, ..self }
     }
 
     fn backend_text(&self) -> String {
@@ -205,6 +231,7 @@ impl Report {
         ];
         lines.push(("lines", self.lines_verdict.clone()));
         lines.extend(self.corrections.iter().map(|corrections| ("camera", corrections.clone())));
+        lines.extend(self.calibration.iter().map(|words| ("calibration", words.clone())));
         if let Some(error) = &self.error {
             let cm = |metres: f64| format!("{:.2} cm", 100.0 * metres);
             let [mean, median, p95, max] = [error.mean_m, error.median_m, error.p95_m, error.max_m].map(cm);
