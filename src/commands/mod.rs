@@ -7,6 +7,7 @@ mod device;
 #[cfg(feature = "gpu")]
 mod doctor;
 mod evaluate;
+mod export;
 mod filter;
 mod frame_range;
 mod gap;
@@ -41,6 +42,8 @@ pub enum Command {
     Info(info::InfoArgs),
     /// Remove a sequence's pictures, or some of them, from a database
     Remove(remove::RemoveArgs),
+    /// Write poses and pictures in the formats of other programs
+    Export(export::ExportArgs),
     /// Find the effect that a camera model lacks, add it, and measure what that brings
     Gap(Box<gap::GapArgs>),
     /// List the graphics adapters, and check that they compute what the CPU computes
@@ -63,6 +66,7 @@ impl Command {
             Self::Build(args) => args.check_usage(),
             Self::Render(args) => args.check_usage(),
             Self::Evaluate(args) => args.check_usage(),
+            Self::Export(args) => args.check_usage(),
             Self::Info(_) | Self::Remove(_) | Self::Completions(_) | Self::Man(_) => Ok(()),
             Self::Gap(args) => args.check_usage(),
             #[cfg(feature = "gpu")]
@@ -79,6 +83,7 @@ impl Command {
             Self::Build(args) => build::run(args),
             Self::Render(args) => render::run(args),
             Self::Evaluate(args) => evaluate::run(args),
+            Self::Export(args) => export::run(args),
             Self::Info(args) => info::run(args),
             Self::Remove(args) => remove::run(args),
             Self::Gap(args) => gap::run(args),
