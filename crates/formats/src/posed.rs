@@ -76,8 +76,8 @@ impl PosedPictures {
         let folder = folder.join(IMAGES);
         fs::create_dir_all(&folder)
             .map_err(|error| ModelError::of_file(&folder, ModelFault::Unwritable(error)))?;
-        let undistorters: Option<Vec<Undistorter>> = undistortion
-            .map(|undistortion| self.cameras.iter().map(|camera| undistortion.of_camera(camera)).collect());
+        let undistorters =
+            undistortion.map(|undistortion| self.undistorters(undistortion, &folder)).transpose()?;
         let mut written = self.clone();
         for (index, picture) in written.pictures.iter_mut().enumerate() {
             let origin = PathBuf::from(format!("picture {}", picture.number));
@@ -96,6 +96,18 @@ impl PosedPictures {
             written.cameras = undistorters.iter().map(|undistorter| undistorter.pinhole.clone()).collect();
         }
         Ok(written)
+    }
+
+    fn undistorters(
+        &self,
+        undistortion: &Undistortion,
+        folder: &Path,
+    ) -> Result<Vec<Undistorter>, ModelError> {
+        let of_camera = |(id, camera)| {
+            let undistorter = undistortion.of_camera(camera);
+            undistorter.map_err(|error| ModelError::of_file(folder, ModelFault::Camera { id, error }))
+        };
+        (1..).zip(&self.cameras).map(of_camera).collect()
     }
 }
 

@@ -4,7 +4,7 @@ use std::{io, path::Path};
 
 use glam::{DVec2, DVec3};
 use image::{ExtendedColorType, ImageEncoder, Rgb, RgbImage, Rgba, RgbaImage, codecs::png::PngEncoder};
-use reality_sim_core::camera::{Camera, Distortion};
+use reality_sim_core::camera::{Camera, Distortion, InvalidCamera};
 
 use crate::model_error::{ModelError, ModelFault};
 
@@ -36,23 +36,22 @@ pub struct Undistortion {
 }
 
 impl Undistortion {
-    /// Prepares the undistortion of one camera's pictures. The size of the picture stays.
-    pub fn of_camera(&self, camera: &Camera) -> Undistorter {
-        let pinhole = self.pinhole(camera);
+    /// Prepares the undistortion of one camera's pictures. The size of the picture stays. Fails if no plane picture has the field
+    /// of view that is asked for.
+    pub fn of_camera(&self, camera: &Camera) -> Result<Undistorter, InvalidCamera> {
+        let pinhole = self.pinhole(camera)?;
         let pixels = (0..pinhole.height).flat_map(|v| (0..pinhole.width).map(move |u| (u, v)));
         let sources = pixels.map(|(u, v)| source(camera, &pinhole, u, v)).collect();
-        Undistorter { pinhole, border: self.border, recorded: camera.clone(), sources }
+        Ok(Undistorter { pinhole, border: self.border, recorded: camera.clone(), sources })
     }
 
     /// Returns the camera without distortion: its principal point is the middle of the picture, its pixels are square.
-    fn pinhole(&self, camera: &Camera) -> Camera {
+    fn pinhole(&self, camera: &Camera) -> Result<Camera, InvalidCamera> {
         let fov_rad = self.fov_rad.unwrap_or_else(|| fov_across_rad(camera).min(LARGEST_DEFAULT_FOV_RAD));
         let [width, height] = [camera.width, camera.height].map(f64::from);
         let focal_px = 0.5 * width / (0.5 * fov_rad).tan();
         let intrinsics = [focal_px, focal_px, 0.5 * (width - 1.0), 0.5 * (height - 1.0)];
-        // A field of view that no plane picture can have gives no camera; then the recorded one's numbers stand in.
-        let pinhole = Camera::new([camera.width, camera.height], intrinsics, Distortion::Pinhole);
-        pinhole.unwrap_or(Camera { distortion: Distortion::Pinhole, ..camera.clone() })
+        Camera::new([camera.width, camera.height], intrinsics, Distortion::Pinhole)
     }
 }
 

@@ -2,11 +2,17 @@
 
 mod options;
 mod source;
+mod table;
 
 use serde::Serialize;
 
 use reality_sim::{StampedPose, sequence::counted, write_tum};
-use reality_sim_formats::{PosedPictures, colmap::write_colmap, nerfstudio::write_nerfstudio};
+use reality_sim_formats::{
+    PosedPictures,
+    colmap::write_colmap,
+    nerfstudio::write_nerfstudio,
+    show::{LogFile, Shot},
+};
 
 pub use self::options::ExportArgs;
 use self::{options::Format, source::Source};
@@ -40,6 +46,8 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     match args.format {
         Format::Colmap | Format::Nerfstudio => export_folder(args, &source)?,
         Format::Tum => write_tum(&args.out, &stamped(&source.posed))?,
+        Format::Mcap => export_log(args, &source)?,
+        Format::Parquet => table::export(args, &source)?,
     }
     let report = Report {
         source: args.source.display().to_string(),
@@ -66,6 +74,26 @@ fn export_folder(args: &ExportArgs, source: &Source) -> anyhow::Result<()> {
         _ => write_colmap(&written, &args.out, args.encodings())?,
     }
     Ok(())
+}
+
+/// Writes an MCAP file, without particles: they are known only while `tag` runs.
+fn export_log(args: &ExportArgs, source: &Source) -> anyhow::Result<()> {
+    let posed = &source.posed;
+    let progress = frame_progress(posed.pictures.len())?;
+    let log = LogFile::create(&args.out)?;
+    for (index, picture) in posed.pictures.iter().enumerate() {
+        log.log(&Shot {
+            timestamp_s: picture.timestamp_s,
+            picture: &source.picture_bytes(index)?,
+            camera: posed.camera(picture),
+            field: &posed.field,
+            pose: picture.pose,
+            particles: &[],
+        });
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    Ok(log.finish()?)
 }
 
 fn stamped(posed: &PosedPictures) -> Vec<StampedPose> {

@@ -20,6 +20,10 @@ pub enum Format {
     Nerfstudio,
     /// The poses alone, in a TUM file
     Tum,
+    /// An MCAP file that Foxglove shows: pictures, calibration, poses, the field's lines
+    Mcap,
+    /// A Parquet table with one row a picture: pose, covariance, filter state, quality
+    Parquet,
 }
 
 impl Format {
@@ -29,6 +33,8 @@ impl Format {
             Self::Colmap => "colmap",
             Self::Nerfstudio => "nerfstudio",
             Self::Tum => "tum",
+            Self::Mcap => "mcap",
+            Self::Parquet => "parquet",
         }
     }
 
@@ -52,6 +58,12 @@ pub struct ExportArgs {
     /// Folder or file to write
     #[arg(long, value_name = "PATH")]
     pub out: PathBuf,
+    /// Take covariances and filter state from this file of `tag --details` (parquet, of a sequence)
+    #[arg(long, value_name = "FILE", conflicts_with = "poses")]
+    pub details: Option<PathBuf>,
+    /// Do not decode the pictures to measure brightness and sharpness (parquet)
+    #[arg(long)]
+    pub no_quality: bool,
     /// Write only COLMAP's text files [default: both]
     #[arg(long, conflicts_with = "binary")]
     text: bool,
@@ -91,6 +103,8 @@ impl ExportArgs {
         let ignored = [
             ("--text", self.text && self.format != Format::Colmap),
             ("--binary", self.binary && self.format != Format::Colmap),
+            ("--details", self.details.is_some() && self.format != Format::Parquet),
+            ("--no-quality", self.no_quality && self.format != Format::Parquet),
             ("--undistort", self.undistort && !self.format.is_folder()),
         ];
         match ignored.iter().find(|(_, ignored)| *ignored) {

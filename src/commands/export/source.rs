@@ -1,6 +1,6 @@
 //! What is exported: a sequence with its poses, or a database.
 
-use std::{collections::BTreeMap, error::Error, path::PathBuf};
+use std::{array, collections::BTreeMap, error::Error, path::PathBuf};
 
 use anyhow::bail;
 
@@ -9,7 +9,7 @@ use reality_sim::{
     db::{Database, ImageRecord},
     sequence::{counted, match_poses, read_tum},
 };
-use reality_sim_formats::{PictureFiles, PosedPicture, PosedPictures, posed::CameraIndex};
+use reality_sim_formats::{PictureFiles, PosedPicture, PosedPictures, frame_table::PictureFacts, posed::CameraIndex};
 
 use super::options::ExportArgs;
 
@@ -21,6 +21,8 @@ pub struct Source {
     pub without_pose: usize,
     /// Every file that is read.
     pub inputs: Vec<PathBuf>,
+    /// What is known of each picture beside its pose.
+    pub facts: Vec<PictureFacts>,
     origin: Origin,
 }
 
@@ -44,21 +46,29 @@ impl Source {
     /// Opens what the options name. Fails if nothing in it has a pose.
     pub fn open(args: &ExportArgs) -> anyhow::Result<Self> {
         if args.source.is_file() {
-            if args.poses.is_some() {
-                bail!("{}: is a database, which has its own poses: leave out --poses", args.source.display());
+            if args.poses.is_some() || args.details.is_some() {
+                let name = args.source.display();
+                bail!("{name}: is a database, which has its own poses: leave out --poses and --details");
             }
             Self::of_database(Database::open(&args.source)?)
         } else {
-            Self::of_sequence(Sequence::open(&args.source)?, args.poses.as_ref())
+            Self::of_sequence(Sequence::open(&args.source)?, args)
         }
     }
 
-    fn of_sequence(sequence: Sequence, poses: Option<&PathBuf>) -> anyhow::Result<Self> {
+    /// Returns the file of a picture, by its place.
+    pub fn picture_bytes(&self, index: usize) -> anyhow::Result<Vec<u8>> {
+        self.bytes(index).map_err(anyhow::Error::from_boxed)
+    }
+
+    fn of_sequence(sequence: Sequence, args: &ExportArgs) -> anyhow::Result<Self> {
         let folder = sequence.folder.display();
         let mut inputs = sequence.files.clone();
         inputs.extend(sequence.frames.iter().map(|frame| sequence.folder.join(&frame.image)));
-        inputs.extend(poses.cloned());
-        let poses: Vec<Option<CameraPose>> = match poses {
+        inputs.extend(args.poses.iter().chain(&args.details).cloned());
+        let poses: Vec<Option<CameraPose>> = match &args.poses {
+            // The table has the poses of its own; here only which pictures there are matters.
+            _ if args.details.is_some() => vec![Some(CameraPose::default()); sequence.frames.len()],
             Some(file) => match_poses(file, read_tum(file)?, &sequence.frames)?,
             None if sequence.has_reference_poses() => sequence.reference_poses().collect(),
             None => bail!(
@@ -81,9 +91,15 @@ impl Source {
         }
         sequence.check_pictures()?;
         let without_pose = poses.len() - pictures.len();
+        let facts = pictures.iter().map(|picture| PictureFacts {
+            sequence: sequence.name.clone(),
+            image: sequence.frames[picture.number].image.clone(),
+            ..PictureFacts::default()
+        });
+        let facts = facts.collect();
         let (cameras, field) = (vec![sequence.setup.camera.clone()], sequence.field.clone());
         let posed = PosedPictures { cameras, field, pictures };
-        Ok(Self { posed, without_pose, inputs, origin: Origin::Sequence(Box::new(sequence)) })
+        Ok(Self { posed, without_pose, inputs, facts, origin: Origin::Sequence(Box::new(sequence)) })
     }
 
     fn of_database(database: Database) -> anyhow::Result<Self> {
@@ -110,8 +126,18 @@ impl Source {
         let pictures = records.iter().enumerate().map(picture).collect();
         let ids = records.iter().map(|record| record.id).collect();
         let inputs = vec![database.path().to_path_buf()];
+        let names = database.sequences()?;
+        let facts = records.iter().map(|record| PictureFacts {
+            sequence: names.get(&record.sequence_id).cloned().unwrap_or_default(),
+            image: PathBuf::from(&record.file_name),
+            covariance: record
+                .covariance
+                .map(|matrix| array::from_fn(|a| array::from_fn(|b| matrix[(a, b)]))),
+            quality: None,
+        });
+        let facts = facts.collect();
         let posed = PosedPictures { cameras, field, pictures };
-        Ok(Self { posed, without_pose: 0, inputs, origin: Origin::Database(Box::new(database), ids) })
+        Ok(Self { posed, without_pose: 0, inputs, facts, origin: Origin::Database(Box::new(database), ids) })
     }
 }
 

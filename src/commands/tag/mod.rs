@@ -2,6 +2,7 @@
 
 mod options;
 mod report;
+mod watch;
 
 use std::path::PathBuf;
 
@@ -15,12 +16,15 @@ use reality_sim::{
     localization::Picture,
     overlay::{BorderOutline, Overlay},
     refine::SmoothedPose,
-    sequence::{counted, save_image, write_atomically},
+    sequence::{counted, save_image},
     write_tum,
 };
 
 pub use self::options::TagArgs;
-use self::report::{PoseResult, Report, details_csv};
+use self::{
+    report::{PoseResult, Report, details_csv},
+    watch::{Watchers, is_log, write_details, write_log},
+};
 use super::{
     model_file::Use,
     output::{check_distinct, check_output_file, frame_progress, print, print_json},
@@ -40,9 +44,11 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     let builder = builder.config(config).start(sequence.start).backend(device.backend.clone());
     let mut localizer = builder.build()?;
     let wanted = sequence.frames.len();
+    let mut watchers = Watchers::start(args)?;
     let progress = frame_progress(wanted)?;
     let mut frames = Vec::with_capacity(wanted);
-    let localized = localize(args, &sequence, &mut localizer, (&progress, overlays.as_ref()), &mut frames);
+    let outputs = (&progress, overlays.as_ref(), &mut watchers);
+    let localized = localize(args, &sequence, &mut localizer, outputs, &mut frames);
     progress.finish_and_clear();
     // What was found before a picture failed is written all the same.
     sequence.frames.truncate(frames.len());
@@ -53,9 +59,13 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     let results = if args.smooth { smoothed(&sequence, &localizer, &frames)? } else { filtered(&frames) };
     let poses: Vec<CameraPose> = results.iter().map(|result| result.pose).collect();
     if let Some(details) = &args.details {
-        write_atomically(details, details_csv(&sequence, &frames, &results).as_bytes())?;
+        write_details(details, &details_csv(&sequence, &frames, &results), &sequence)?;
     }
-    if let Some(out) = &args.out {
+    watchers.finish()?;
+    if let Some(log) = args.out.as_ref().filter(|out| args.smooth && is_log(out)) {
+        write_log(log, &sequence, &poses)?;
+    }
+    if let Some(out) = args.out.as_ref().filter(|out| !is_log(out)) {
         let stamped = sequence.frames.iter().zip(&poses);
         let stamped: Vec<StampedPose> = stamped
             .map(|(frame, pose)| StampedPose { timestamp_s: frame.timestamp_s, pose: *pose })
@@ -79,7 +89,7 @@ fn localize(
     args: &TagArgs,
     sequence: &Sequence,
     localizer: &mut Localizer,
-    (progress, overlays): (&ProgressBar, Option<&OutputFolder>),
+    (progress, overlays, watchers): (&ProgressBar, Option<&OutputFolder>, &mut Watchers),
     frames: &mut Vec<LocalizedFrame>,
 ) -> anyhow::Result<()> {
     let first = args.frames.map_or(0, |range| range.first);
@@ -98,6 +108,7 @@ fn localize(
             let truth = sequence.frames[index].reference_pose;
             save_image(&file, &draw(sequence, observation, &frame, truth, run.localizer(), &path)?)?;
         }
+        watchers.show(sequence, index, &frame, run.localizer())?;
         frames.push(frame);
     }
     Ok(())
