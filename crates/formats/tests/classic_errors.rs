@@ -77,10 +77,7 @@ impl Exported {
                 v * radial + 2.0 * k(3) * u * v + k(2) * (r2 + 2.0 * v * v),
             )
         };
-        Some(DVec2::new(
-            self.focal[0] * a + self.center[0] - 0.5,
-            self.focal[1] * b + self.center[1] - 0.5,
-        ))
+        Some(DVec2::new(self.focal[0] * a + self.center[0] - 0.5, self.focal[1] * b + self.center[1] - 0.5))
     }
 
     /// Returns the largest distance from the core's pixels; a point that is not seen at all is far.

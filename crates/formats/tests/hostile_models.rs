@@ -95,7 +95,8 @@ fn read_damaged(file: &str, damages: &[Damage]) {
             }
             fs::write(folder.path().join(name), bytes).unwrap();
         }
-        let options = ModelImport { images: Some(whole.path().join("images")), ..ModelImport::new("walk", field()) };
+        let options =
+            ModelImport { images: Some(whole.path().join("images")), ..ModelImport::new("walk", field()) };
         let out = folder.path().join("out");
         // Both may succeed or fail; they must only return.
         let result = match file {

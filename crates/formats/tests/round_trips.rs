@@ -52,8 +52,13 @@ fn check(camera: &Camera, poses: &[CameraPose], format: Format) {
     let sequence = round_trip(&pictures, format);
     assert_eq!(sequence.frames.len(), poses.len());
     let again = &sequence.setup.camera;
-    assert_eq!(again.distortion, camera.distortion);
-    for (a, b) in [(again.fx, camera.fx), (again.fy, camera.fy), (again.cx, camera.cx), (again.cy, camera.cy)] {
+    // serde_json may be off by the last bit.
+    assert_eq!(again.distortion.colmap_name(), camera.distortion.colmap_name());
+    for (a, b) in again.distortion.parameters().iter().zip(camera.distortion.parameters()) {
+        assert!((a - b).abs() < 1e-15, "{a} {b}");
+    }
+    for (a, b) in [(again.fx, camera.fx), (again.fy, camera.fy), (again.cx, camera.cx), (again.cy, camera.cy)]
+    {
         assert!((a - b).abs() < 1e-12, "{a} {b}");
     }
     for (frame, picture) in sequence.frames.iter().zip(&pictures.pictures) {
@@ -157,7 +162,10 @@ fn a_world_that_is_not_the_fields_is_refused_or_warned_of() {
     let upside_down = import(CameraPose { roll_rad: 3.0, ..a_pose() }).unwrap_err().to_string();
     assert!(upside_down.contains("upside down"), "{upside_down}");
     assert!(import(a_pose()).unwrap().warnings.is_empty());
-    assert_eq!(import(CameraPose { height_m: 6.0, x_m: 30.0, pitch_rad: -0.1, ..a_pose() }).unwrap().warnings.len(), 3);
+    assert_eq!(
+        import(CameraPose { height_m: 6.0, x_m: 30.0, pitch_rad: -0.1, ..a_pose() }).unwrap().warnings.len(),
+        3
+    );
 }
 
 #[test]

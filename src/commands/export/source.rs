@@ -9,7 +9,9 @@ use reality_sim::{
     db::{Database, ImageRecord},
     sequence::{counted, match_poses, read_tum},
 };
-use reality_sim_formats::{PictureFiles, PosedPicture, PosedPictures, frame_table::PictureFacts, posed::CameraIndex};
+use reality_sim_formats::{
+    PictureFiles, PosedPicture, PosedPictures, frame_table::PictureFacts, posed::CameraIndex,
+};
 
 use super::options::ExportArgs;
 

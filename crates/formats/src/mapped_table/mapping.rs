@@ -90,7 +90,8 @@ impl Mapping {
         let reference = [Target::ReferenceX, Target::ReferenceY, Target::ReferenceYaw];
         for group in [odometry, reference] {
             let missing = group.iter().find(|target| !self.columns.contains_key(target));
-            if let (Some(missing), true) = (missing, group.iter().any(|target| self.columns.contains_key(target)))
+            if let (Some(missing), true) =
+                (missing, group.iter().any(|target| self.columns.contains_key(target)))
             {
                 return Err(ModelFault::MissingValue { key: format!("columns.{}", missing.name()) });
             }

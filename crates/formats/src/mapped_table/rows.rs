@@ -24,10 +24,8 @@ pub(super) fn frames(
     mount_height_m: f64,
 ) -> Result<Vec<FrameRecord>, ModelError> {
     let text = read_text(path, MAX_MODEL_BYTES)?;
-    let mut reader = ReaderBuilder::new()
-        .delimiter(mapping.delimiter as u8)
-        .trim(Trim::All)
-        .from_reader(text.as_bytes());
+    let mut reader =
+        ReaderBuilder::new().delimiter(mapping.delimiter as u8).trim(Trim::All).from_reader(text.as_bytes());
     let syntax = |error: csv::Error| {
         let line = error.position().map_or(1, csv::Position::line) as usize;
         ModelError::at(path, line, ModelFault::Syntax { message: one_line(&error) })

@@ -66,9 +66,11 @@ impl Target {
         match self {
             Self::Timestamp => Some(Quantity::Time),
             Self::Image => None,
-            Self::OdometryX | Self::OdometryY | Self::ReferenceX | Self::ReferenceY | Self::ReferenceHeight => {
-                Some(Quantity::Length)
-            }
+            Self::OdometryX
+            | Self::OdometryY
+            | Self::ReferenceX
+            | Self::ReferenceY
+            | Self::ReferenceHeight => Some(Quantity::Length),
             Self::OdometryYaw
             | Self::Pitch
             | Self::Roll

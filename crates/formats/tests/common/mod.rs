@@ -1,6 +1,10 @@
 //! What the tests of exports share: pictures with poses that are made up, and points whose pixels the core knows.
 
-#![allow(dead_code, clippy::unwrap_used, reason = "each test file uses a part; helpers of tests fail like tests")]
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    reason = "each test file uses a part; helpers of tests fail like tests"
+)]
 
 use std::error::Error;
 
@@ -44,15 +48,18 @@ pub fn cameras() -> [Camera; 4] {
 pub fn any_camera() -> impl Strategy<Value = Camera> {
     let parts = (25.0..60.0, 25.0..60.0, 25.0..38.0, 18.0..30.0);
     let terms = [-0.1..0.1, -0.02..0.02, -0.003..0.003, -0.003..0.003, -0.003..0.003_f64];
-    (0..4_usize, parts, terms).prop_filter_map("no such lens", |(lens, (fx, fy, cx, cy), [k1, k2, p1, p2, k3])| {
-        let distortion = match lens {
-            0 => Distortion::Pinhole,
-            1 => Distortion::Opencv(Opencv { k1, k2, p1, p2, k3: 0.0 }),
-            2 => Distortion::Opencv(Opencv { k1, k2, p1, p2, k3 }),
-            _ => Distortion::OpencvFisheye(OpencvFisheye { k: [k1, k2, p1, p2] }),
-        };
-        Camera::new(SIZE, [fx, fy, cx, cy], distortion).ok()
-    })
+    (0..4_usize, parts, terms).prop_filter_map(
+        "no such lens",
+        |(lens, (fx, fy, cx, cy), [k1, k2, p1, p2, k3])| {
+            let distortion = match lens {
+                0 => Distortion::Pinhole,
+                1 => Distortion::Opencv(Opencv { k1, k2, p1, p2, k3: 0.0 }),
+                2 => Distortion::Opencv(Opencv { k1, k2, p1, p2, k3 }),
+                _ => Distortion::OpencvFisheye(OpencvFisheye { k: [k1, k2, p1, p2] }),
+            };
+            Camera::new(SIZE, [fx, fy, cx, cy], distortion).ok()
+        },
+    )
 }
 
 pub fn any_pose() -> impl Strategy<Value = CameraPose> {
@@ -87,7 +94,8 @@ pub fn posed(camera: &Camera, poses: &[CameraPose]) -> PosedPictures {
 
 /// Returns points of the field, and the pixels at which the core sees them from a pose.
 pub fn known_points(camera: &Camera, pose: CameraPose) -> Vec<(DVec3, DVec2)> {
-    let grid = (-20..=20).flat_map(|x| (-20..=20).map(move |y| DVec3::new(0.25 * f64::from(x), 0.2 * f64::from(y), 0.0)));
+    let grid = (-20..=20)
+        .flat_map(|x| (-20..=20).map(move |y| DVec3::new(0.25 * f64::from(x), 0.2 * f64::from(y), 0.0)));
     let points: Vec<_> =
         grid.filter_map(|point| Some((point, camera.project(pose.camera_from_world(point)).ok()?))).collect();
     assert!(points.len() > 20, "{} points are seen", points.len());
