@@ -12,6 +12,10 @@ use crate::model_error::{ModelError, ModelFault};
 /// binary form, and no recording of a robot comes near.
 pub(crate) const MAX_MODEL_BYTES: u64 = 1 << 30;
 
+/// Maximum size of a JSON file or a table, bytes: a hundred thousand pictures take some 40 MB. What is parsed takes up to ten times
+/// as much memory.
+pub(crate) const MAX_TABLE_BYTES: u64 = 64 << 20;
+
 /// Maximum size of a picture file, bytes.
 pub(crate) const MAX_PICTURE_BYTES: u64 = 512 << 20;
 

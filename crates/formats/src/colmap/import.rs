@@ -7,7 +7,7 @@ use std::{
 
 use super::{ColmapCamera, ColmapImage, TIMESTAMPS_FILE, binary, model_folder, text};
 use crate::{
-    file::{MAX_MODEL_BYTES, is_inside_folder, read_bytes, read_text},
+    file::{MAX_MODEL_BYTES, MAX_TABLE_BYTES, is_inside_folder, read_bytes, read_text},
     model_error::{ModelError, ModelFault, excerpt},
     model_import::{ForeignModel, ForeignPicture, ModelImport, ModelImportReport},
     posed::IMAGES,
@@ -94,7 +94,7 @@ fn timestamps(input: &Path) -> Result<HashMap<String, f64>, ModelError> {
     // Two folders above the model at most: what lies farther up is of something else.
     let mut files = project_folders(input).take(3).map(|folder| folder.join(TIMESTAMPS_FILE));
     let Some(path) = files.find(|file| file.is_file()) else { return Ok(HashMap::new()) };
-    let text = read_text(&path, MAX_MODEL_BYTES)?;
+    let text = read_text(&path, MAX_TABLE_BYTES)?;
     let mut times = HashMap::new();
     for (index, line) in text.lines().enumerate().skip(1).filter(|(_, line)| !line.trim().is_empty()) {
         let time = line.rsplit_once(',').and_then(|(name, time)| Some((name, time.trim().parse().ok()?)));

@@ -7,7 +7,7 @@ use reality_sim_core::sequence::one_line;
 
 use super::{Column, FrameTable, Values, table_error};
 use crate::{
-    file::{MAX_MODEL_BYTES, read_text},
+    file::{MAX_TABLE_BYTES, read_text},
     model_error::{ModelError, ModelFault, excerpt},
 };
 
@@ -15,7 +15,7 @@ impl FrameTable {
     /// Reads a table from a CSV file, as `tag --details` writes it. Columns that are not known are kept behind the others. Fails
     /// with the first value that is not of its column's kind, or if there is no column `timestamp_s`.
     pub fn read_details(path: &Path) -> Result<Self, ModelError> {
-        Self::parse_details(path, &read_text(path, MAX_MODEL_BYTES)?)
+        Self::parse_details(path, &read_text(path, MAX_TABLE_BYTES)?)
     }
 
     /// Parses a table from the text of a CSV file; `path` is its name in errors.

@@ -13,7 +13,7 @@ use super::{
     target::Target,
 };
 use crate::{
-    file::{MAX_MODEL_BYTES, is_inside_folder, read_text},
+    file::{MAX_TABLE_BYTES, is_inside_folder, read_text},
     model_error::{ModelError, ModelFault, excerpt},
 };
 
@@ -23,7 +23,7 @@ pub(super) fn frames(
     mapping: &Mapping,
     mount_height_m: f64,
 ) -> Result<Vec<FrameRecord>, ModelError> {
-    let text = read_text(path, MAX_MODEL_BYTES)?;
+    let text = read_text(path, MAX_TABLE_BYTES)?;
     let mut reader =
         ReaderBuilder::new().delimiter(mapping.delimiter as u8).trim(Trim::All).from_reader(text.as_bytes());
     let syntax = |error: csv::Error| {

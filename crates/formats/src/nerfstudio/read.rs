@@ -11,7 +11,7 @@ use super::{
     matrix::{matrix, pose_of_matrix},
 };
 use crate::{
-    file::{MAX_MODEL_BYTES, is_inside_folder, read_text},
+    file::{MAX_TABLE_BYTES, is_inside_folder, read_text},
     model_error::{ModelError, ModelFault, excerpt},
     model_import::{ForeignModel, ForeignPicture, ModelImport, ModelImportReport},
 };
@@ -27,7 +27,7 @@ pub fn read_nerfstudio_as_sequence(
     options: &ModelImport,
 ) -> Result<ModelImportReport, ModelError> {
     let path = if input.is_dir() { input.join(TRANSFORMS_FILE) } else { input.to_path_buf() };
-    let text = read_text(&path, MAX_MODEL_BYTES)?;
+    let text = read_text(&path, MAX_TABLE_BYTES)?;
     foreign_model(&path, &text, options)?.write(out, options)
 }
 
