@@ -18,6 +18,7 @@ pub mod mapped_table;
 pub mod model_error;
 pub mod model_import;
 pub mod nerfstudio;
+mod pixels;
 pub mod posed;
 pub mod show;
 pub mod undistort;

@@ -38,6 +38,11 @@ impl ModelError {
     pub fn at(path: &Path, line: usize, fault: ModelFault) -> Self {
         Self { path: path.to_path_buf(), line: Some(line), fault: Box::new(fault) }
     }
+
+    /// Makes an error about a table, of which the message says what is wrong and what to do.
+    pub(crate) fn of_table(path: &Path, message: impl Into<String>) -> Self {
+        Self::of_file(path, ModelFault::Table { message: message.into() })
+    }
 }
 
 impl From<SequenceError> for ModelError {

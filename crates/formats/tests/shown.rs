@@ -165,85 +165,6 @@ fn check_annotations(lines: &ImageAnnotations, camera: &reality_sim_core::camera
     assert!(points > 10, "{points}");
 }
 
-#[cfg(feature = "live")]
-#[test]
-fn a_client_of_the_live_view_receives_pictures_and_poses() {
-    use std::{
-        sync::atomic::{AtomicBool, Ordering},
-        thread,
-        time::Duration,
-    };
-
-    use reality_sim_formats::show::LiveView;
-    use tungstenite::{ClientRequestBuilder, Message};
-
-    let mut view = LiveView::start("127.0.0.1:0".parse().unwrap()).unwrap();
-    let address = view.address();
-    let uri = format!("ws://{address}").parse().unwrap();
-    let request = ClientRequestBuilder::new(uri).with_sub_protocol("foxglove.sdk.v1");
-    let done = AtomicBool::new(false);
-    thread::scope(|scope| {
-        let client = scope.spawn(|| {
-            let (mut socket, _) = tungstenite::connect(request).unwrap();
-            let mut topics: BTreeMap<u64, (u64, String)> = BTreeMap::new();
-            let mut received: BTreeMap<String, Vec<u8>> = BTreeMap::new();
-            while !(received.contains_key("/camera/image") && received.contains_key("/tf")) {
-                match socket.read().unwrap() {
-                    Message::Text(text) => {
-                        let message: serde_json::Value = serde_json::from_str(&text).unwrap();
-                        if message["op"] != "advertise" {
-                            continue;
-                        }
-                        for channel in message["channels"].as_array().unwrap() {
-                            let id = channel["id"].as_u64().unwrap();
-                            let subscription = topics.len() as u64 + 1;
-                            topics.insert(subscription, (id, channel["topic"].as_str().unwrap().to_owned()));
-                            let subscribe = serde_json::json!({
-                                "op": "subscribe",
-                                "subscriptions": [{"id": subscription, "channelId": id}],
-                            });
-                            socket.send(Message::text(subscribe.to_string())).unwrap();
-                        }
-                    }
-                    // Opcode 1 is message data: the subscription, the log time, the payload.
-                    Message::Binary(bytes) if bytes[0] == 1 => {
-                        let subscription = u32::from_le_bytes(bytes[1..5].try_into().unwrap());
-                        let (_, topic) = &topics[&u64::from(subscription)];
-                        received.insert(topic.clone(), bytes[13..].to_vec());
-                    }
-                    _ => {}
-                }
-            }
-            done.store(true, Ordering::Relaxed);
-            received
-        });
-        let (picture, field, camera) = (Grey.bytes(3).unwrap(), field(), &cameras()[3]);
-        view.wait_for_client();
-        // The subscription may come late on a busy machine: shown until it has been there.
-        for step in 0.. {
-            if done.load(Ordering::Relaxed) || step == 3000 {
-                break;
-            }
-            let (timestamp_s, pose) = (100.0 + 0.02 * f64::from(step), a_pose());
-            view.show(&Shot {
-                timestamp_s,
-                picture: &picture,
-                camera,
-                field: &field,
-                pose,
-                particles: &[pose],
-            });
-            thread::sleep(Duration::from_millis(1));
-        }
-        let received = client.join().unwrap();
-        let image: CompressedImage = decode(&received["/camera/image"]);
-        assert_eq!(image.data.as_ref(), picture.as_slice());
-        let transform: FrameTransform = decode(&received["/tf"]);
-        assert!((transform.translation.unwrap().x - a_pose().x_m).abs() < 1e-12);
-    });
-    view.stop();
-}
-
 #[test]
 fn a_parquet_table_has_the_pictures_values_and_nulls_where_nothing_is_known() {
     use parquet::{
@@ -307,7 +228,7 @@ fn details_keep_their_columns_and_unknown_ones_come_behind() {
 fn brightness_and_sharpness_tell_dark_and_blurred_pictures_apart() {
     let stripes = |low: u8, high: u8, period: u32| {
         let picture = image::RgbImage::from_fn(32, 32, |u, _| {
-            image::Rgb([if (u / period) % 2 == 0 { low } else { high }; 3])
+            image::Rgb([if (u / period).is_multiple_of(2) { low } else { high }; 3])
         });
         PictureQuality::of(&picture)
     };

@@ -2,7 +2,12 @@
 
 use std::path::Path;
 
-use super::{ColmapCamera, ColmapImage, ColmapLens, ColmapModel, bytes::Bytes};
+use super::{
+    bytes::Bytes,
+    camera::{ColmapCamera, ColmapLens},
+    image::ColmapImage,
+    model::ColmapModel,
+};
 use crate::model_error::{ModelError, ModelFault};
 
 /// Bytes of a camera without its parameters: id, model, width, height.
@@ -14,16 +19,16 @@ const IMAGE_BYTES: usize = 4 + 7 * 8 + 4 + 1 + 8;
 /// Bytes of a keypoint: two coordinates, a point's id.
 const KEYPOINT_BYTES: usize = 3 * 8;
 
-impl ColmapModel {
-    /// Returns names and bytes of the binary files, that of the images last: it makes a folder a model.
-    pub(super) fn binaries(&self) -> [(&'static str, Vec<u8>); 3] {
-        [
-            ("cameras.bin", self.cameras_binary()),
-            ("points3D.bin", self.points_binary()),
-            ("images.bin", self.images_binary()),
-        ]
-    }
+/// Returns names and bytes of the binary files, that of the images last: it makes a folder a model.
+pub(super) fn binaries(model: &ColmapModel) -> [(&'static str, Vec<u8>); 3] {
+    [
+        ("cameras.bin", model.cameras_binary()),
+        ("points3D.bin", model.points_binary()),
+        ("images.bin", model.images_binary()),
+    ]
+}
 
+impl ColmapModel {
     fn cameras_binary(&self) -> Vec<u8> {
         let mut bytes = count(self.cameras.len());
         for camera in &self.cameras {

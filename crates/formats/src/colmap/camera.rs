@@ -2,8 +2,7 @@
 
 use reality_sim_core::camera::{Camera, Distortion, InvalidCamera, Opencv, OpencvFisheye};
 
-use super::HALF_PIXEL;
-use crate::model_error::ModelFault;
+use crate::{model_error::ModelFault, pixels::HALF_PIXEL};
 
 /// Lens models of COLMAP that can be represented here, with its numbers (`src/colmap/sensor/models.h`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,9 +3,9 @@
 use glam::{DQuat, DVec2, DVec3};
 use reality_sim_core::pose::CameraPose;
 
-use super::HALF_PIXEL;
 use crate::{
     model_error::{ModelFault, excerpt},
+    pixels::HALF_PIXEL,
     posed::PosedPicture,
 };
 

@@ -5,7 +5,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{ColmapCamera, ColmapImage, TIMESTAMPS_FILE, binary, model_folder, text};
+use super::{
+    binary,
+    camera::ColmapCamera,
+    folders::{TIMESTAMPS_FILE, model_folder},
+    image::ColmapImage,
+    text,
+};
 use crate::{
     file::{MAX_MODEL_BYTES, MAX_TABLE_BYTES, is_inside_folder, read_bytes, read_text},
     model_error::{ModelError, ModelFault, excerpt},

@@ -6,19 +6,23 @@ use std::{
     str::FromStr,
 };
 
-use super::{ColmapCamera, ColmapImage, ColmapLens, ColmapModel};
+use super::{
+    camera::{ColmapCamera, ColmapLens},
+    image::ColmapImage,
+    model::ColmapModel,
+};
 use crate::model_error::{ModelError, ModelFault, excerpt};
 
-impl ColmapModel {
-    /// Returns names and texts of the text files, that of the images last: it makes a folder a model.
-    pub(super) fn texts(&self) -> [(&'static str, String); 3] {
-        [
-            ("cameras.txt", self.cameras_text()),
-            ("points3D.txt", self.points_text()),
-            ("images.txt", self.images_text()),
-        ]
-    }
+/// Returns names and texts of the text files, that of the images last: it makes a folder a model.
+pub(super) fn texts(model: &ColmapModel) -> [(&'static str, String); 3] {
+    [
+        ("cameras.txt", model.cameras_text()),
+        ("points3D.txt", model.points_text()),
+        ("images.txt", model.images_text()),
+    ]
+}
 
+impl ColmapModel {
     fn cameras_text(&self) -> String {
         let mut text = String::from("# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n");
         for camera in &self.cameras {

@@ -1,6 +1,6 @@
 //! The columns that every table has.
 
-use super::Values;
+use super::values::Values;
 
 /// Coordinates of a pose, in the order of covariances.
 pub const COVARIANCE_AXES: [&str; 6] = ["x_m", "y_m", "yaw_rad", "height_m", "pitch_rad", "roll_rad"];

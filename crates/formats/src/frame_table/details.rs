@@ -5,7 +5,10 @@ use std::path::Path;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use reality_sim_core::sequence::one_line;
 
-use super::{Column, FrameTable, Values, table_error};
+use super::{
+    table::{Column, FrameTable},
+    values::Values,
+};
 use crate::{
     file::{MAX_TABLE_BYTES, read_text},
     model_error::{ModelError, ModelFault, excerpt},
@@ -27,7 +30,10 @@ impl FrameTable {
         };
         let header = reader.headers().map_err(syntax)?.clone();
         if !header.iter().any(|name| name == "timestamp_s") {
-            return Err(table_error(path, "has no column `timestamp_s`: give a file of `tag --details`"));
+            return Err(ModelError::of_table(
+                path,
+                "has no column `timestamp_s`: give a file of `tag --details`",
+            ));
         }
         let records: Vec<StringRecord> = reader.records().collect::<Result<_, _>>().map_err(syntax)?;
         let mut table = Self::empty(records.len());

@@ -14,14 +14,14 @@ use parquet::{
 };
 use reality_sim_core::sequence::{one_line, write_atomically};
 
-use super::{FrameTable, Values, table_error};
+use super::{table::FrameTable, values::Values};
 use crate::model_error::ModelError;
 
 impl FrameTable {
     /// Writes the table as a Parquet file with one group of rows. Fails if the file cannot be written.
     pub fn write_parquet(&self, path: &Path) -> Result<(), ModelError> {
         let fail = |error: ParquetError| {
-            table_error(path, format!("cannot be written ({}): report this", one_line(&error)))
+            ModelError::of_table(path, format!("cannot be written ({}): report this", one_line(&error)))
         };
         let bytes = self.parquet().map_err(fail)?;
         Ok(write_atomically(path, &bytes)?)

@@ -33,6 +33,7 @@ use std::{
 
 use reality_sim_core::{
     field::FieldDimensions,
+    pose::CameraPose,
     sequence::{Sequence, check_image, read_camera, read_field, write_atomically},
 };
 
@@ -70,7 +71,7 @@ pub fn read_table_as_sequence(mapping: &Path, out: &Path) -> Result<usize, Model
         name: mapping.name,
         setup,
         field,
-        start: frames.first().and_then(|frame| frame.reference_pose).map(|pose| pose.planar()),
+        start: frames.first().and_then(|frame| frame.reference_pose).map(CameraPose::planar),
         frames,
         poses_between_frames: Vec::new(),
         corrected_by: None,

@@ -56,7 +56,7 @@ impl Row<'_> {
         let (pitch_rad, roll_rad) = (self.number(Target::Pitch)?, self.number(Target::Roll)?);
         let odometry = self.planar([Target::OdometryX, Target::OdometryY, Target::OdometryYaw])?;
         let reference = self.planar([Target::ReferenceX, Target::ReferenceY, Target::ReferenceYaw])?;
-        let or = |target, default| self.has(target).then(|| self.number(target)).unwrap_or(Ok(default));
+        let or = |target, default| if self.has(target) { self.number(target) } else { Ok(default) };
         let reference_pose = match reference {
             Some(planar) => Some(CameraPose::new(
                 planar,

@@ -3,10 +3,10 @@
 use reality_sim_core::camera::{Camera, Distortion, Opencv, OpencvFisheye};
 
 use super::file::Intrinsics;
-use crate::model_error::{ModelFault, excerpt};
-
-/// Half a pixel: what is added to our pixel coordinates to get nerfstudio's.
-const HALF_PIXEL: f64 = 0.5;
+use crate::{
+    model_error::{ModelFault, excerpt},
+    pixels::HALF_PIXEL,
+};
 
 /// Name of the camera model where the file has none, as in nerfstudio's `nerfstudio_dataparser.py`.
 const DEFAULT_MODEL: &str = "PERSPECTIVE";

@@ -1,6 +1,6 @@
 //! Poses as nerfstudio's matrices.
 
-use glam::{DMat3, DMat4, DQuat, DVec3};
+use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use reality_sim_core::pose::CameraPose;
 
 /// Largest deviation of a rotation's columns from unit length and right angles: files may be rounded to four digits.
@@ -32,8 +32,8 @@ pub(super) fn matrix(rows: &[Vec<f64>]) -> Option<DMat4> {
 
 /// Returns the pose of a camera with these OpenGL axes; `None` if the axes are no rotation.
 pub(super) fn pose_of_matrix(world_from_opengl: &DMat4) -> Option<CameraPose> {
-    let [right, up, back] = [world_from_opengl.x_axis, world_from_opengl.y_axis, world_from_opengl.z_axis]
-        .map(|column| column.truncate());
+    let [right, up, back] =
+        [world_from_opengl.x_axis, world_from_opengl.y_axis, world_from_opengl.z_axis].map(DVec4::truncate);
     let rotation = DMat3::from_cols(right, -up, -back);
     let deviation = rotation.transpose() * rotation - DMat3::IDENTITY;
     let is_rotation = deviation.to_cols_array().iter().all(|value| value.abs() < ROTATION_TOLERANCE);

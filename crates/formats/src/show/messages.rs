@@ -16,15 +16,13 @@ use reality_sim_core::{
 };
 
 use super::Shot;
+use crate::pixels::HALF_PIXEL;
 
 /// Frame of the field.
 const WORLD: &str = "world";
 
 /// Frame of the camera.
 const CAMERA: &str = "camera";
-
-/// What is added to our pixels to get the coordinates of annotations.
-const HALF_PIXEL: f64 = 0.5;
 
 /// Thickness of the lines in the picture, pixels.
 const LINE_PX: f64 = 2.0;
