@@ -202,9 +202,6 @@ pub enum ModelFault {
         /// What is wrong and what to do.
         message: String,
     },
-    /// There is nothing to export.
-    #[error("no picture has a pose: find the poses with `tag`, and give them with --poses")]
-    NoPoses,
 }
 
 /// Quotes, escapes and shortens text from a file for a message.

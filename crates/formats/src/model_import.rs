@@ -28,6 +28,9 @@ const BESIDE_CARPET_M: f64 = 5.0;
 /// Roll beyond which a camera is upside down rather than tilted, radians.
 const LARGEST_ROLL_RAD: f64 = std::f64::consts::FRAC_PI_2;
 
+/// Number of different cameras up to which they are counted.
+const MOST_CAMERAS: usize = 100;
+
 /// What a model lacks that a recording has.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelImport {
@@ -87,9 +90,9 @@ impl ForeignModel {
         Self { path: path.to_path_buf(), cameras: Vec::new(), pictures: Vec::new() }
     }
 
-    /// Notes the camera of a picture.
-    pub fn set_camera(&mut self, camera: Camera) {
-        if !self.cameras.contains(&camera) {
+    /// Notes a camera of pictures. More than one are refused later: then it does not matter how many more there are.
+    pub fn add_camera(&mut self, camera: Camera) {
+        if self.cameras.len() < MOST_CAMERAS && !self.cameras.contains(&camera) {
             self.cameras.push(camera);
         }
     }

@@ -8,10 +8,12 @@ use std::{fs, path::Path};
 
 use common::{Grey, a_pose, cameras, field, posed};
 use proptest::prelude::*;
+use reality_sim_core::sequence::CameraSetup;
 use reality_sim_formats::{
     ModelImport,
     colmap::{Encodings, read_colmap, read_colmap_as_sequence, write_colmap},
     frame_table::FrameTable,
+    mapped_table::read_table_as_sequence,
     nerfstudio::{read_nerfstudio_as_sequence, write_nerfstudio},
 };
 
@@ -125,6 +127,41 @@ proptest! {
         if let Ok(text) = String::from_utf8(bytes) {
             let _ = FrameTable::parse_details(Path::new("frames.csv"), &text);
         }
+    }
+}
+
+const MAPPING: &[u8] =
+    b"name = 'walk'\ntable = 'log.csv'\ncamera = 'camera.toml'\nfield = 'spl'\n[columns]\n\
+timestamp_s = { column = 't', unit = 'ms' }\nimage = 'file'\npitch_rad = 'p'\nroll_rad = { value = 0 }\n";
+
+const TABLE: &[u8] = b"t,file,p\n100,000000.png,0.3\n200,000001.png,0.4\n";
+
+proptest! {
+    #[test]
+    fn damaged_mappings_and_their_tables_are_read_or_refused(
+        of_table in any::<bool>(),
+        damages in prop::collection::vec(damage(), 1..5),
+    ) {
+        MODEL.with(|whole| {
+            let folder = tempfile::tempdir().unwrap();
+            let (mut mapping, mut table) = (MAPPING.to_vec(), TABLE.to_vec());
+            let damaged = if of_table { &mut table } else { &mut mapping };
+            damages.iter().for_each(|damage| damage.apply(damaged));
+            let setup = CameraSetup { camera: cameras()[3].clone(), mount_height_m: 0.5, photometry: None };
+            let camera = setup.to_toml(Path::new("camera.toml")).unwrap();
+            for (name, bytes) in [
+                ("mapping.toml", mapping.as_slice()),
+                ("log.csv", &table),
+                ("camera.toml", camera.as_bytes()),
+                ("000000.png", &fs::read(whole.path().join("images/000000.png")).unwrap()),
+            ] {
+                fs::write(folder.path().join(name), bytes).unwrap();
+            }
+            let result = read_table_as_sequence(&folder.path().join("mapping.toml"), &folder.path().join("out"));
+            if let Err(error) = result {
+                assert!(!error.to_string().contains('\n'), "{error}");
+            }
+        });
     }
 }
 

@@ -1,7 +1,7 @@
 //! A COLMAP model as a recording.
 
 use std::{
-    collections::HashMap,
+    collections::{HashMap, HashSet},
     path::{Path, PathBuf},
 };
 
@@ -62,14 +62,17 @@ fn foreign_model(input: &Path, options: &ModelImport) -> Result<ForeignModel, Mo
     let fail = |fault| ModelError::of_file(input, fault);
     let pictures_in = options.images.clone().unwrap_or_else(|| images_folder(input));
     let times = timestamps(input)?;
+    let numbers: HashMap<u32, &ColmapCamera> = cameras.iter().map(|camera| (camera.id, camera)).collect();
+    let mut seen = HashSet::new();
     let mut model = ForeignModel::new(input);
     for image in &images {
         let id = image.camera_id;
-        let camera = cameras
-            .iter()
-            .find(|camera| camera.id == id)
-            .ok_or_else(|| fail(ModelFault::NoSuchCamera { picture: excerpt(&image.name), id }))?;
-        model.set_camera(camera.camera().map_err(fail)?);
+        if seen.insert(id) {
+            let camera = numbers
+                .get(&id)
+                .ok_or_else(|| fail(ModelFault::NoSuchCamera { picture: excerpt(&image.name), id }))?;
+            model.add_camera(camera.camera().map_err(fail)?);
+        }
         if !is_inside_folder(Path::new(&image.name)) {
             return Err(fail(ModelFault::PathLeavesFolder { name: excerpt(&image.name) }));
         }

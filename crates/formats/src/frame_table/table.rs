@@ -71,8 +71,12 @@ impl FrameTable {
     /// Fills rows with what is known of the pictures of their times, and leaves out pictures that have no row.
     pub fn add_facts(&mut self, times_s: &[f64], facts: &[PictureFacts]) {
         let Some(Values::Numbers(rows)) = self.column("timestamp_s") else { return };
-        let is_same = |a: f64, b: f64| (a - b).abs() <= TOLERANCE_S;
-        let picture_at = |row_s: f64| times_s.iter().position(|time_s| is_same(*time_s, row_s));
+        let mut order: Vec<usize> = (0..times_s.len()).collect();
+        order.sort_by(|a, b| times_s[*a].total_cmp(&times_s[*b]));
+        let picture_at = |row_s: f64| {
+            let first = order.partition_point(|picture| times_s[*picture] < row_s - TOLERANCE_S);
+            order.get(first).copied().filter(|picture| times_s[*picture] <= row_s + TOLERANCE_S)
+        };
         let of_row: Vec<Option<usize>> = rows.iter().map(|row_s| picture_at((*row_s)?)).collect();
         for (row, picture) in of_row.into_iter().enumerate() {
             if let Some(facts) = picture.and_then(|picture| facts.get(picture)) {

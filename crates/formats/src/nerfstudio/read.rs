@@ -41,7 +41,7 @@ fn foreign_model(path: &Path, text: &str, options: &ModelImport) -> Result<Forei
     let mut model = ForeignModel::new(path);
     for frame in &transforms.frames {
         let name = frame.camera_model.as_deref().or(transforms.camera_model.as_deref());
-        model.set_camera(frame.intrinsics.or(&transforms.intrinsics).camera(name).map_err(fail)?);
+        model.add_camera(frame.intrinsics.or(&transforms.intrinsics).camera(name).map_err(fail)?);
         model.pictures.push(ForeignPicture {
             file: picture_file(frame, &folder, options).map_err(fail)?,
             name: frame.file_path.clone(),
