@@ -164,3 +164,51 @@ fn tag_says_where_it_shows_its_work() {
     let address = taken.local_addr().unwrap().to_string();
     assert_fails(&["tag", shown(&walk), "--serve", &address], &[&address, "another address or port"]);
 }
+
+#[cfg(unix)]
+#[test]
+fn a_log_replaces_no_device_and_follows_links() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    let folder = tempfile::tempdir().unwrap();
+    let walk = part_of_walk(folder.path(), "walk", 0..1);
+    let (device, link) = (folder.path().join("device.mcap"), folder.path().join("link.mcap"));
+    symlink("/dev/null", &device).unwrap();
+    assert_fails(
+        &["export", shown(&walk), "--format", "mcap", "--out", shown(&device)],
+        &["not a regular file"],
+    );
+    assert!(fs::metadata(&device).unwrap().file_type().is_char_device());
+    fs::write(folder.path().join("file.mcap"), "old").unwrap();
+    symlink("file.mcap", &link).unwrap();
+    report(&["export", shown(&walk), "--format", "mcap", "--out", shown(&link)]);
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert!(starts_with(&folder.path().join("file.mcap"), b"\x89MCAP0\r\n"));
+}
+
+#[cfg(all(unix, feature = "live"))]
+#[test]
+fn an_interrupted_log_leaves_nothing_behind() {
+    use std::{
+        io::{BufRead, BufReader},
+        process::{Command, Stdio},
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let walk = part_of_walk(folder.path(), "walk", 0..1);
+    let out = folder.path().join("out");
+    fs::create_dir(&out).unwrap();
+    // It waits for a client that does not come.
+    let mut waiting = Command::new(env!("CARGO_BIN_EXE_reality-sim"))
+        .args(["tag", shown(&walk), "--serve", "127.0.0.1:0", "--serve-wait", "--out"])
+        .arg(out.join("walk.mcap"))
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(waiting.stderr.take().unwrap()).lines();
+    assert!(lines.next().unwrap().unwrap().starts_with("open ws://"));
+    assert_eq!(fs::read_dir(&out).unwrap().count(), 1, "the log has been begun");
+    let pid = waiting.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
+    assert_eq!(waiting.wait().unwrap().code(), Some(130));
+    assert_eq!(lines.next().unwrap().unwrap(), "error: interrupted");
+    assert_eq!(fs::read_dir(&out).unwrap().count(), 0);
+}

@@ -4,7 +4,7 @@ use std::{
     fs,
     io::{self, BufWriter, Write},
     path::{Path, PathBuf},
-    sync::Arc,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
 use foxglove::{Context, FoxgloveError, McapCompression, McapWriteOptions, McapWriter, McapWriterHandle};
@@ -12,6 +12,23 @@ use tempfile::NamedTempFile;
 
 use super::{Shot, channels::Channels};
 use crate::model_error::{ModelError, ModelFault};
+
+/// Temporary files of logs that are not complete.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Removes the temporary files of all logs that are not complete. For a program that ends at once, as when it is interrupted: no
+/// log can be finished afterwards.
+pub fn remove_unfinished_logs() {
+    for path in unfinished().drain(..) {
+        // What cannot be removed stays; the program ends.
+        let _ = fs::remove_file(path);
+    }
+}
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    // A list of names cannot be left in disorder by a panic.
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// MCAP file that is being written. It gets its name when it is complete, by [`LogFile::finish`]; dropped before, it leaves
 /// nothing behind.
@@ -25,14 +42,21 @@ pub struct LogFile {
 }
 
 impl LogFile {
-    /// Begins a file, under a temporary name in its folder. Fails if it cannot be written there.
+    /// Begins a file, under a temporary name in its folder; a symbolic link is followed. Fails if it cannot be written there, or if a
+    /// device, a pipe or a folder has its name: a log is written with jumps back, which only a file allows.
     pub fn create(path: &Path) -> Result<Self, ModelError> {
         let unwritable = |error| ModelError::of_file(path, ModelFault::Unwritable(error));
+        let target = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        if target.exists() && !target.is_file() {
+            return Err(unwritable(io::Error::other("it is not a regular file")));
+        }
+        let path = target.as_path();
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let file = tempfile::Builder::new()
             .prefix(".unfinished-")
             .tempfile_in(folder.unwrap_or(Path::new(".")))
             .map_err(unwritable)?;
+        unfinished().push(file.path().to_path_buf());
         let context = Context::new();
         let options = McapWriteOptions::new().compression(Some(McapCompression::Lz4));
         let writer = McapWriter::with_options(options).context(&context).create(BufWriter::new(file));
@@ -63,6 +87,10 @@ impl LogFile {
             use std::os::unix::fs::PermissionsExt;
             fs::set_permissions(file.path(), fs::Permissions::from_mode(0o644))?;
         }
+        let name = file.path().to_path_buf();
+        // Held: an interruption removes the file, or finds it complete.
+        let mut unfinished = unfinished();
+        unfinished.retain(|path| *path != name);
         file.persist(&self.path)?;
         Ok(())
     }

@@ -21,7 +21,7 @@ use reality_sim_core::{camera::Camera, field::FieldDimensions, pose::CameraPose}
 
 #[cfg(feature = "live")]
 pub use self::live::LiveView;
-pub use self::log_file::LogFile;
+pub use self::log_file::{LogFile, remove_unfinished_logs};
 
 /// Picture with everything that is shown of it.
 #[derive(Debug, Clone, Copy)]
