@@ -23,7 +23,7 @@ use reality_sim::{
 pub use self::options::TagArgs;
 use self::{
     report::{PoseResult, Report, details_csv},
-    watch::{Watchers, is_log, write_details, write_log},
+    watch::{Watchers, is_log, rows, write_details, write_log},
 };
 use super::{
     model_file::Use,
@@ -59,7 +59,7 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     let results = if args.smooth { smoothed(&sequence, &localizer, &frames)? } else { filtered(&frames) };
     let poses: Vec<CameraPose> = results.iter().map(|result| result.pose).collect();
     if let Some(details) = &args.details {
-        write_details(details, &details_csv(&sequence, &frames, &results), &sequence)?;
+        write_details(details, &details_csv(&sequence, &frames, &results), &sequence, &results)?;
     }
     watchers.finish()?;
     if let Some(log) = args.out.as_ref().filter(|out| args.smooth && is_log(out)) {
@@ -118,7 +118,13 @@ fn localize(
 fn filtered(frames: &[LocalizedFrame]) -> Vec<PoseResult> {
     let sigmas =
         |frame: &LocalizedFrame| frame.fit.map(|fit| fit.covariance.diagonal().map(f64::sqrt).into());
-    frames.iter().map(|frame| PoseResult { pose: frame.pose, sigmas: sigmas(frame) }).collect()
+    let covariance = |frame: &LocalizedFrame| frame.fit.map(|fit| rows(&fit.covariance));
+    let result = |frame: &LocalizedFrame| PoseResult {
+        pose: frame.pose,
+        sigmas: sigmas(frame),
+        covariance: covariance(frame),
+    };
+    frames.iter().map(result).collect()
 }
 
 /// Returns the most probable poses of the whole recording.
@@ -137,6 +143,7 @@ fn smoothed(
     let result = |pose: &SmoothedPose| PoseResult {
         pose: pose.pose,
         sigmas: Some(pose.covariance.diagonal().map(f64::sqrt).into()),
+        covariance: Some(rows(&pose.covariance)),
     };
     Ok(smoothed.iter().map(result).collect())
 }

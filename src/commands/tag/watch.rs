@@ -1,10 +1,12 @@
 //! Who watches while pictures are localized: an MCAP file, Foxglove's websocket. Also details as Parquet.
 
-use std::{fs, path::Path};
+use std::{array, fs, path::Path};
 
 use anyhow::Context;
 
-use reality_sim::{CameraPose, LocalizedFrame, Localizer, Sequence, sequence::write_atomically};
+use reality_sim::{
+    CameraPose, LocalizedFrame, Localizer, Sequence, nalgebra::Matrix6, sequence::write_atomically,
+};
 #[cfg(feature = "live")]
 use reality_sim_formats::show::LiveView;
 use reality_sim_formats::{
@@ -12,7 +14,7 @@ use reality_sim_formats::{
     show::{LogFile, Shot},
 };
 
-use super::options::TagArgs;
+use super::{options::TagArgs, report::PoseResult};
 
 /// Watchers of one run.
 pub struct Watchers {
@@ -105,19 +107,30 @@ pub fn write_log(path: &Path, sequence: &Sequence, poses: &[CameraPose]) -> anyh
 }
 
 /// Writes the table of details, as Parquet if the file's ending says so.
-pub fn write_details(path: &Path, csv: &str, sequence: &Sequence) -> anyhow::Result<()> {
+pub fn write_details(
+    path: &Path,
+    csv: &str,
+    sequence: &Sequence,
+    results: &[PoseResult],
+) -> anyhow::Result<()> {
     if !has_ending(path, "parquet") {
         return Ok(write_atomically(path, csv.as_bytes())?);
     }
     let mut table = FrameTable::parse_details(path, csv)?;
-    let facts = sequence.frames.iter().map(|frame| PictureFacts {
+    let facts = sequence.frames.iter().zip(results).map(|(frame, result)| PictureFacts {
         sequence: sequence.name.clone(),
         image: frame.image.clone(),
-        ..PictureFacts::default()
+        covariance: result.covariance,
+        quality: None,
     });
     let times_s: Vec<f64> = sequence.frames.iter().map(|frame| frame.timestamp_s).collect();
     table.add_facts(&times_s, &facts.collect::<Vec<_>>());
     Ok(table.write_parquet(path)?)
+}
+
+/// Returns the rows of a covariance.
+pub fn rows(covariance: &Matrix6<f64>) -> [[f64; 6]; 6] {
+    array::from_fn(|row| array::from_fn(|column| covariance[(row, column)]))
 }
 
 fn read_picture(sequence: &Sequence, index: usize) -> anyhow::Result<Vec<u8>> {
