@@ -8,6 +8,7 @@ use clap::{Arg, ArgMatches, CommandFactory, FromArgMatches, Parser, error::Error
 
 use commands::{Command, advice, be_quiet};
 use reality_sim::sequence::{hold_writing, one_line};
+use reality_sim_formats::show::remove_unfinished_logs;
 
 /// Exit status of an interrupted program: 128 and the number of the signal, as shells have it.
 const INTERRUPTED: i32 = 130;
@@ -69,6 +70,7 @@ fn usage_error(matches: &ArgMatches, message: String) -> clap::Error {
 fn finish_files_when_interrupted() {
     let end = || {
         let _no_more_files = hold_writing();
+        remove_unfinished_logs();
         eprintln!("error: interrupted");
         std::process::exit(INTERRUPTED);
     };

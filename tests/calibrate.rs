@@ -67,7 +67,10 @@ fn lens_error_px(found: &Camera) -> f64 {
     let mut worst = 0.0_f64;
     for column in 0..16 {
         for row in 4..16 {
-            let pixel = DVec2::new(width * (0.125 + 0.05 * f64::from(column)), height * (f64::from(row) + 0.5) / 16.0);
+            let pixel = DVec2::new(
+                width * (0.125 + 0.05 * f64::from(column)),
+                height * (f64::from(row) + 0.5) / 16.0,
+            );
             let ray = truth.unproject(pixel).unwrap();
             worst = worst.max(found.project_unbounded(ray).unwrap().distance(pixel));
         }
@@ -85,7 +88,9 @@ fn check(report: &Value, sequence: &Path, camera: &Path) {
     let error_px = lens_error_px(&found.camera);
     assert!(error_px < 0.5, "{error_px} px");
     assert!((value(report, "height_m") - 0.52).abs() < 0.003, "{report}");
-    assert!(report["reprojection_px"].as_f64().unwrap() < 0.3 && report["held_out_px"].as_f64().unwrap() < 0.5);
+    assert!(
+        report["reprojection_px"].as_f64().unwrap() < 0.3 && report["held_out_px"].as_f64().unwrap() < 0.5
+    );
     assert!(report["undetermined"].as_array().unwrap().iter().any(|name| name == "field_scale"));
 
     let poses = camera.with_extension("tum");
@@ -143,7 +148,10 @@ fn what_cannot_be_calibrated_is_said_in_one_message() {
     let folder = TempDir::new().unwrap();
     let sequence = walk(&folder.path().join("walk"), true);
     let out = folder.path().join("new.toml");
-    assert_fails(&["calibrate", shown(&folder.path().join("none")), "--out", shown(&out)], &["no such folder"]);
+    assert_fails(
+        &["calibrate", shown(&folder.path().join("none")), "--out", shown(&out)],
+        &["no such folder"],
+    );
     // Its own picture is no place for a camera file.
     let picture = sequence.join("images/000000.jpg");
     assert_fails(&["calibrate", shown(&sequence), "--out", shown(&picture)], &["000000.jpg", "input"]);

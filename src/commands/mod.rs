@@ -8,6 +8,7 @@ mod device;
 #[cfg(feature = "gpu")]
 mod doctor;
 mod evaluate;
+mod export;
 mod filter;
 mod frame_range;
 mod gap;
@@ -45,6 +46,8 @@ pub enum Command {
     Info(info::InfoArgs),
     /// Remove a sequence's pictures, or some of them, from a database
     Remove(remove::RemoveArgs),
+    /// Write poses and pictures in the formats of other programs
+    Export(export::ExportArgs),
     /// Find the effect that a camera model lacks, add it, and measure what that brings
     Gap(Box<gap::GapArgs>),
     /// List the graphics adapters, and check that they compute what the CPU computes
@@ -67,6 +70,7 @@ impl Command {
             Self::Build(args) => args.check_usage(),
             Self::Render(args) => args.check_usage(),
             Self::Evaluate(args) => args.check_usage(),
+            Self::Export(args) => args.check_usage(),
             Self::Calibrate(_) | Self::Info(_) | Self::Remove(_) | Self::Completions(_) | Self::Man(_) => {
                 Ok(())
             }
@@ -86,6 +90,7 @@ impl Command {
             Self::Build(args) => build::run(args),
             Self::Render(args) => render::run(args),
             Self::Evaluate(args) => evaluate::run(args),
+            Self::Export(args) => export::run(args),
             Self::Info(args) => info::run(args),
             Self::Remove(args) => remove::run(args),
             Self::Gap(args) => gap::run(args),

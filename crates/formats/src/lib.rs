@@ -1,2 +1,30 @@
 //! Logs and models of others in and out: a robot's log becomes a recording, tags and databases become models that other
 //! programs read.
+//!
+//! | what | where |
+//! |---|---|
+//! | pictures with poses, on their way out | [`posed::PosedPictures`], [`undistort::Undistortion`] |
+//! | COLMAP's models, written and read | [`colmap`] |
+//! | nerfstudio's `transforms.json`, written and read | [`nerfstudio`] |
+//! | pictures and a table with any columns, read by a mapping | [`mapped_table`] |
+//! | what Foxglove shows, in an MCAP file or live | [`show`] |
+//! | one row a picture, as Parquet | [`frame_table::FrameTable`] |
+
+pub mod colmap;
+mod file;
+pub mod frame_table;
+pub mod line_points;
+pub mod mapped_table;
+pub mod model_error;
+pub mod model_import;
+pub mod nerfstudio;
+mod pixels;
+pub mod posed;
+pub mod show;
+pub mod undistort;
+
+pub use self::{
+    model_error::{ModelError, ModelFault},
+    model_import::{ModelImport, ModelImportReport},
+    posed::{PictureFiles, PosedPicture, PosedPictures},
+};

@@ -3,6 +3,7 @@
 mod lines;
 mod options;
 mod report;
+mod watch;
 
 use std::path::PathBuf;
 
@@ -16,8 +17,9 @@ use reality_sim::{
     evaluation::PoseError,
     localization::Picture,
     overlay::{BorderOutline, Overlay},
+    quality::LineAgreement,
     refine::SmoothedPose,
-    sequence::{counted, save_image, write_atomically},
+    sequence::{counted, save_image},
     write_tum,
 };
 
@@ -25,6 +27,7 @@ pub use self::options::TagArgs;
 use self::{
     lines::LinesOfPictures,
     report::{PoseResult, Report, details_csv},
+    watch::{Watchers, is_log, rows, write_details, write_log},
 };
 use super::{
     model_file::Use,
@@ -49,10 +52,12 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
         .backend(device.backend.clone());
     let mut localizer = builder.build()?;
     let wanted = sequence.frames.len();
+    let mut watchers = Watchers::start(args)?;
     let progress = frame_progress(wanted)?;
     let (mut frames, mut lines) = (Vec::with_capacity(wanted), LinesOfPictures::new(&sequence, args.smooth));
+    let outputs = (&progress, overlays.as_ref(), &mut watchers);
     let found = (&mut frames, &mut lines);
-    let localized = localize(args, &sequence, &mut localizer, (&progress, overlays.as_ref()), found);
+    let localized = localize(args, &sequence, &mut localizer, outputs, found);
     progress.finish_and_clear();
     // What was found before a picture failed is written all the same.
     sequence.frames.truncate(frames.len());
@@ -64,16 +69,8 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     let results = if args.smooth { smoothed(&sequence, &localizer, &frames)? } else { filtered(&frames) };
     let poses: Vec<CameraPose> = results.iter().map(|result| result.pose).collect();
     let lines = lines.agreement(&poses);
-    if let Some(details) = &args.details {
-        write_atomically(details, details_csv(&sequence, &frames, &results, &lines).as_bytes())?;
-    }
-    if let Some(out) = &args.out {
-        let stamped = sequence.frames.iter().zip(&poses);
-        let stamped: Vec<StampedPose> = stamped
-            .map(|(frame, pose)| StampedPose { timestamp_s: frame.timestamp_s, pose: *pose })
-            .collect();
-        write_tum(out, &stamped)?;
-    }
+    watchers.finish()?;
+    write(args, &sequence, (&frames, &lines), &results)?;
     localized.with_context(|| match args.out.as_ref().or(args.details.as_ref()) {
         Some(file) => {
             format!("{}: holds the first {} of {}", file.display(), frames.len(), counted(wanted, "frame"))
@@ -87,12 +84,39 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     if args.json { print_json(&report) } else { print(&report.text(&sequence.name)) }
 }
 
+/// Writes the files that were asked for.
+fn write(
+    args: &TagArgs,
+    sequence: &Sequence,
+    (frames, lines): (&[LocalizedFrame], &[LineAgreement]),
+    results: &[PoseResult],
+) -> anyhow::Result<()> {
+    let poses: Vec<CameraPose> = results.iter().map(|result| result.pose).collect();
+    if let Some(details) = &args.details {
+        write_details(details, &details_csv(sequence, frames, results, lines), sequence, results)?;
+    }
+    match &args.out {
+        Some(log) if is_log(log) && args.smooth => write_log(log, sequence, &poses)?,
+        // The frames are in the log already.
+        Some(log) if is_log(log) => {}
+        Some(out) => {
+            let stamped = sequence.frames.iter().zip(&poses);
+            let stamped: Vec<StampedPose> = stamped
+                .map(|(frame, pose)| StampedPose { timestamp_s: frame.timestamp_s, pose: *pose })
+                .collect();
+            write_tum(out, &stamped)?;
+        }
+        None => {}
+    }
+    Ok(())
+}
+
 /// Localizes every picture, and draws it if that is requested. After an error `frames` holds those before it.
 fn localize(
     args: &TagArgs,
     sequence: &Sequence,
     localizer: &mut Localizer,
-    (progress, overlays): (&ProgressBar, Option<&OutputFolder>),
+    (progress, overlays, watchers): (&ProgressBar, Option<&OutputFolder>, &mut Watchers),
     (frames, lines): (&mut Vec<LocalizedFrame>, &mut LinesOfPictures),
 ) -> anyhow::Result<()> {
     let first = args.frames.map_or(0, |range| range.first);
@@ -112,6 +136,7 @@ fn localize(
             save_image(&file, &draw(sequence, observation, &frame, truth, run.localizer(), &path)?)?;
         }
         lines.add(run.localizer(), frame.pose);
+        watchers.show(sequence, index, &frame, run.localizer())?;
         frames.push(frame);
     }
     Ok(())
@@ -130,7 +155,13 @@ fn assessed(
 fn filtered(frames: &[LocalizedFrame]) -> Vec<PoseResult> {
     let sigmas =
         |frame: &LocalizedFrame| frame.fit.map(|fit| fit.covariance.diagonal().map(f64::sqrt).into());
-    frames.iter().map(|frame| PoseResult { pose: frame.pose, sigmas: sigmas(frame) }).collect()
+    let covariance = |frame: &LocalizedFrame| frame.fit.map(|fit| rows(&fit.covariance));
+    let result = |frame: &LocalizedFrame| PoseResult {
+        pose: frame.pose,
+        sigmas: sigmas(frame),
+        covariance: covariance(frame),
+    };
+    frames.iter().map(result).collect()
 }
 
 /// Returns the most probable poses of the whole recording.
@@ -149,6 +180,7 @@ fn smoothed(
     let result = |pose: &SmoothedPose| PoseResult {
         pose: pose.pose,
         sigmas: Some(pose.covariance.diagonal().map(f64::sqrt).into()),
+        covariance: Some(rows(&pose.covariance)),
     };
     Ok(smoothed.iter().map(result).collect())
 }

@@ -1,5 +1,7 @@
 //! Options of `tag`, and their interpretation.
 
+#[cfg(feature = "live")]
+use std::net::SocketAddr;
 use std::{
     ops::Range,
     path::{Path, PathBuf},
@@ -87,15 +89,23 @@ pub struct TagArgs {
     camera: Option<PathBuf>,
     #[command(flatten)]
     pub model: ModelArgs,
-    /// Write the poses to this file, in the TUM format
+    /// Write the poses to this file, in the TUM format; with the ending .mcap, everything that Foxglove shows
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-    /// Write each picture's pose, standard deviations and filter state to this CSV file
+    /// Write each picture's pose, standard deviations and filter state to this CSV file, or Parquet file by its ending
     #[arg(long, value_name = "FILE")]
     pub details: Option<PathBuf>,
     /// Write each picture, with lines, border, particles and a map drawn into it, to this folder
     #[arg(long, value_name = "FOLDER")]
     pub overlay: Option<PathBuf>,
+    /// Show the work in Foxglove while it is done, no faster than it was recorded: listen for its websocket at this address
+    #[cfg(feature = "live")]
+    #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1, default_missing_value = "127.0.0.1:8765")]
+    pub serve: Option<SocketAddr>,
+    /// Wait for somebody to connect before the first picture
+    #[cfg(feature = "live")]
+    #[arg(long, requires = "serve")]
+    pub serve_wait: bool,
     /// Process only frames A to B − 1, counted from 0; the start pose is then dead-reckoned by odometry
     #[arg(long, value_name = "A..B", value_parser = FrameRange::parse)]
     pub frames: Option<FrameRange>,

@@ -24,6 +24,8 @@ pub struct PoseResult {
     pub pose: CameraPose,
     /// Standard deviations of x, y, yaw, height, pitch and roll, metres and radians.
     pub sigmas: Option<[f64; 6]>,
+    /// Covariance of the same, row by row.
+    pub covariance: Option<[[f64; 6]; 6]>,
 }
 
 /// Formats one line per picture; unknown values are left empty.
