@@ -1,2 +1,5 @@
 //! Logs and models of others in and out: a robot's log becomes a recording, tags and databases become models that other
 //! programs read.
+
+pub mod log;
+mod schema;
