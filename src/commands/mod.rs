@@ -10,7 +10,9 @@ mod evaluate;
 mod filter;
 mod frame_range;
 mod gap;
+mod import;
 mod info;
+mod input;
 mod model_file;
 mod output;
 mod output_folder;
@@ -33,6 +35,8 @@ pub enum Command {
     Tag(Box<tag::TagArgs>),
     /// Store recordings with their poses in a database
     Build(build::BuildArgs),
+    /// Make a sequence of a robot's log, or of another program's model
+    Import(Box<import::ImportArgs>),
     /// Make the picture at a pose, or the pictures along a path, from a database
     Render(Box<render::RenderArgs>),
     /// Compare reconstructed pictures with true ones that are not in the database
@@ -63,7 +67,7 @@ impl Command {
             Self::Build(args) => args.check_usage(),
             Self::Render(args) => args.check_usage(),
             Self::Evaluate(args) => args.check_usage(),
-            Self::Info(_) | Self::Remove(_) | Self::Completions(_) | Self::Man(_) => Ok(()),
+            Self::Import(_) | Self::Info(_) | Self::Remove(_) | Self::Completions(_) | Self::Man(_) => Ok(()),
             Self::Gap(args) => args.check_usage(),
             #[cfg(feature = "gpu")]
             Self::Doctor(_) => Ok(()),
@@ -77,6 +81,7 @@ impl Command {
         match self {
             Self::Tag(args) => tag::run(args),
             Self::Build(args) => build::run(args),
+            Self::Import(args) => import::run(args),
             Self::Render(args) => render::run(args),
             Self::Evaluate(args) => evaluate::run(args),
             Self::Info(args) => info::run(args),
