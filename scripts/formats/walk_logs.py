@@ -17,6 +17,7 @@ TOPICS = {
     "/camera/camera_info": "sensor_msgs/msg/CameraInfo",
     "/odom": "nav_msgs/msg/Odometry",
     "/imu/data": "sensor_msgs/msg/Imu",
+    "/tf": "tf2_msgs/msg/TFMessage",
     "/mocap/pose": "geometry_msgs/msg/PoseStamped",
 }
 
@@ -53,9 +54,11 @@ def rotation(x, y, z, w):
 
 
 class Walk:
-    """Sequence as messages: (time in ns, topic, fields)."""
+    """Sequence as messages: (time in ns, topic, fields). Pitch and roll are told by an IMU on the camera, or with `by_tf` by a tf
+    tree from the robot's base to the camera's optical frame, which tells its height, too."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, by_tf=False):
+        self.by_tf = by_tf
         self.folder = pathlib.Path(folder)
         self.camera = tomllib.loads((self.folder / "camera.toml").read_text())
         with open(self.folder / "frames.csv", newline="") as file:
@@ -63,13 +66,23 @@ class Walk:
         self.poses = [line.split() for line in (self.folder / "groundtruth.tum").read_text().splitlines()]
         self.poses = [[float(field) for field in pose] for pose in self.poses if pose and pose[0][0] != "#"]
 
+    def topics(self):
+        unused = "/imu/data" if self.by_tf else "/tf"
+        return {topic: kind for topic, kind in TOPICS.items() if topic != unused}
+
     def messages(self):
+        if self.by_tf:
+            # The optical frame: x right, y down, z forward.
+            yield 0, "/tf", {"transforms": [self.link((0, 1), "head", "camera", xyz(0.0, 0.0, 0.0), (-0.5, 0.5, -0.5, 0.5))]}
         for frame in self.frames:
             stamp = stamp_of(frame["timestamp_s"])
             time = stamp[0] * 10**9 + stamp[1]
             yield time, "/camera/camera_info", self.calibration(stamp)
             yield time, "/odom", self.odometry(stamp, frame)
-            yield time, "/imu/data", self.imu(stamp, frame)
+            if self.by_tf:
+                yield time, "/tf", self.transform(stamp, frame)
+            else:
+                yield time, "/imu/data", self.imu(stamp, frame)
             picture = (self.folder / frame["image"]).read_bytes()
             yield time, "/camera/image_raw/compressed", {
                 "header": header(stamp, "camera"), "format": "jpeg", "data": numpy.frombuffer(picture, numpy.uint8)}
@@ -101,6 +114,17 @@ class Walk:
             "twist": {"twist": still, "covariance": numpy.zeros(36)}}
 
     @staticmethod
+    def link(stamp, parent, child, place, turn):
+        return {
+            "header": header(stamp, parent), "child_frame_id": child,
+            "transform": {"translation": place, "rotation": rotation(*turn)}}
+
+    def transform(self, stamp, frame):
+        turn = quaternion(float(frame["roll_rad"]), float(frame["pitch_rad"]), 0.0)
+        place = xyz(0.0, 0.0, float(self.camera["mount"]["height_m"]))
+        return {"transforms": [self.link(stamp, "base_link", "head", place, turn)]}
+
+    @staticmethod
     def imu(stamp, frame):
         roll, pitch = float(frame["roll_rad"]), float(frame["pitch_rad"])
         return {
@@ -114,6 +138,8 @@ def plain(value):
     """Fields as mcap-ros2-support takes them."""
     if isinstance(value, dict):
         return {key: plain(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [plain(inner) for inner in value]
     if isinstance(value, numpy.ndarray):
         return value.tobytes() if value.dtype == numpy.uint8 else value.tolist()
     return value
@@ -123,7 +149,7 @@ def write_mcap(walk, path, compression):
     with open(path, "wb") as file:
         writer = Writer(file, compression=compression)
         schemas = {}
-        for topic, kind in TOPICS.items():
+        for topic, kind in walk.topics().items():
             text, _ = STORE.generate_msgdef(kind, ros_version=2)
             schemas[topic] = writer.register_msgdef(kind, text)
         for time, topic, fields in walk.messages():
@@ -136,13 +162,18 @@ def typed(kind, value):
     _, members = STORE.fielddefs[kind]
     values = {}
     for name, (node, description) in members:
-        values[name] = typed(description, value[name]) if node == 2 else value[name]
+        if node == 2:
+            values[name] = typed(description, value[name])
+        elif node == 4 and description[0][0] == 2:
+            values[name] = [typed(description[0][1], inner) for inner in value[name]]
+        else:
+            values[name] = value[name]
     return STORE.types[kind](**values)
 
 
 def write_bag(walk, path, plugin=StoragePlugin.SQLITE3, version=8):
     with BagWriter(path, version=version, storage_plugin=plugin) as bag:
-        connections = {topic: bag.add_connection(topic, kind, typestore=STORE) for topic, kind in TOPICS.items()}
+        connections = {topic: bag.add_connection(topic, kind, typestore=STORE) for topic, kind in walk.topics().items()}
         for time, topic, fields in walk.messages():
             message = typed(TOPICS[topic], fields)
             bag.write(connections[topic], time, STORE.serialize_cdr(message, TOPICS[topic]))

@@ -1,6 +1,6 @@
 //! Sequence from what was gathered of a log.
 
-use std::collections::HashSet;
+use std::{collections::HashSet, f64::consts::TAU};
 
 use reality_sim_core::{
     pose::CameraPose,
@@ -23,6 +23,10 @@ use crate::message::{CalibrationFault, ConvertedCamera, seconds};
 
 /// Least height of a camera that is one, metres: below it, tf begins at the camera or close to it.
 const LEAST_HEIGHT_M: f64 = 0.02;
+
+/// Steps in which numbers are written, metres and radians. A robot's numbers have fewer digits; what conversions between rotations
+/// leave behind the twelfth would make two imports of one recording differ.
+const STEPS_PER_UNIT: f64 = 1e12;
 
 /// Sequence and report.
 pub struct Assembled {
@@ -51,7 +55,7 @@ pub fn assemble(
         None => Reference::of_topic(gathered, &mount, by_frames),
     };
     let (height_m, height_source) = height(options, by_frames, &reference).ok_or(Lack::NoHeight)?;
-    setup.mount_height_m = height_m;
+    setup.mount_height_m = rounded(height_m);
     let frames = Matcher { gathered, options, mount: &mount, odometry: &odometry, reference: &reference }.frames(&shots)?;
 
     notes.extend(mount_notes(gathered, &mount));
@@ -209,7 +213,7 @@ impl Matcher<'_> {
             let what = missing.into_iter().min().unwrap_or("a match");
             return Err(Lack::NothingMatched { frames: shots.len(), what, tolerance_s: self.options.tolerance_s });
         }
-        Ok(frames)
+        Ok(with_turns_counted(frames))
     }
 
     fn frame(&self, shot: &Shot) -> Result<FrameRecord, &'static str> {
@@ -226,9 +230,27 @@ impl Matcher<'_> {
             timestamp_s: seconds(time_ns),
             image: self.gathered.file_of(shot).to_path_buf(),
             odometry,
-            pitch_rad: level.pitch_rad,
-            roll_rad: level.roll_rad,
+            pitch_rad: rounded(level.pitch_rad),
+            roll_rad: rounded(level.roll_rad),
             reference_pose,
         })
     }
+}
+
+/// Rounds a length or an angle to what is written of it.
+fn rounded(value: f64) -> f64 {
+    (value * STEPS_PER_UNIT).round() / STEPS_PER_UNIT
+}
+
+/// Lets the headings of the odometry count turns, as dead reckoning does: no heading is more than half a turn from the one
+/// before.
+fn with_turns_counted(mut frames: Vec<FrameRecord>) -> Vec<FrameRecord> {
+    let mut before: Option<f64> = None;
+    for odometry in frames.iter_mut().filter_map(|frame| frame.odometry.as_mut()) {
+        let turns = before.map_or(0.0, |before| ((before - odometry.yaw_rad) / TAU).round());
+        odometry.yaw_rad = rounded(odometry.yaw_rad + turns * TAU);
+        [odometry.x_m, odometry.y_m] = [odometry.x_m, odometry.y_m].map(rounded);
+        before = Some(odometry.yaw_rad);
+    }
+    frames
 }
