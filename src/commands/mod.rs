@@ -13,6 +13,7 @@ mod gap;
 mod import;
 mod info;
 mod input;
+mod log_info;
 mod model_file;
 mod output;
 mod output_folder;
@@ -41,7 +42,7 @@ pub enum Command {
     Render(Box<render::RenderArgs>),
     /// Compare reconstructed pictures with true ones that are not in the database
     Evaluate(evaluate::EvaluateArgs),
-    /// Summarise a database: what it holds, and how much of the field it covers
+    /// Summarise a database, and how much of the field it covers, or list the topics of a robot's log
     Info(info::InfoArgs),
     /// Remove a sequence's pictures, or some of them, from a database
     Remove(remove::RemoveArgs),
