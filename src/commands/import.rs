@@ -142,7 +142,8 @@ fn progress(bytes: u64) -> anyhow::Result<ProgressBar> {
     if !shows_progress() {
         return Ok(ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()));
     }
-    let style = ProgressStyle::with_template("{bar:32} {bytes} of {total_bytes}, {bytes_per_sec}, {eta} left")?;
+    let style =
+        ProgressStyle::with_template("{bar:32} {bytes} of {total_bytes}, {bytes_per_sec}, {eta} left")?;
     Ok(ProgressBar::new(bytes).with_style(style))
 }
 
@@ -184,7 +185,8 @@ pub fn field_of(input: &Path, given: Option<&Path>) -> anyhow::Result<FieldDimen
     let beside = [Some(input), input.parent()].into_iter().flatten().map(|folder| folder.join("field.toml"));
     for file in beside {
         if fs::metadata(&file).is_ok_and(|metadata| metadata.is_file()) {
-            return read_field(&file).with_context(|| format!("{}: the field beside the log", input.display()));
+            return read_field(&file)
+                .with_context(|| format!("{}: the field beside the log", input.display()));
         }
     }
     let presets: Vec<&str> = preset_names().collect();
@@ -205,10 +207,15 @@ fn text(report: &ImportReport, out: &Path) -> String {
         (report.damaged, "other messages damaged"),
         (report.clock_jumps, "jumps of the clock"),
     ];
-    lines.extend(faults.iter().filter(|(count, _)| *count > 0).map(|(count, what)| ("", format!("{count} {what}"))));
+    lines.extend(
+        faults.iter().filter(|(count, _)| *count > 0).map(|(count, what)| ("", format!("{count} {what}"))),
+    );
     if report.salvaged {
         let lost = report.bytes_lost;
-        lines.push(("salvaged", format!("the log is cut off or damaged: about {lost} bytes could not be read")));
+        lines.push((
+            "salvaged",
+            format!("the log is cut off or damaged: about {lost} bytes could not be read"),
+        ));
     }
     let used = &report.topics;
     let topics = [
@@ -239,4 +246,3 @@ fn frames_text(report: &ImportReport) -> String {
         ),
     }
 }
-

@@ -67,7 +67,10 @@ impl Report {
         let (megabytes, messages) = (self.bytes as f64 / 1e6, counted(self.messages as usize, "message"));
         let mut lines = vec![("log", format!("{}, {megabytes:.1} MB, {messages}", self.log))];
         if self.salvaged {
-            lines.push(("salvaged", format!("cut off or damaged: about {} bytes could not be read", self.bytes_lost)));
+            lines.push((
+                "salvaged",
+                format!("cut off or damaged: about {} bytes could not be read", self.bytes_lost),
+            ));
         }
         lines.extend(self.topics.iter().map(|topic| ("topic", topic.text())));
         aligned(&lines)
@@ -93,7 +96,8 @@ impl TopicReport {
     fn text(&self) -> String {
         let Self { name, type_name, messages, .. } = self;
         let taken_for = self.taken_for.unwrap_or("not read");
-        let mut text = format!("{name}: {type_name}, {taken_for}, {}", counted(*messages as usize, "message"));
+        let mut text =
+            format!("{name}: {type_name}, {taken_for}, {}", counted(*messages as usize, "message"));
         if let Some(rate_hz) = self.rate_hz {
             text.push_str(&format!(", {rate_hz:.1} Hz"));
         }

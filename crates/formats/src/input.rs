@@ -41,7 +41,9 @@ impl Input {
 
     fn in_folder(folder: &Path) -> Option<Self> {
         let holds = |name: &str| folder.join(name).is_file();
-        let is_colmap = || COLMAP_FOLDERS.iter().any(|part| COLMAP.iter().any(|name| folder.join(part).join(name).is_file()));
+        let is_colmap = || {
+            COLMAP_FOLDERS.iter().any(|part| COLMAP.iter().any(|name| folder.join(part).join(name).is_file()))
+        };
         if holds("sequence.toml") {
             Some(Self::Sequence)
         } else if is_log(folder) || holds("metadata.yaml") {

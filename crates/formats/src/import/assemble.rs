@@ -56,7 +56,8 @@ pub fn assemble(
     };
     let (height_m, height_source) = height(options, by_frames, &reference).ok_or(Lack::NoHeight)?;
     setup.mount_height_m = rounded(height_m);
-    let frames = Matcher { gathered, options, mount: &mount, odometry: &odometry, reference: &reference }.frames(&shots)?;
+    let frames = Matcher { gathered, options, mount: &mount, odometry: &odometry, reference: &reference }
+        .frames(&shots)?;
 
     notes.extend(mount_notes(gathered, &mount));
     notes.extend(reference.words.iter().map(|words| format!("the reference poses are {words}")));
@@ -133,7 +134,10 @@ fn camera(
         (None, Some(chosen), Some(calibration)) => {
             let is_rectified = topic.contains("rect") && !topic.contains("unrect");
             let converted = if is_rectified {
-                notes.push(format!("the pictures on {} are rectified: the lens is a pinhole", on_one_line(&topic)));
+                notes.push(format!(
+                    "the pictures on {} are rectified: the lens is a pinhole",
+                    on_one_line(&topic)
+                ));
                 calibration.rectified_camera(pictures)
             } else {
                 calibration.camera(pictures)
@@ -163,7 +167,8 @@ fn height_by_frames(mount: &CameraMount<'_>, shots: &[Shot]) -> Option<f64> {
 /// Returns the height of the camera, and where it is from.
 fn height(options: &ImportOptions, by_frames: Option<f64>, reference: &Reference) -> Option<(f64, String)> {
     let given = options.height_m.map(|height_m| (height_m, "given".to_owned()));
-    let of_camera = options.camera.as_ref().map(|setup| (setup.mount_height_m, "the given camera".to_owned()));
+    let of_camera =
+        options.camera.as_ref().map(|setup| (setup.mount_height_m, "the given camera".to_owned()));
     let of_frames = by_frames.map(|height_m| (height_m, "tf".to_owned()));
     let of_reference = reference.height_m().filter(|height_m| *height_m > LEAST_HEIGHT_M);
     let of_reference = of_reference.map(|height_m| (height_m, "the reference poses".to_owned()));
@@ -181,7 +186,9 @@ fn mount_notes(gathered: &Gathered, mount: &CameraMount<'_>) -> Vec<String> {
         ));
     }
     if !gathered.gravity.is_empty() && mount.source_name().starts_with("accelerometer") {
-        notes.push("the IMU has no orientation: pitch and roll are those of its accelerometer at rest".to_owned());
+        notes.push(
+            "the IMU has no orientation: pitch and roll are those of its accelerometer at rest".to_owned(),
+        );
     }
     notes
 }
@@ -211,7 +218,11 @@ impl Matcher<'_> {
             .collect();
         if frames.is_empty() {
             let what = missing.into_iter().min().unwrap_or("a match");
-            return Err(Lack::NothingMatched { frames: shots.len(), what, tolerance_s: self.options.tolerance_s });
+            return Err(Lack::NothingMatched {
+                frames: shots.len(),
+                what,
+                tolerance_s: self.options.tolerance_s,
+            });
         }
         Ok(with_turns_counted(frames))
     }

@@ -18,7 +18,8 @@ pub enum Axes {
 impl Axes {
     /// Returns the axes that a frame's name promises.
     pub fn by_name(frame: &str) -> Self {
-        let is_optical = frame.ends_with("_optical") || frame.ends_with("optical_frame") || frame == "optical";
+        let is_optical =
+            frame.ends_with("_optical") || frame.ends_with("optical_frame") || frame == "optical";
         if is_optical { Self::Optical } else { Self::Body }
     }
 
@@ -85,7 +86,8 @@ mod tests {
     #[test]
     fn axes_are_told_by_which_one_points_up() {
         for (pitch, roll) in [(0.0, 0.0), (0.9, 0.2), (-0.5, -0.3), (1.3, 0.1)] {
-            let optical = CameraPose::new(Pose2::new(0.0, 0.0, 2.0), 0.5, pitch, roll).quaternion_world_from_camera();
+            let optical =
+                CameraPose::new(Pose2::new(0.0, 0.0, 2.0), 0.5, pitch, roll).quaternion_world_from_camera();
             let body = optical * Axes::Body.from_optical().inverse();
             assert_eq!(Axes::by_data([optical].into_iter()), Some(Axes::Optical));
             assert_eq!(Axes::by_data([body].into_iter()), Some(Axes::Body));

@@ -26,8 +26,11 @@ impl Clock {
     /// Finds the jumps in the stamps of pictures, which are in the order of the log. Where a clock was set back, later stamps are
     /// moved, so that time goes on as in the log; where it leapt ahead they stay.
     pub fn of(shots: &[Shot]) -> Self {
-        let steps = shots.windows(2).map(|pair| (pair[1].time_ns - pair[0].time_ns, pair[1].log_time_ns - pair[0].log_time_ns));
-        let leaps = |(stamps, log): (i64, i64)| log >= 0 && stamps.saturating_sub(log).saturating_abs() > JUMP_NS;
+        let steps = shots
+            .windows(2)
+            .map(|pair| (pair[1].time_ns - pair[0].time_ns, pair[1].log_time_ns - pair[0].log_time_ns));
+        let leaps =
+            |(stamps, log): (i64, i64)| log >= 0 && stamps.saturating_sub(log).saturating_abs() > JUMP_NS;
         let leap_count = steps.clone().filter(|step| leaps(*step)).count();
         let log_is_sound = leap_count as f64 <= MAX_SHARE * shots.len().saturating_sub(1) as f64;
         let bias_ns = shots.first().map_or(0, |shot| shot.time_ns.saturating_sub(shot.log_time_ns));
@@ -78,16 +81,30 @@ mod tests {
     use super::*;
 
     fn shots(times_ms: &[(i64, i64)]) -> Vec<Shot> {
-        let shot = |&(time, log): &(i64, i64)| Shot { time_ns: time * 1_000_000, log_time_ns: log * 1_000_000, number: 0 };
+        let shot = |&(time, log): &(i64, i64)| Shot {
+            time_ns: time * 1_000_000,
+            log_time_ns: log * 1_000_000,
+            number: 0,
+        };
         times_ms.iter().map(shot).collect()
     }
 
     #[test]
     fn a_clock_that_is_set_back_goes_on_as_the_log_does() {
-        let shots = shots(&[(0, 5), (100, 105), (200, 206), (-9000, 305), (-8900, 405), (-8800, 505), (-8700, 605), (-8600, 705)]);
+        let shots = shots(&[
+            (0, 5),
+            (100, 105),
+            (200, 206),
+            (-9000, 305),
+            (-8900, 405),
+            (-8800, 505),
+            (-8700, 605),
+            (-8600, 705),
+        ]);
         let clock = Clock::of(&shots);
         assert_eq!(clock.jumps, 1);
-        let times: Vec<i64> = shots.iter().map(|shot| clock.corrected(shot.time_ns, shot.log_time_ns)).collect();
+        let times: Vec<i64> =
+            shots.iter().map(|shot| clock.corrected(shot.time_ns, shot.log_time_ns)).collect();
         assert_eq!(times[2], 200_000_000);
         assert_eq!(times[3], 299_000_000);
         assert_eq!(times[4], 399_000_000);

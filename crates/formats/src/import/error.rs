@@ -73,7 +73,9 @@ pub enum Lack {
         reason: String,
     },
     /// There is no calibration.
-    #[error("no topic holds the camera's calibration: give a camera.toml by --camera, or make one with `reality-sim calibrate`")]
+    #[error(
+        "no topic holds the camera's calibration: give a camera.toml by --camera, or make one with `reality-sim calibrate`"
+    )]
     NoCalibration,
     /// The calibration cannot be used.
     #[error("the calibration on topic {} {fault}", on_one_line(.topic))]
@@ -103,7 +105,9 @@ pub enum Lack {
     #[error("nothing tells the camera's height above the carpet: give it by --height-m")]
     NoHeight,
     /// No frame has all that it needs.
-    #[error("none of {frames} frames has {what} within {tolerance_s} s: check the clocks, or widen --tolerance-s")]
+    #[error(
+        "none of {frames} frames has {what} within {tolerance_s} s: check the clocks, or widen --tolerance-s"
+    )]
     NothingMatched {
         /// Number of pictures.
         frames: usize,

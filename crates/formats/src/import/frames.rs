@@ -43,7 +43,9 @@ impl FrameTree {
     /// Adds a transform that holds at a time.
     pub fn add_moving(&mut self, parent: &str, child: &str, sample: Sample<Rigid>) {
         match self.edges.get_mut(child) {
-            Some(Edge { parent: known, kind: EdgeKind::Moving(series) }) if known == parent => series.push(sample),
+            Some(Edge { parent: known, kind: EdgeKind::Moving(series) }) if known == parent => {
+                series.push(sample)
+            }
             // A frame has one parent; the first that is heard of is kept.
             Some(_) => {}
             None => {
@@ -90,11 +92,6 @@ impl FrameTree {
         self.joints.values_mut().for_each(|series| series.finish(clock));
     }
 
-    /// Returns whether a frame is known.
-    pub fn knows(&self, frame: &str) -> bool {
-        self.edges.contains_key(frame) || self.edges.values().any(|edge| edge.parent == frame)
-    }
-
     /// Returns the frame and those above it, up to the root; just the frame if it is not known.
     pub fn chain<'a>(&'a self, frame: &'a str) -> Vec<&'a str> {
         let mut chain = vec![frame];
@@ -115,7 +112,8 @@ impl FrameTree {
 
     /// Returns whether the way from one frame to another passes joints of a robot's description.
     pub fn passes_joints(&self, a: &str, b: &str) -> bool {
-        let is_joint = |frame: &&str| matches!(self.edges.get(*frame), Some(Edge { kind: EdgeKind::Joint(_), .. }));
+        let is_joint =
+            |frame: &&str| matches!(self.edges.get(*frame), Some(Edge { kind: EdgeKind::Joint(_), .. }));
         let (a, b) = (self.chain(a), self.chain(b));
         let apart = |from: &[&str], other: &[&str]| {
             from.iter().take_while(|frame| !other.contains(frame)).any(|frame| is_joint(frame))

@@ -137,7 +137,9 @@ impl<'a> Gatherer<'a> {
     }
 
     fn uses_of(&self, topic: &Topic) -> Vec<(Use, Chosen)> {
-        let Choice { pictures, calibration, odometry, reference, imu, joints, transforms, description, .. } = self.choice;
+        let Choice {
+            pictures, calibration, odometry, reference, imu, joints, transforms, description, ..
+        } = self.choice;
         let single = [
             (Use::Picture, pictures),
             (Use::Calibration, calibration),
@@ -149,7 +151,9 @@ impl<'a> Gatherer<'a> {
         ];
         let single = single.into_iter().filter_map(|(way, chosen)| Some((way, chosen.as_ref()?)));
         let all = single.chain(transforms.iter().map(|chosen| (Use::Transforms, chosen)));
-        all.filter(|(_, chosen)| chosen.name == topic.name).map(|(way, chosen)| (way, chosen.clone())).collect()
+        all.filter(|(_, chosen)| chosen.name == topic.name)
+            .map(|(way, chosen)| (way, chosen.clone()))
+            .collect()
     }
 }
 
@@ -168,7 +172,8 @@ impl Sink for Gatherer<'_> {
             let view = chosen.role.open(message.topic, message.data);
             if *way == Use::Picture {
                 flow = self.picture(view.as_ref(), message);
-            } else if view.and_then(|view| self.gathered.take(*way, &view, message, &mut self.urdf)).is_none() {
+            } else if view.and_then(|view| self.gathered.take(*way, &view, message, &mut self.urdf)).is_none()
+            {
                 self.gathered.tally.damaged += 1;
             }
         }
@@ -200,7 +205,8 @@ impl Gatherer<'_> {
         };
         let time_ns = stamp(&picture.header, message, tally);
         let last = self.gathered.shots.last();
-        let (number, is_same_time) = last.map_or((0, false), |last| (last.number + 1, last.time_ns == time_ns));
+        let (number, is_same_time) =
+            last.map_or((0, false), |last| (last.number + 1, last.time_ns == time_ns));
         let is_same_picture = number > 0 && self.previous == message_bytes(&picture);
         tally.doubled += usize::from(is_same_time || is_same_picture);
         if is_same_time {
@@ -347,4 +353,3 @@ impl Gathered {
         Some(())
     }
 }
-

@@ -41,7 +41,11 @@ pub fn import_log(
 ) -> Result<ImportReport, ImportError> {
     let lack = |lack: Lack| ImportError::Lack { path: log.path().to_path_buf(), lack };
     let unwritable = |error: io::Error| {
-        ImportError::from(SequenceError { path: out.to_path_buf(), line: None, fault: Fault::Unwritable(error) })
+        ImportError::from(SequenceError {
+            path: out.to_path_buf(),
+            line: None,
+            fault: Fault::Unwritable(error),
+        })
     };
     let mut topics = TopicSet::default();
     let choice = Choice::of(&log.topics(&mut topics)?, options).map_err(lack)?;

@@ -49,7 +49,8 @@ impl<'a> CameraMount<'a> {
     pub fn find(gathered: &'a Gathered, shots: &[Shot], options: &ImportOptions) -> Result<Self, Lack> {
         let camera = options.camera_frame.clone().unwrap_or_else(|| gathered.camera_frame.clone());
         let level = level_frame(gathered, &camera, options.base_frame.as_deref());
-        let is_linked = gathered.frames.connects(&gathered.imu_frame, &camera) && gathered.imu_frame != camera;
+        let is_linked =
+            gathered.frames.connects(&gathered.imu_frame, &camera) && gathered.imu_frame != camera;
         let by_odometry = level.as_ref().is_some_and(|level| is_child_of_odometry(gathered, level));
         let source = match (gathered.imu.is_empty(), gathered.gravity.is_empty(), &level) {
             (false, _, _) if is_linked => AttitudeSource::ImuAndFrames,
@@ -106,10 +107,12 @@ impl<'a> CameraMount<'a> {
     }
 
     fn level_from_frame(&self, time_ns: i64) -> Option<DQuat> {
-        let attitude = |series: &Series<Attitude>| Some(series.at(time_ns, self.tolerance_ns)?.level_from_body);
+        let attitude =
+            |series: &Series<Attitude>| Some(series.at(time_ns, self.tolerance_ns)?.level_from_body);
         let gathered = self.gathered;
-        let transform =
-            |frame: &str| Some(gathered.frames.transform(frame, &self.camera, time_ns, self.tolerance_ns)?.rotation);
+        let transform = |frame: &str| {
+            Some(gathered.frames.transform(frame, &self.camera, time_ns, self.tolerance_ns)?.rotation)
+        };
         match self.source {
             AttitudeSource::Imu => attitude(&gathered.imu),
             AttitudeSource::Accelerometer => attitude(&gathered.gravity),
@@ -135,7 +138,9 @@ impl<'a> CameraMount<'a> {
             AttitudeSource::Imu => "imu".to_owned(),
             AttitudeSource::Accelerometer => "accelerometer".to_owned(),
             AttitudeSource::ImuAndFrames => format!("imu+{}", from(&self.gathered.imu_frame)),
-            AttitudeSource::AccelerometerAndFrames => format!("accelerometer+{}", from(&self.gathered.imu_frame)),
+            AttitudeSource::AccelerometerAndFrames => {
+                format!("accelerometer+{}", from(&self.gathered.imu_frame))
+            }
             AttitudeSource::Frames => from(level).to_owned(),
             AttitudeSource::OdometryAndFrames => format!("odometry+{}", from(level)),
         }

@@ -101,7 +101,12 @@ pub fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
 }
 
 /// Returns the frame whose poses the reference tells, if it is not the camera's.
-fn base_of(gathered: &Gathered, mount: &CameraMount<'_>, axes: Axes, height_m: Option<f64>) -> Option<String> {
+fn base_of(
+    gathered: &Gathered,
+    mount: &CameraMount<'_>,
+    axes: Axes,
+    height_m: Option<f64>,
+) -> Option<String> {
     let child = gathered.reference_child.as_str();
     if child == mount.camera || axes == Axes::Optical {
         return None;

@@ -1,9 +1,6 @@
 //! Which topics are imported: those that options name, else the one of each kind that there is.
 
-use super::{
-    error::Lack,
-    options::ImportOptions,
-};
+use super::{error::Lack, options::ImportOptions};
 use crate::{
     log::TopicSummary,
     message::{MessageKind, Role},
@@ -59,7 +56,8 @@ impl Choice {
             Some(_) => None,
             None => all.reference(options.reference.as_deref())?,
         };
-        let is_free = |chosen: &Candidate| reference.as_ref().is_none_or(|taken| taken.name != chosen.chosen.name);
+        let is_free =
+            |chosen: &Candidate| reference.as_ref().is_none_or(|taken| taken.name != chosen.chosen.name);
         let odometry = all.of_kinds(&[MessageKind::Odometry]).into_iter().filter(is_free).collect();
         let named = |name: &Option<String>| name.clone();
         Ok(Self {
@@ -77,13 +75,6 @@ impl Choice {
             reference_frame,
         })
     }
-
-    /// Returns all topics that are read.
-    pub fn all(&self) -> impl Iterator<Item = &Chosen> {
-        let Self { pictures, calibration, odometry, reference, imu, joints, transforms, description, .. } = self;
-        let single = [pictures, calibration, odometry, reference, imu, joints, description];
-        single.into_iter().flatten().chain(transforms)
-    }
 }
 
 #[derive(Debug, Clone)]
@@ -100,7 +91,10 @@ impl Topics {
     fn of(topics: &[TopicSummary]) -> Self {
         let candidate = |summary: &TopicSummary| {
             let role = Role::of(&summary.topic).filter(|_| summary.count > 0)?;
-            Some(Candidate { chosen: Chosen { name: summary.topic.name.clone(), role }, count: summary.count })
+            Some(Candidate {
+                chosen: Chosen { name: summary.topic.name.clone(), role },
+                count: summary.count,
+            })
         };
         Self { topics: topics.iter().filter_map(candidate).collect() }
     }
@@ -119,13 +113,17 @@ impl Topics {
             return Err(Lack::NoPictureTopic);
         }
         if named.is_none() && candidates.len() > 1 {
-            let color: Vec<Candidate> =
-                candidates.iter().filter(|one| !one.chosen.name.to_ascii_lowercase().contains("depth")).cloned().collect();
+            let color: Vec<Candidate> = candidates
+                .iter()
+                .filter(|one| !one.chosen.name.to_ascii_lowercase().contains("depth"))
+                .cloned()
+                .collect();
             candidates = if color.is_empty() { candidates } else { color };
             // The same pictures, sent twice: files as they are need no more work.
             let is_copy = |one: &Candidate| {
                 candidates.iter().any(|other| {
-                    other.chosen.name != one.chosen.name && base(&other.chosen.name) == base(&one.chosen.name)
+                    other.chosen.name != one.chosen.name
+                        && base(&other.chosen.name) == base(&one.chosen.name)
                         && (other.count, &other.chosen.name) > (one.count, &one.chosen.name)
                 })
             };
@@ -160,9 +158,9 @@ impl Topics {
             words.iter().any(|word| name.contains(word))
         };
         let (true_ones, others): (Vec<_>, Vec<_>) = candidates.into_iter().partition(|one| says(one, &TRUTH));
-        let poses = others.into_iter().filter(|one| {
-            one.chosen.role.kind != MessageKind::Odometry && !says(one, &WISHES)
-        });
+        let poses = others
+            .into_iter()
+            .filter(|one| one.chosen.role.kind != MessageKind::Odometry && !says(one, &WISHES));
         let candidates = if true_ones.is_empty() { poses.collect() } else { true_ones };
         pick(candidates, None, "reference", "--reference")
     }

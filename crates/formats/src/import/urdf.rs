@@ -54,12 +54,14 @@ pub fn joints(text: &str) -> Option<Vec<UrdfJoint>> {
     let document = Document::parse(text).ok()?;
     let robot = document.root_element();
     let is_joint = |node: &Node<'_, '_>| node.has_tag_name("joint");
-    (robot.has_tag_name("robot")).then(|| robot.children().filter(is_joint).filter_map(|node| joint(&node)).collect())
+    (robot.has_tag_name("robot"))
+        .then(|| robot.children().filter(is_joint).filter_map(|node| joint(&node)).collect())
 }
 
 fn joint(node: &Node<'_, '_>) -> Option<UrdfJoint> {
     let child = |name: &str| node.children().find(|child| child.has_tag_name(name));
-    let link = |name: &str| child(name)?.attribute("link").map(|link| link.trim_start_matches('/').to_owned());
+    let link =
+        |name: &str| child(name)?.attribute("link").map(|link| link.trim_start_matches('/').to_owned());
     let triple = |of: &str, attribute: &str| child(of)?.attribute(attribute).and_then(vector);
     let [roll, pitch, yaw] = triple("origin", "rpy").unwrap_or(DVec3::ZERO).to_array();
     // Fixed axes x, y, z: turns about z, y, x of the moved frame.
@@ -73,7 +75,11 @@ fn joint(node: &Node<'_, '_>) -> Option<UrdfJoint> {
     };
     let follows = child("mimic").and_then(|mimic| {
         let number = |name: &str| mimic.attribute(name).and_then(|text| text.trim().parse().ok());
-        Some((mimic.attribute("joint")?.to_owned(), number("multiplier").unwrap_or(1.0), number("offset").unwrap_or(0.0)))
+        Some((
+            mimic.attribute("joint")?.to_owned(),
+            number("multiplier").unwrap_or(1.0),
+            number("offset").unwrap_or(0.0),
+        ))
     });
     Some(UrdfJoint {
         parent: link("parent")?,
@@ -86,7 +92,8 @@ fn joint(node: &Node<'_, '_>) -> Option<UrdfJoint> {
 }
 
 fn vector(text: &str) -> Option<DVec3> {
-    let mut numbers = text.split_whitespace().map(|number| number.parse::<f64>().ok().filter(|number| number.is_finite()));
+    let mut numbers =
+        text.split_whitespace().map(|number| number.parse::<f64>().ok().filter(|number| number.is_finite()));
     Some(DVec3::new(numbers.next()??, numbers.next()??, numbers.next()??))
 }
 

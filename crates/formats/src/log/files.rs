@@ -4,7 +4,6 @@ use std::{
     ffi::OsStr,
     fs,
     path::{Component, Path, PathBuf},
-    sync::Arc,
 };
 
 use tempfile::NamedTempFile;
@@ -32,9 +31,8 @@ impl LogFile {
         match path.extension().and_then(OsStr::to_str)? {
             "mcap" => Some(Self::Mcap(path.to_path_buf())),
             "db3" => Some(Self::Sqlite(path.to_path_buf())),
-            "zstd" | "zst" => {
-                Self::by_name(&path.with_extension("")).map(|inner| Self::Packed(path.to_path_buf(), Box::new(inner)))
-            }
+            "zstd" | "zst" => Self::by_name(&path.with_extension(""))
+                .map(|inner| Self::Packed(path.to_path_buf(), Box::new(inner))),
             _ => None,
         }
     }
@@ -48,20 +46,20 @@ impl LogFile {
     /// Returns the file as it can be read: itself, or an unpacked copy, which is removed when it is dropped.
     pub fn unpacked(&self) -> Result<Unpacked<'_>, LogError> {
         let Self::Packed(path, inner) = self else { return Ok(Unpacked::Itself(self)) };
-        let copy = Arc::new(unpack(path)?);
+        let copy = unpack(path)?;
         let path = copy.path().to_path_buf();
         let file = match **inner {
             Self::Sqlite(_) => Self::Sqlite(path),
             _ => Self::Mcap(path),
         };
-        Ok(Unpacked::Copy(file, copy))
+        Ok(Unpacked::Copy { file, _copy: copy })
     }
 }
 
 /// File that can be read.
 pub(super) enum Unpacked<'a> {
     Itself(&'a LogFile),
-    Copy(LogFile, Arc<NamedTempFile>),
+    Copy { file: LogFile, _copy: NamedTempFile },
 }
 
 impl std::ops::Deref for Unpacked<'_> {
@@ -70,7 +68,7 @@ impl std::ops::Deref for Unpacked<'_> {
     fn deref(&self) -> &LogFile {
         match self {
             Self::Itself(file) => file,
-            Self::Copy(file, _) => file,
+            Self::Copy { file, .. } => file,
         }
     }
 }
@@ -132,9 +130,7 @@ mod tests {
         for name in ["walk_10.db3", "walk_2.db3", "walk_0.db3", "metadata.txt"] {
             fs::write(folder.path().join(name), "").unwrap();
         }
-        let names = |files: Vec<LogFile>| {
-            files.iter().map(|file| number_in(file.path())).collect::<Vec<_>>()
-        };
+        let names = |files: Vec<LogFile>| files.iter().map(|file| number_in(file.path())).collect::<Vec<_>>();
         assert_eq!(names(of_log(folder.path()).unwrap()), [0, 2, 10]);
         let listed = "rosbag2_bagfile_information:\n  relative_file_paths:\n    - walk_2.db3\n    - ../walk_0.db3\n  duration:\n";
         fs::write(folder.path().join("metadata.yaml"), listed).unwrap();

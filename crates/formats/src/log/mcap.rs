@@ -25,7 +25,11 @@ const BUFFER_BYTES: usize = 1 << 20;
 pub(super) type Outcome = (ControlFlow<()>, Ending);
 
 /// Reads a file's messages up to the last whole one.
-pub(super) fn read_mcap(path: &Path, topics: &mut TopicSet, sink: &mut dyn Sink) -> Result<Outcome, LogError> {
+pub(super) fn read_mcap(
+    path: &Path,
+    topics: &mut TopicSet,
+    sink: &mut dyn Sink,
+) -> Result<Outcome, LogError> {
     let file = File::open(path).map_err(LogError::io(path))?;
     let length = file.metadata().map_err(LogError::io(path))?.len();
     let file = BufReader::with_capacity(BUFFER_BYTES, file);
@@ -142,7 +146,9 @@ impl<'a> Receiver<'a> {
     }
 
     fn message(&mut self) -> ControlFlow<()> {
-        let Some((channel, log_time_ns, data)) = message(&self.body) else { return ControlFlow::Continue(()) };
+        let Some((channel, log_time_ns, data)) = message(&self.body) else {
+            return ControlFlow::Continue(());
+        };
         match self.channels.by_id.get(&channel) {
             Some(channel) if channel.is_wanted => {
                 let data = &unpacked_message(data);

@@ -108,7 +108,11 @@ impl ChunkHeader {
     }
 
     /// Unpacks the records and hands them over.
-    fn records(&self, packed: Take<&mut BufReader<File>>, receiver: &mut Receiver<'_>) -> (ControlFlow<()>, Tally) {
+    fn records(
+        &self,
+        packed: Take<&mut BufReader<File>>,
+        receiver: &mut Receiver<'_>,
+    ) -> (ControlFlow<()>, Tally) {
         let unreadable = (ControlFlow::Continue(()), Tally { is_whole: false, unpacked: 0, used: 0 });
         match self.compression {
             Compression::None => read_records(packed, self.uncompressed_bytes, receiver),

@@ -67,7 +67,10 @@ pub struct Ending {
 
 impl Ending {
     pub(crate) fn joined(self, other: Self) -> Self {
-        Self { is_cut: self.is_cut || other.is_cut, bytes_lost: self.bytes_lost.saturating_add(other.bytes_lost) }
+        Self {
+            is_cut: self.is_cut || other.is_cut,
+            bytes_lost: self.bytes_lost.saturating_add(other.bytes_lost),
+        }
     }
 }
 

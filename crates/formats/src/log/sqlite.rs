@@ -37,7 +37,11 @@ const MAX_MISSING_ROWS: i64 = 2_000;
 type WantedTopics = HashMap<i64, Arc<Topic>>;
 
 /// Reads a file's messages, those before and behind damaged places, too.
-pub(super) fn read_sqlite(path: &Path, topics: &mut TopicSet, sink: &mut dyn Sink) -> Result<Outcome, LogError> {
+pub(super) fn read_sqlite(
+    path: &Path,
+    topics: &mut TopicSet,
+    sink: &mut dyn Sink,
+) -> Result<Outcome, LogError> {
     let length = fs::metadata(path).map_err(LogError::io(path))?.len();
     let missing = missing_bytes(path, length)?;
     let fail = |error: rusqlite::Error| LogError::new(path, LogFault::NotABag(error.to_string()));
@@ -67,7 +71,8 @@ fn missing_bytes(path: &Path, length: u64) -> Result<u64, LogError> {
 }
 
 fn open(path: &Path, length: u64, is_short: bool) -> rusqlite::Result<Connection> {
-    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX | OpenFlags::SQLITE_OPEN_URI;
+    let flags =
+        OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX | OpenFlags::SQLITE_OPEN_URI;
     let mut wal = path.as_os_str().to_owned();
     wal.push("-wal");
     let has_wal = fs::metadata(wal).is_ok_and(|metadata| metadata.len() > 0);
@@ -76,15 +81,15 @@ fn open(path: &Path, length: u64, is_short: bool) -> rusqlite::Result<Connection
     let mut connection = Connection::open_with_flags(uri(path, suffix), flags)?;
     let most = i32::try_from(length.max(1 << 16)).unwrap_or(i32::MAX).min(1 << 30);
     connection.set_limit(Limit::SQLITE_LIMIT_LENGTH, most)?;
-    connection.execute_batch("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0;")?;
+    connection
+        .execute_batch("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0;")?;
     if is_short {
         // SQLite then reads what is there of a file that is shorter than it says.
         connection.execute_batch("PRAGMA writable_schema = ON;")?;
     }
     let left = AtomicU64::new(WORK.0.saturating_add(WORK.1.saturating_mul(length)) / STEP as u64);
-    let is_spent = move || {
-        left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_err()
-    };
+    let is_spent =
+        move || left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_err();
     connection.progress_handler(STEP, Some(is_spent))?;
     Ok(connection)
 }

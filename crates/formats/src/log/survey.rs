@@ -3,7 +3,11 @@
 use std::{collections::HashMap, ops::ControlFlow, sync::Arc};
 
 use super::{
-    Ending, Log, LogError, Message, Sink, files::LogFile, mcap::read_mcap, mcap_summary, sqlite::read_sqlite,
+    Ending, Log, LogError, Message, Sink,
+    files::LogFile,
+    mcap::read_mcap,
+    mcap_summary,
+    sqlite::read_sqlite,
     topic::{Topic, TopicSet},
 };
 
@@ -41,7 +45,9 @@ impl Log {
         for file in &self.files {
             match &*file.unpacked()? {
                 LogFile::Mcap(path) => match mcap_summary::counts(path, topics) {
-                    Some(counts) => counts.into_iter().for_each(|(topic, count)| tally.add(&topic, count, None)),
+                    Some(counts) => {
+                        counts.into_iter().for_each(|(topic, count)| tally.add(&topic, count, None))
+                    }
                     None => read_mcap(path, topics, &mut tally).map(drop)?,
                 },
                 LogFile::Sqlite(path) => read_sqlite(path, topics, &mut tally).map(drop)?,

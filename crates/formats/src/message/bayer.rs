@@ -32,7 +32,12 @@ impl Pattern {
 }
 
 /// Returns RGB values row by row: a colour that a pixel lacks is the mean of those around it that have it.
-pub fn demosaiced(pattern: Pattern, width: usize, height: usize, pixel: impl Fn(usize, usize) -> u8) -> Vec<u8> {
+pub fn demosaiced(
+    pattern: Pattern,
+    width: usize,
+    height: usize,
+    pixel: impl Fn(usize, usize) -> u8,
+) -> Vec<u8> {
     let mut rgb = Vec::with_capacity(3 * width * height);
     for y in 0..height {
         let rows = y.saturating_sub(1)..=(y + 1).min(height - 1);
@@ -69,7 +74,12 @@ mod tests {
 
     #[test]
     fn patterns_begin_as_their_names_say() {
-        let names = [(Pattern::Rggb, [0, 1, 1, 2]), (Pattern::Bggr, [2, 1, 1, 0]), (Pattern::Gbrg, [1, 2, 0, 1]), (Pattern::Grbg, [1, 0, 2, 1])];
+        let names = [
+            (Pattern::Rggb, [0, 1, 1, 2]),
+            (Pattern::Bggr, [2, 1, 1, 0]),
+            (Pattern::Gbrg, [1, 2, 0, 1]),
+            (Pattern::Grbg, [1, 0, 2, 1]),
+        ];
         for (pattern, expected) in names {
             let found = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| pattern.color(x, y));
             assert_eq!(found, expected, "{pattern:?}");

@@ -39,7 +39,9 @@ pub struct Calibration {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CalibrationFault {
     /// The camera matrix is zero: nobody has calibrated the camera.
-    #[error("is all zeros: the camera was never calibrated, calibrate it (`reality-sim calibrate`) and give the result by --camera")]
+    #[error(
+        "is all zeros: the camera was never calibrated, calibrate it (`reality-sim calibrate`) and give the result by --camera"
+    )]
     AllZeros,
     /// The lens model is not known.
     #[error("the lens model `{}` is not read: calibrate with plumb_bob, rational_polynomial or equidistant", on_one_line(.0))]
@@ -53,7 +55,9 @@ pub enum CalibrationFault {
         found: usize,
     },
     /// The lens cannot be written as one of the models of a sequence.
-    #[error("its {model} lens cannot be written as OPENCV or OPENCV_FISHEYE (the nearest such lens is {error_px:.2} px off): calibrate with plumb_bob or equidistant")]
+    #[error(
+        "its {model} lens cannot be written as OPENCV or OPENCV_FISHEYE (the nearest such lens is {error_px:.2} px off): calibrate with plumb_bob or equidistant"
+    )]
     NoSuchLens {
         /// Name of the lens model.
         model: &'static str,
@@ -61,7 +65,9 @@ pub enum CalibrationFault {
         error_px: f64,
     },
     /// The lens has coefficients beyond those that a sequence's models have.
-    #[error("its thin prism or tilted sensor (coefficients 9 to 14) cannot be written: calibrate with plumb_bob")]
+    #[error(
+        "its thin prism or tilted sensor (coefficients 9 to 14) cannot be written: calibrate with plumb_bob"
+    )]
     ThinPrism,
     /// The numbers make no camera.
     #[error("{0}")]
@@ -80,11 +86,13 @@ pub struct ConvertedCamera {
 impl Calibration {
     /// Reads a message with a calibration; `None` if it is damaged.
     pub fn read(message: &View<'_>) -> Option<Self> {
-        let size = |view: &View<'_>, name: &str| view.field(name)?.integer().and_then(|size| u32::try_from(size).ok());
+        let size = |view: &View<'_>, name: &str| {
+            view.field(name)?.integer().and_then(|size| u32::try_from(size).ok())
+        };
         let numbers = |names: &[&str]| message.any_field(names).and_then(|view| view.numbers());
-        let region = message.field("roi").map(|roi| {
-            ["x_offset", "y_offset", "width", "height"].map(|name| size(&roi, name).unwrap_or(0))
-        });
+        let region = message
+            .field("roi")
+            .map(|roi| ["x_offset", "y_offset", "width", "height"].map(|name| size(&roi, name).unwrap_or(0)));
         Some(Self {
             header: Header::of(message),
             size: [size(message, "width")?, size(message, "height")?],
@@ -105,7 +113,9 @@ impl Calibration {
     /// Converts the calibration of pictures as they leave the lens; `picture_size`, pixels, is taken where the calibration says
     /// nothing. Fails if it is all zeros, or if no camera of a sequence is like it.
     pub fn camera(&self, picture_size: [u32; 2]) -> Result<ConvertedCamera, CalibrationFault> {
-        let &[fx, _, cx, _, fy, cy, ..] = self.matrix.as_slice() else { return Err(CalibrationFault::AllZeros) };
+        let &[fx, _, cx, _, fy, cy, ..] = self.matrix.as_slice() else {
+            return Err(CalibrationFault::AllZeros);
+        };
         if self.is_all_zeros() {
             return Err(CalibrationFault::AllZeros);
         }
@@ -140,7 +150,11 @@ impl Calibration {
         let part = if width == 0 || height == 0 { size } else { [width, height] };
         let joined = [part[0] / self.binning[0], part[1] / self.binning[1]];
         let center = |center: f64, start: u32, joined: f64| {
-            if joined == 1.0 { center - f64::from(start) } else { (center - f64::from(start) + 0.5) / joined - 0.5 }
+            if joined == 1.0 {
+                center - f64::from(start)
+            } else {
+                (center - f64::from(start) + 0.5) / joined - 0.5
+            }
         };
         let numbers = [fx / across, fy / down, center(cx, left, across), center(cy, top, down)];
         Camera::new(joined, numbers, distortion)
@@ -148,7 +162,8 @@ impl Calibration {
 
     /// Returns the lens, and its error in pixels where it stands for one that cannot be written.
     fn lens(&self, numbers: [f64; 4], size: [u32; 2]) -> Result<(Distortion, Option<f64>), CalibrationFault> {
-        let wrong = || CalibrationFault::Coefficients { model: self.model.clone(), found: self.distortion.len() };
+        let wrong =
+            || CalibrationFault::Coefficients { model: self.model.clone(), found: self.distortion.len() };
         let fisheye = |k| Ok((Distortion::OpencvFisheye(OpencvFisheye { k }), None));
         let opencv = |k1, k2, p1, p2, k3| Ok((Distortion::Opencv(Opencv { k1, k2, p1, p2, k3 }), None));
         let name = self.model.to_ascii_lowercase();
@@ -160,7 +175,9 @@ impl Calibration {
                     _ => Err(wrong()),
                 }
             }
-            ("plumb_bob" | "" | "none" | "pinhole" | "rational_polynomial", []) => Ok((Distortion::Pinhole, None)),
+            ("plumb_bob" | "" | "none" | "pinhole" | "rational_polynomial", []) => {
+                Ok((Distortion::Pinhole, None))
+            }
             ("plumb_bob" | "rational_polynomial" | "", &[k1, k2, p1, p2]) => opencv(k1, k2, p1, p2, 0.0),
             ("plumb_bob" | "rational_polynomial" | "", &[k1, k2, p1, p2, k3]) => opencv(k1, k2, p1, p2, k3),
             ("plumb_bob" | "none" | "pinhole", d) if d.iter().all(|value| *value == 0.0) => {

@@ -20,7 +20,10 @@ impl Header {
         let header = message.field("header").unwrap_or(*message);
         let frame = header.any_field(&["frame_id", "parent_frame_id"]).as_ref().and_then(frame_name);
         let stamp = header.any_field(&["stamp", "timestamp"]);
-        Self { stamp_ns: stamp.and_then(stamp_ns).filter(|stamp| *stamp != 0), frame: frame.unwrap_or_default() }
+        Self {
+            stamp_ns: stamp.and_then(stamp_ns).filter(|stamp| *stamp != 0),
+            frame: frame.unwrap_or_default(),
+        }
     }
 }
 

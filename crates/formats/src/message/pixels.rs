@@ -153,11 +153,15 @@ impl<'a> RawPicture<'a> {
                 rows.grey(|row| row.chunks_exact(2).take(self.width).map(|pixel| pixel[high]).collect())
             }
             Layout::Color(bytes, [r, g, b]) => rows.color(|row, _| {
-                row.chunks_exact(bytes).take(self.width).flat_map(|pixel| [pixel[r], pixel[g], pixel[b]]).collect()
+                row.chunks_exact(bytes)
+                    .take(self.width)
+                    .flat_map(|pixel| [pixel[r], pixel[g], pixel[b]])
+                    .collect()
             }),
             Layout::Yuv422([y0, u, v, y1]) => rows.color(|row, _| {
                 let pairs = row.chunks_exact(4).take(self.width.div_ceil(2));
-                let both = pairs.flat_map(|pair| [(pair[y0], pair[u], pair[v]), (pair[y1], pair[u], pair[v])]);
+                let both =
+                    pairs.flat_map(|pair| [(pair[y0], pair[u], pair[v]), (pair[y1], pair[u], pair[v])]);
                 both.take(self.width).flat_map(|(y, u, v)| rgb_of_yuv(y, u, v)).collect()
             }),
             Layout::SemiPlanar([u, v]) => rows.color(|row, index| {

@@ -1,9 +1,6 @@
 //! Poses and transforms between frames.
 
-use super::{
-    Header, Rigid,
-    header::frame_name,
-};
+use super::{Header, Rigid, header::frame_name};
 use crate::schema::View;
 
 /// Most poses or transforms that are read of one message.

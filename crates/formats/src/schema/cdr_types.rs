@@ -116,7 +116,9 @@ impl CdrTypes {
         for _ in 0..MAX_DEPTH {
             match kind {
                 CdrType::Struct(id) => return Some(self.fields(*id)),
-                CdrType::Array(inner, _) | CdrType::Sequence(inner) | CdrType::Optional(inner) => kind = inner,
+                CdrType::Array(inner, _) | CdrType::Sequence(inner) | CdrType::Optional(inner) => {
+                    kind = inner
+                }
                 _ => return None,
             }
         }

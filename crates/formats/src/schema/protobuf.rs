@@ -184,7 +184,9 @@ impl<'a> ProtobufView<'a> {
     pub fn integer(&self) -> Option<i64> {
         let ViewKind::Value(kind, value) = self.kind else { return None };
         match (kind, value) {
-            (FieldKind::Varint | FieldKind::ZigZag | FieldKind::Fixed64 | FieldKind::Fixed32, None) => Some(0),
+            (FieldKind::Varint | FieldKind::ZigZag | FieldKind::Fixed64 | FieldKind::Fixed32, None) => {
+                Some(0)
+            }
             (FieldKind::Varint, Some(WireValue::Varint(value))) => Some(value as i64),
             (FieldKind::ZigZag, Some(WireValue::Varint(value))) => {
                 Some((value >> 1) as i64 ^ -((value & 1) as i64))

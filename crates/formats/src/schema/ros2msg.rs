@@ -10,7 +10,8 @@ use super::{
 
 /// Parses a definition. Fails with what cannot be understood.
 pub fn parse(type_name: &str, text: &str) -> Result<CdrTypes, String> {
-    let mut parser = Parser { sections: sections(type_name, text), known: HashMap::new(), structs: Vec::new() };
+    let mut parser =
+        Parser { sections: sections(type_name, text), known: HashMap::new(), structs: Vec::new() };
     let root = parser.structure(&short_name(type_name))?;
     Ok(CdrTypes { structs: parser.structs, root })
 }
@@ -74,8 +75,7 @@ impl Parser<'_> {
 
     fn kind(&mut self, package: &str, text: &str) -> Result<CdrType, String> {
         if let Some(element) = text.strip_suffix(']') {
-            let (element, count) =
-                element.rsplit_once('[').ok_or_else(|| format!("`{text}` is no type"))?;
+            let (element, count) = element.rsplit_once('[').ok_or_else(|| format!("`{text}` is no type"))?;
             let inner = Box::new(self.kind(package, element)?);
             return match count {
                 "" => Ok(CdrType::Sequence(inner)),

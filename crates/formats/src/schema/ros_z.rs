@@ -30,7 +30,8 @@ fn type_name(shape: &Value) -> Option<&str> {
         return Some(name);
     }
     let object = shape.as_object()?;
-    let tagged = ["type", "type_name", "StructRef", "EnumRef", "Named"].iter().find_map(|key| object.get(*key));
+    let tagged =
+        ["type", "type_name", "StructRef", "EnumRef", "Named"].iter().find_map(|key| object.get(*key));
     tagged.and_then(Value::as_str)
 }
 
@@ -111,7 +112,8 @@ fn tagged(shape: &Value) -> (&str, &Value) {
 /// Returns the number of values of an array, if it is fixed.
 fn fixed_length(body: &Value) -> Option<usize> {
     let length = body.get("length").or_else(|| body.get("len"))?;
-    let value = length.as_u64().or_else(|| length.get("Fixed")?.as_u64()).or_else(|| length.get("value")?.as_u64());
+    let value =
+        length.as_u64().or_else(|| length.get("Fixed")?.as_u64()).or_else(|| length.get("value")?.as_u64());
     value.and_then(|value| usize::try_from(value).ok())
 }
 
