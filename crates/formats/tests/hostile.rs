@@ -5,6 +5,8 @@
 
 #[path = "import/cdr.rs"]
 mod cdr;
+#[path = "import/foxglove_logs.rs"]
+mod foxglove_logs;
 #[path = "import/log_writer.rs"]
 mod log_writer;
 #[allow(dead_code, reason = "other tests use the rest")]
@@ -126,6 +128,8 @@ fn whole_logs() -> Vec<(&'static str, Vec<u8>)> {
         ("mcap", messages.mcap(None, Some(2000))),
         ("mcap", messages.mcap(Some(Compression::Lz4), Some(4000))),
         ("mcap", messages.mcap(Some(Compression::Zstd), Some(4000))),
+        ("mcap", foxglove_logs::json_log(&walk(4), true).mcap(None, Some(4000))),
+        ("mcap", foxglove_logs::protobuf_log(&walk(4)).mcap(None, Some(4000))),
         ("db3", fs::read(bag).unwrap()),
     ]
 }

@@ -40,7 +40,7 @@ impl Axes {
     }
 
     /// Returns the rotation from a camera's own axes to these.
-    pub fn from_optical(self) -> DQuat {
+    pub fn rotation_from_optical(self) -> DQuat {
         match self {
             Self::Optical => DQuat::IDENTITY,
             // Right is minus left, down is minus up, forward is forward.
@@ -50,7 +50,7 @@ impl Axes {
 
     /// Returns the camera's pose that a frame with these axes has.
     pub fn camera_pose(self, world_from_frame: Rigid) -> CameraPose {
-        let rotation = world_from_frame.rotation * self.from_optical();
+        let rotation = world_from_frame.rotation * self.rotation_from_optical();
         CameraPose::from_world_from_camera(world_from_frame.translation, rotation)
     }
 }
@@ -73,7 +73,7 @@ mod tests {
             let down_0 = forward.cross(right_0);
             let right = roll.cos() * right_0 + roll.sin() * down_0;
             let down = -roll.sin() * right_0 + roll.cos() * down_0;
-            let optical = body * Axes::Body.from_optical();
+            let optical = body * Axes::Body.rotation_from_optical();
             for (axis, expected) in [(DVec3::X, right), (DVec3::Y, down), (DVec3::Z, forward)] {
                 assert!((optical * axis - expected).length() < 1e-12, "{axis}");
             }
@@ -88,7 +88,7 @@ mod tests {
         for (pitch, roll) in [(0.0, 0.0), (0.9, 0.2), (-0.5, -0.3), (1.3, 0.1)] {
             let optical =
                 CameraPose::new(Pose2::new(0.0, 0.0, 2.0), 0.5, pitch, roll).quaternion_world_from_camera();
-            let body = optical * Axes::Body.from_optical().inverse();
+            let body = optical * Axes::Body.rotation_from_optical().inverse();
             assert_eq!(Axes::by_data([optical].into_iter()), Some(Axes::Optical));
             assert_eq!(Axes::by_data([body].into_iter()), Some(Axes::Body));
         }

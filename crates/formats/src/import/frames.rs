@@ -44,7 +44,7 @@ impl FrameTree {
     pub fn add_moving(&mut self, parent: &str, child: &str, sample: Sample<Rigid>) {
         match self.edges.get_mut(child) {
             Some(Edge { parent: known, kind: EdgeKind::Moving(series) }) if known == parent => {
-                series.push(sample)
+                series.push(sample);
             }
             // A frame has one parent; the first that is heard of is kept.
             Some(_) => {}
@@ -116,7 +116,7 @@ impl FrameTree {
             |frame: &&str| matches!(self.edges.get(*frame), Some(Edge { kind: EdgeKind::Joint(_), .. }));
         let (a, b) = (self.chain(a), self.chain(b));
         let apart = |from: &[&str], other: &[&str]| {
-            from.iter().take_while(|frame| !other.contains(frame)).any(|frame| is_joint(frame))
+            from.iter().take_while(|frame| !other.contains(frame)).any(is_joint)
         };
         apart(&a, &b) || apart(&b, &a)
     }

@@ -82,7 +82,7 @@ impl<'a> CameraMount<'a> {
 
     /// Returns the rotation from the camera's own axes to a frame whose third axis points up, at a time.
     pub fn level_from_camera(&self, time_ns: i64) -> Option<DQuat> {
-        Some(self.level_from_frame(time_ns)? * self.axes.from_optical())
+        Some(self.level_from_frame(time_ns)? * self.axes.rotation_from_optical())
     }
 
     /// Returns the pose of the camera over the frame that does not tilt, in the camera's own axes, as far as tf tells it.
@@ -98,7 +98,7 @@ impl<'a> CameraMount<'a> {
     /// Returns the transform from the camera, in its own axes, to another frame.
     pub fn frame_transform(&self, frame: &str, time_ns: i64) -> Option<Rigid> {
         let transform = self.gathered.frames.transform(frame, &self.camera, time_ns, self.tolerance_ns)?;
-        Some(transform.then(Rigid::new(self.frame_axes().from_optical(), glam::DVec3::ZERO)))
+        Some(transform.then(Rigid::new(self.frame_axes().rotation_from_optical(), glam::DVec3::ZERO)))
     }
 
     /// Returns the axes of the camera's frame in tf.

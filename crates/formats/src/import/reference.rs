@@ -33,7 +33,7 @@ impl Reference {
         let camera = |sample: &Sample<Rigid>| {
             let value = match &base {
                 Some(base) => sample.value.then(mount.frame_transform(base, sample.time_ns)?),
-                None => sample.value.then(Rigid::new(axes.from_optical(), glam::DVec3::ZERO)),
+                None => sample.value.then(Rigid::new(axes.rotation_from_optical(), glam::DVec3::ZERO)),
             };
             Some(Sample { value, ..*sample })
         };
@@ -52,7 +52,8 @@ impl Reference {
             let value = if frame == mount.camera {
                 mount.frame_transform(&root, shot.time_ns)?
             } else {
-                root_from_frame.then(Rigid::new(Axes::by_name(frame).from_optical(), glam::DVec3::ZERO))
+                root_from_frame
+                    .then(Rigid::new(Axes::by_name(frame).rotation_from_optical(), glam::DVec3::ZERO))
             };
             Some(Sample { time_ns: shot.time_ns, log_time_ns: shot.log_time_ns, value })
         };

@@ -46,7 +46,7 @@ impl Log {
             match &*file.unpacked()? {
                 LogFile::Mcap(path) => match mcap_summary::counts(path, topics) {
                     Some(counts) => {
-                        counts.into_iter().for_each(|(topic, count)| tally.add(&topic, count, None))
+                        counts.into_iter().for_each(|(topic, count)| tally.add(&topic, count, None));
                     }
                     None => read_mcap(path, topics, &mut tally).map(drop)?,
                 },

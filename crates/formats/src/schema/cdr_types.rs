@@ -117,7 +117,7 @@ impl CdrTypes {
             match kind {
                 CdrType::Struct(id) => return Some(self.fields(*id)),
                 CdrType::Array(inner, _) | CdrType::Sequence(inner) | CdrType::Optional(inner) => {
-                    kind = inner
+                    kind = inner;
                 }
                 _ => return None,
             }

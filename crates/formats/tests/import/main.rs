@@ -6,6 +6,7 @@ mod cdr;
 mod encodings;
 mod faults;
 mod foxglove;
+mod foxglove_logs;
 mod log_writer;
 mod poses;
 mod robot;
