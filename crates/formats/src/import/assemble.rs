@@ -11,12 +11,13 @@ use super::{
     axes::Axes,
     clock::{Clock, lost_frames},
     error::Lack,
-    gather::{Gathered, Shot},
+    gather::Gathered,
     mount::CameraMount,
     odometry::CameraOdometry,
     options::ImportOptions,
     reference::{Reference, median},
     report::{ImportReport, UsedTopics},
+    shot::Shot,
     topics::Choice,
 };
 use crate::message::{CalibrationFault, ConvertedCamera, seconds};
@@ -61,9 +62,7 @@ pub fn assemble(
 
     notes.extend(mount_notes(gathered, &mount));
     notes.extend(reference.words.iter().map(|words| format!("the reference poses are {words}")));
-    notes.extend(gathered.tally.first_fault.iter().map(|fault| {
-        format!("{} could not be used; the first: {fault}", counted(gathered.tally.unusable, "picture"))
-    }));
+    notes.extend(fault_notes(gathered));
     let times_ns: Vec<i64> = shots.iter().map(|shot| shot.time_ns).collect();
     let report = ImportReport {
         frames: frames.len(),
@@ -191,6 +190,12 @@ fn mount_notes(gathered: &Gathered, mount: &CameraMount<'_>) -> Vec<String> {
         );
     }
     notes
+}
+
+/// Returns what is wrong with pictures that cannot be used.
+fn fault_notes(gathered: &Gathered) -> Option<String> {
+    let fault = gathered.tally.first_fault.as_ref()?;
+    Some(format!("{} could not be used; the first: {fault}", counted(gathered.tally.unusable, "picture")))
 }
 
 /// What the robot knew at the times of pictures.

@@ -1,6 +1,6 @@
 //! Jumps of the robot's clock, lost and doubled frames.
 
-use super::gather::Shot;
+use super::shot::Shot;
 
 /// Difference between the steps of the stamps and of the log beyond which a clock has jumped, nanoseconds.
 const JUMP_NS: i64 = 500_000_000;

@@ -14,6 +14,7 @@ use super::{
     error::PictureFault,
     frames::FrameTree,
     series::{Sample, Series},
+    shot::Shot,
     topics::{Choice, Chosen},
     urdf,
     writer::{Job, PictureWriter},
@@ -26,17 +27,6 @@ use crate::{
     },
     schema::View,
 };
-
-/// Picture of a log, in a file of its own.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shot {
-    /// Time at which it was taken, nanoseconds.
-    pub time_ns: i64,
-    /// Time at which it was logged, nanoseconds.
-    pub log_time_ns: i64,
-    /// Number of its file.
-    pub number: usize,
-}
 
 /// Everything that was read.
 #[derive(Debug, Default)]

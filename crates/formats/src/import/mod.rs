@@ -15,6 +15,7 @@ mod options;
 mod reference;
 mod report;
 mod series;
+mod shot;
 mod topics;
 mod urdf;
 mod writer;

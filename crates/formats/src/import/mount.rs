@@ -2,13 +2,7 @@
 
 use glam::DQuat;
 
-use super::{
-    axes::Axes,
-    error::Lack,
-    gather::{Gathered, Shot},
-    options::ImportOptions,
-    series::Series,
-};
+use super::{axes::Axes, error::Lack, gather::Gathered, options::ImportOptions, series::Series, shot::Shot};
 use crate::message::{Attitude, Rigid};
 
 /// Names of frames on the ground that do not tilt, the best first.

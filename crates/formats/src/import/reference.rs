@@ -4,9 +4,10 @@ use reality_sim_core::sequence::StampedPose;
 
 use super::{
     axes::Axes,
-    gather::{Gathered, Shot},
+    gather::Gathered,
     mount::CameraMount,
     series::{Sample, Series},
+    shot::Shot,
 };
 use crate::message::{Rigid, seconds};
 

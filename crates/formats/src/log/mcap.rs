@@ -10,19 +10,16 @@ use std::{
 use mcap::{MAGIC, records::op};
 
 use super::{
-    Ending, Message, Sink,
-    compressed::unpacked_message,
     error::{LogError, LogFault},
     mcap_chunk::read_chunk,
-    mcap_records::{Channels, RECORD_HEADER_BYTES, message, record_header},
+    mcap_receiver::Receiver,
+    mcap_records::{RECORD_HEADER_BYTES, record_header},
+    sink::{Ending, Outcome, Sink},
     topic::TopicSet,
 };
 
 /// Size of the buffer in front of the file, bytes.
 const BUFFER_BYTES: usize = 1 << 20;
-
-/// How reading a file or a chunk ended.
-pub(super) type Outcome = (ControlFlow<()>, Ending);
 
 /// Reads a file's messages up to the last whole one.
 pub(super) fn read_mcap(
@@ -49,14 +46,6 @@ struct Scan<'a> {
     position: u64,
     length: u64,
     receiver: Receiver<'a>,
-}
-
-/// Schemas and channels so far, and who gets the messages.
-pub(super) struct Receiver<'a> {
-    channels: Channels,
-    topics: &'a mut TopicSet,
-    sink: &'a mut dyn Sink,
-    body: Vec<u8>,
 }
 
 impl Scan<'_> {
@@ -109,7 +98,7 @@ impl Scan<'_> {
             self.file.seek_relative(i64::try_from(length).unwrap_or(i64::MAX))?;
         }
         self.position += length;
-        self.receiver.sink.read_so_far(self.position);
+        self.receiver.read_so_far(self.position);
         Ok(())
     }
 
@@ -120,42 +109,5 @@ impl Scan<'_> {
         self.file.seek(SeekFrom::End(-(MAGIC.len() as i64)))?;
         self.file.read_exact(&mut magic)?;
         Ok(magic == *MAGIC)
-    }
-}
-
-impl<'a> Receiver<'a> {
-    pub fn new(topics: &'a mut TopicSet, sink: &'a mut dyn Sink) -> Self {
-        Self { channels: Channels::default(), topics, sink, body: Vec::new() }
-    }
-
-    /// Reads a record's body and takes what it holds. Fails with `UnexpectedEof` if the source ends before the record.
-    pub fn record(&mut self, kind: u8, length: u64, source: &mut impl Read) -> io::Result<ControlFlow<()>> {
-        self.body.clear();
-        // Memory grows with what is there, not with what the length claims.
-        source.take(length).read_to_end(&mut self.body)?;
-        if (self.body.len() as u64) < length {
-            return Err(io::ErrorKind::UnexpectedEof.into());
-        }
-        match kind {
-            op::SCHEMA => drop(self.channels.add_schema(&self.body)),
-            op::CHANNEL => drop(self.channels.add_channel(&self.body, self.topics, self.sink)),
-            op::MESSAGE => return Ok(self.message()),
-            _ => {}
-        }
-        Ok(ControlFlow::Continue(()))
-    }
-
-    fn message(&mut self) -> ControlFlow<()> {
-        let Some((channel, log_time_ns, data)) = message(&self.body) else {
-            return ControlFlow::Continue(());
-        };
-        match self.channels.by_id.get(&channel) {
-            Some(channel) if channel.is_wanted => {
-                let data = &unpacked_message(data);
-                let log_time_ns = i64::try_from(log_time_ns).unwrap_or(i64::MAX);
-                self.sink.take(Message { topic: &channel.topic, log_time_ns, data })
-            }
-            _ => ControlFlow::Continue(()),
-        }
     }
 }

@@ -7,10 +7,10 @@ use std::{
 };
 
 use super::{
-    Ending,
     compressed::MAX_MESSAGE_BYTES,
-    mcap::{Outcome, Receiver},
+    mcap_receiver::Receiver,
     mcap_records::{RECORD_HEADER_BYTES, record_header},
+    sink::{Ending, Outcome},
 };
 
 /// Longest name of a compression.

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::{
-    Sink,
+    sink::Sink,
     topic::{Topic, TopicSet},
 };
 use crate::schema::RawDefinition;

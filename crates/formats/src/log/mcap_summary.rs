@@ -11,8 +11,8 @@ use std::{
 use mcap::{MAGIC, records::op};
 
 use super::{
-    Message, Sink,
     mcap_records::{Channels, Fields, RECORD_HEADER_BYTES, record_header},
+    sink::{Message, Sink},
     topic::{Topic, TopicSet},
 };
 

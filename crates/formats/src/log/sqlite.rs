@@ -16,10 +16,9 @@ use std::{
 use rusqlite::{Connection, OpenFlags, Row, Statement, limits::Limit};
 
 use super::{
-    Ending, Message, Sink,
     compressed::unpacked_message,
     error::{LogError, LogFault},
-    mcap::Outcome,
+    sink::{Ending, Message, Outcome, Sink},
     topic::{Topic, TopicSet},
 };
 use crate::schema::RawDefinition;

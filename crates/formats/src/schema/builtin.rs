@@ -2,11 +2,6 @@
 //! those of the packages `builtin_interfaces`, `std_msgs`, `geometry_msgs`, `sensor_msgs`, `nav_msgs` and `tf2_msgs`, which have
 //! been the same since ROS 2's first release.
 
-use super::{
-    cdr_types::CdrTypes,
-    ros2msg::{parse, short_name},
-};
-
 /// Name and text of every definition.
 const DEFINITIONS: &[(&str, &str)] = &[
     ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec"),
@@ -62,21 +57,8 @@ pub fn text(short_name: &str) -> Option<&'static str> {
     DEFINITIONS.iter().find(|(name, _)| *name == short_name).map(|(_, text)| *text)
 }
 
-/// Returns the definition of a type by its name.
-pub fn types(type_name: &str) -> Option<CdrTypes> {
-    parse(type_name, text(&short_name(type_name))?).ok()
-}
-
+/// Returns the names of all definitions.
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_definition_is_complete() {
-        for (name, _) in DEFINITIONS {
-            assert!(types(name).is_some(), "{name}");
-        }
-        assert!(types("sensor_msgs/msg/Imu").is_some());
-        assert!(types("sensor_msgs/msg/Unheard").is_none());
-    }
+pub fn names() -> impl Iterator<Item = &'static str> {
+    DEFINITIONS.iter().map(|(name, _)| *name)
 }

@@ -6,8 +6,8 @@
 use std::{borrow::Cow, str};
 
 use super::{
-    MAX_DEPTH,
     cdr_types::{CdrType, CdrTypes, Number},
+    limits::MAX_DEPTH,
 };
 
 /// Bytes before the message that name the encoding.

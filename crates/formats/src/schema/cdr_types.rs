@@ -1,6 +1,6 @@
 //! Types of messages in CDR, the encoding of DDS and ROS 2.
 
-use super::{MAX_DEPTH, Shape};
+use super::limits::MAX_DEPTH;
 
 /// Number of a structure among those of a definition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,11 +104,6 @@ impl CdrTypes {
     /// Returns the fields of a structure.
     pub fn fields(&self, id: StructId) -> &[CdrField] {
         self.structs.get(id.0).map_or(&[], Vec::as_slice)
-    }
-
-    /// Returns the fields that messages have.
-    pub fn shape(&self) -> Shape<'_> {
-        Shape::Cdr(self, self.fields(self.root))
     }
 
     /// Returns the fields of a structure, or of the values of an array or sequence.

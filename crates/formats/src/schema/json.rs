@@ -6,14 +6,13 @@ use base64::{Engine, engine::general_purpose::STANDARD};
 use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::{Value, value::RawValue};
 
-use super::Shape;
-
 /// Definition of messages in JSON.
 #[derive(Debug)]
 pub struct JsonSchema {
-    type_name: String,
+    /// Name of the messages' type.
+    pub type_name: String,
     /// JSON schema, if the log holds one.
-    schema: Option<Value>,
+    pub schema: Option<Value>,
 }
 
 impl JsonSchema {
@@ -24,14 +23,6 @@ impl JsonSchema {
             data => Some(serde_json::from_slice(data).map_err(|_| "its JSON schema is damaged".to_owned())?),
         };
         Ok(Self { type_name: type_name.to_owned(), schema })
-    }
-
-    /// Returns the fields that messages have.
-    pub fn shape(&self) -> Shape<'_> {
-        match &self.schema {
-            Some(schema) => Shape::Json(schema),
-            None => Shape::Named(&self.type_name),
-        }
     }
 }
 

@@ -4,6 +4,7 @@ mod builtin;
 mod cdr;
 mod cdr_types;
 mod json;
+mod limits;
 mod protobuf;
 mod ros2msg;
 mod ros_z;
@@ -16,9 +17,6 @@ pub use self::{shape::Shape, view::View};
 
 /// Largest definition that is read, bytes: those of ROS 2's largest messages take some ten kilobytes.
 const MAX_DEFINITION_BYTES: usize = 1 << 20;
-
-/// Depth to which messages may be nested; real ones are nested six deep.
-const MAX_DEPTH: usize = 32;
 
 /// Encoded definition of a topic's messages, as the log holds it.
 #[derive(Debug, Clone, Copy)]
@@ -62,9 +60,9 @@ impl Definition {
     /// Returns the fields that messages have.
     pub fn shape(&self) -> Shape<'_> {
         match &self.0 {
-            Kind::Cdr(types) => types.shape(),
-            Kind::Json(schema) => schema.shape(),
-            Kind::Protobuf(types) => types.shape(),
+            Kind::Cdr(types) => Shape::Cdr(types, types.fields(types.root)),
+            Kind::Json(schema) => schema.schema.as_ref().map_or(Shape::Named(&schema.type_name), Shape::Json),
+            Kind::Protobuf(types) => Shape::Protobuf(types, types.root_fields()),
             Kind::Unreadable(_) => Shape::Unknown,
         }
     }
@@ -101,7 +99,7 @@ impl Kind {
             "ros2msg" if !text.trim().is_empty() => ros2msg::parse(raw.type_name, text).map(Self::Cdr),
             "ros-z-schema-json" => ros_z::parse(text).map(Self::Cdr),
             // Without a definition that can be read, the name says which of the standard ones it is.
-            encoding => builtin::types(raw.type_name).map(Self::Cdr).ok_or_else(|| match encoding {
+            encoding => ros2msg::standard(raw.type_name).map(Self::Cdr).ok_or_else(|| match encoding {
                 "" => "the log holds no definition of its messages".to_owned(),
                 encoding => format!("definitions in `{encoding}` are not read"),
             }),

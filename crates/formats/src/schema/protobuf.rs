@@ -2,10 +2,7 @@
 
 use std::{borrow::Cow, collections::HashMap, str};
 
-use super::{
-    Shape,
-    wire::{WireFields, WireValue, fixed32, fixed64, varint},
-};
+use super::wire::{WireFields, WireValue, fixed32, fixed64, varint};
 
 /// Depth to which descriptors may be nested.
 const MAX_NESTING: usize = 16;
@@ -63,8 +60,8 @@ impl ProtobufTypes {
     }
 
     /// Returns the fields that messages have.
-    pub fn shape(&self) -> Shape<'_> {
-        Shape::Protobuf(self, self.fields(&self.root))
+    pub fn root_fields(&self) -> &[ProtobufField] {
+        self.fields(&self.root)
     }
 
     fn fields(&self, name: &str) -> &[ProtobufField] {

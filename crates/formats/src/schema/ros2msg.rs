@@ -16,6 +16,11 @@ pub fn parse(type_name: &str, text: &str) -> Result<CdrTypes, String> {
     Ok(CdrTypes { structs: parser.structs, root })
 }
 
+/// Returns the standard definition of a type; `None` if it is not a standard one.
+pub fn standard(type_name: &str) -> Option<CdrTypes> {
+    parse(type_name, builtin::text(&short_name(type_name))?).ok()
+}
+
 /// Returns `package/Type` of `package/msg/Type` or `package::msg::Type`.
 pub fn short_name(name: &str) -> String {
     let parts: Vec<&str> = name.split(['/', ':']).filter(|part| !part.is_empty()).collect();
@@ -140,6 +145,15 @@ mod tests {
         let CdrType::Struct(other) = fields[2].kind else { panic!("{fields:?}") };
         assert_eq!(types.fields(other)[1].kind, CdrType::Text);
         assert!(parse("mine/msg/Whole", "Missing missing").is_err());
+    }
+
+    #[test]
+    fn every_standard_definition_is_complete() {
+        for name in builtin::names() {
+            assert!(standard(name).is_some(), "{name}");
+        }
+        assert!(standard("sensor_msgs/msg/Imu").is_some());
+        assert!(standard("sensor_msgs/msg/Unheard").is_none());
     }
 
     #[test]

@@ -6,8 +6,8 @@ use std::collections::HashMap;
 use serde_json::{Map, Value};
 
 use super::{
-    MAX_DEPTH,
     cdr_types::{CdrField, CdrType, CdrTypes, Number, StructId},
+    limits::MAX_DEPTH,
 };
 
 /// Parses a definition. Fails with what cannot be understood.
