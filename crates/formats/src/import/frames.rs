@@ -1,6 +1,6 @@
 //! Frames of a robot and the transforms between them, over time: from `tf` topics, and from a URDF with joints.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::{
     clock::Clock,
@@ -12,12 +12,19 @@ use crate::message::Rigid;
 /// Most frames on the way from one to the root: those of robots are a dozen deep.
 const MAX_DEPTH: usize = 100;
 
+/// Number of transforms beyond which only those that are needed are kept: some 50 MB.
+const MANY_TRANSFORMS: usize = 500_000;
+
 /// Tree of frames.
 #[derive(Debug, Default)]
 pub struct FrameTree {
     /// Ways to the parents, by the children's names.
     edges: HashMap<String, Edge>,
     joints: HashMap<String, Series<f64>>,
+    /// Number of transforms of moving frames that are kept.
+    kept: usize,
+    /// Frames whose transforms are still kept, once there are many.
+    wanted: Option<HashSet<String>>,
 }
 
 #[derive(Debug)]
@@ -40,8 +47,25 @@ impl FrameTree {
         self.edges.insert(child.to_owned(), edge);
     }
 
+    /// Returns whether so many transforms are kept that those of other frames than the needed ones should go.
+    pub fn is_large(&self) -> bool {
+        self.wanted.is_none() && self.kept > MANY_TRANSFORMS
+    }
+
+    /// Forgets the moving frames that are not between these and the root: robots send the transforms of every finger.
+    pub fn keep_between(&mut self, frames: &[&str]) {
+        let wanted: HashSet<String> =
+            frames.iter().flat_map(|frame| self.chain(frame)).map(str::to_owned).collect();
+        self.edges.retain(|child, edge| wanted.contains(child) || !matches!(edge.kind, EdgeKind::Moving(_)));
+        self.wanted = Some(wanted);
+    }
+
     /// Adds a transform that holds at a time.
     pub fn add_moving(&mut self, parent: &str, child: &str, sample: Sample<Rigid>) {
+        if self.wanted.as_ref().is_some_and(|wanted| !wanted.contains(child)) {
+            return;
+        }
+        self.kept += 1;
         match self.edges.get_mut(child) {
             Some(Edge { parent: known, kind: EdgeKind::Moving(series) }) if known == parent => {
                 series.push(sample);
@@ -150,5 +174,38 @@ impl FrameTree {
                 joint.transform(position)
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DQuat, DVec3};
+
+    use super::*;
+
+    fn sample(x: f64) -> Sample<Rigid> {
+        Sample { time_ns: 1, log_time_ns: 1, value: Rigid::new(DQuat::IDENTITY, DVec3::X * x) }
+    }
+
+    #[test]
+    fn a_frame_that_is_not_on_the_way_is_forgotten_and_the_way_is_kept() {
+        let mut tree = FrameTree::default();
+        for (parent, child, x) in [("base", "head", 1.0), ("head", "camera", 2.0), ("base", "hand", 3.0)] {
+            tree.add_moving(parent, child, sample(x));
+        }
+        tree.keep_between(&["camera"]);
+        tree.add_moving("base", "hand", sample(3.0));
+        assert!(!tree.connects("hand", "camera"));
+        let way = tree.transform("base", "camera", 1, 0).expect("it is kept");
+        assert_eq!(way.translation, DVec3::X * 3.0);
+    }
+
+    #[test]
+    fn frames_that_are_each_other_s_parents_are_no_endless_loop() {
+        let mut tree = FrameTree::default();
+        tree.add_moving("a", "b", sample(1.0));
+        tree.add_moving("b", "a", sample(1.0));
+        assert!(tree.chain("a").len() <= 3);
+        assert!(tree.transform("a", "nowhere", 1, 0).is_none());
     }
 }

@@ -37,7 +37,7 @@ pub struct Gathered {
     pub files: HashMap<usize, PathBuf>,
     /// Size of the pictures, pixels.
     pub picture_size: Option<[u32; 2]>,
-    /// Frame of the camera by the pictures.
+    /// Frame of the camera: the given one, else that of the pictures.
     pub camera_frame: String,
     /// First calibration that is not all zeros, else the first.
     pub calibration: Option<Calibration>,
@@ -105,14 +105,22 @@ pub struct Gatherer<'a> {
 }
 
 impl<'a> Gatherer<'a> {
-    /// Makes a sink for the chosen topics.
-    pub fn new(choice: &'a Choice, writer: &'a PictureWriter, progress: &'a mut dyn FnMut(u64)) -> Self {
+    /// Makes a sink for the chosen topics; the pictures name the camera's frame unless it is given.
+    pub fn new(
+        choice: &'a Choice,
+        camera_frame: Option<&str>,
+        writer: &'a PictureWriter,
+        progress: &'a mut dyn FnMut(u64),
+    ) -> Self {
         Self {
             choice,
             writer,
             progress,
             uses: HashMap::new(),
-            gathered: Gathered::default(),
+            gathered: Gathered {
+                camera_frame: camera_frame.unwrap_or_default().to_owned(),
+                ..Gathered::default()
+            },
             urdf: None,
             previous: Vec::new(),
         }
@@ -168,6 +176,9 @@ impl Sink for Gatherer<'_> {
             }
         }
         self.uses.insert(Arc::as_ptr(message.topic), uses);
+        if self.gathered.frames.is_large() && !self.gathered.camera_frame.is_empty() {
+            self.gathered.forget_other_frames(self.choice.reference_frame.as_deref());
+        }
         flow
     }
 
@@ -294,6 +305,14 @@ impl Gathered {
             }
         }
         Some(())
+    }
+
+    /// Forgets the frames that are on no way that an import goes.
+    fn forget_other_frames(&mut self, reference: Option<&str>) {
+        let Self { camera_frame, imu_frame, odometry_frames, reference_child, .. } = &*self;
+        let (camera, imu, base) = (camera_frame.clone(), imu_frame.clone(), odometry_frames.1.clone());
+        let (child, reference) = (reference_child.clone(), reference.unwrap_or_default());
+        self.frames.keep_between(&[&camera, &imu, &base, &child, reference]);
     }
 
     fn sample<T>(&mut self, header: &Header, message: Message<'_>, value: T) -> Sample<T> {

@@ -51,7 +51,7 @@ pub fn import_log(
     let mut topics = TopicSet::default();
     let choice = Choice::of(&log.topics(&mut topics)?, options).map_err(lack)?;
     let writer = PictureWriter::start(out).map_err(unwritable)?;
-    let mut gatherer = Gatherer::new(&choice, &writer, progress);
+    let mut gatherer = Gatherer::new(&choice, options.camera_frame.as_deref(), &writer, progress);
     let ending = log.read(&mut topics, &mut gatherer)?;
     let mut gathered = gatherer.finish();
     let pictures = writer.finish().map_err(unwritable)?;

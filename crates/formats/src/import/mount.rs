@@ -41,7 +41,7 @@ pub struct CameraMount<'a> {
 impl<'a> CameraMount<'a> {
     /// Finds what tells pitch and roll. Fails if nothing does.
     pub fn find(gathered: &'a Gathered, shots: &[Shot], options: &ImportOptions) -> Result<Self, Lack> {
-        let camera = options.camera_frame.clone().unwrap_or_else(|| gathered.camera_frame.clone());
+        let camera = gathered.camera_frame.clone();
         let level = level_frame(gathered, &camera, options.base_frame.as_deref());
         let is_linked =
             gathered.frames.connects(&gathered.imu_frame, &camera) && gathered.imu_frame != camera;
