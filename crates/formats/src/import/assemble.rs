@@ -12,7 +12,7 @@ use super::{
     clock::{Clock, lost_frames},
     error::Lack,
     gather::Gathered,
-    mount::CameraMount,
+    mount::{AttitudeSource, CameraMount},
     odometry::CameraOdometry,
     options::ImportOptions,
     reference::{Reference, median},
@@ -183,6 +183,13 @@ fn mount_notes(gathered: &Gathered, mount: &CameraMount<'_>) -> Vec<String> {
         notes.push(format!(
             "the IMU's frame `{imu_frame}` is taken for the camera's, in {axes} axes: no tf links them"
         ));
+    }
+    if mount.source == AttitudeSource::ImuOnBase {
+        let base = on_one_line(mount.level.as_deref().unwrap_or_default());
+        notes.push(format!("no tf knows the IMU's frame `{imu_frame}`: it is taken for that of `{base}`"));
+    }
+    if mount.source == AttitudeSource::Reference {
+        notes.push("nothing but the reference poses tells pitch and roll: they are theirs".to_owned());
     }
     if !gathered.gravity.is_empty() && mount.source_name().starts_with("accelerometer") {
         notes.push(

@@ -136,11 +136,26 @@ impl FrameTree {
 
     /// Returns whether the way from one frame to another passes joints of a robot's description.
     pub fn passes_joints(&self, a: &str, b: &str) -> bool {
-        let is_joint =
-            |frame: &&str| matches!(self.edges.get(*frame), Some(Edge { kind: EdgeKind::Joint(_), .. }));
+        self.passes(a, b, |kind| matches!(kind, EdgeKind::Joint(_)))
+    }
+
+    /// Returns whether a transform on the way from one frame to another changes with time.
+    pub fn moves(&self, a: &str, b: &str) -> bool {
+        let changes =
+            |series: &Series<Rigid>| series.samples().windows(2).any(|pair| pair[0].value != pair[1].value);
+        self.passes(a, b, |kind| match kind {
+            EdgeKind::Fixed(_) => false,
+            EdgeKind::Moving(series) => changes(series),
+            EdgeKind::Joint(_) => true,
+        })
+    }
+
+    /// Returns whether any transform on the way from one frame to another is of a kind.
+    fn passes(&self, a: &str, b: &str, is_one: impl Fn(&EdgeKind) -> bool) -> bool {
         let (a, b) = (self.chain(a), self.chain(b));
         let apart = |from: &[&str], other: &[&str]| {
-            from.iter().take_while(|frame| !other.contains(frame)).any(is_joint)
+            let own = from.iter().take_while(|frame| !other.contains(frame));
+            own.filter_map(|frame| self.edges.get(*frame)).any(|edge| is_one(&edge.kind))
         };
         apart(&a, &b) || apart(&b, &a)
     }

@@ -15,6 +15,10 @@ pub enum AttitudeSource {
     ImuAndFrames,
     /// IMU alone: it is taken to sit on the camera.
     Imu,
+    /// IMU on the base, of whose frame tf knows nothing.
+    ImuOnBase,
+    /// Reference poses: nothing else tells pitch and roll.
+    Reference,
     /// Accelerometer, whose frame tf or joints link to the camera's.
     AccelerometerAndFrames,
     /// Accelerometer alone: it is taken to sit on the camera.
@@ -45,14 +49,18 @@ impl<'a> CameraMount<'a> {
         let level = level_frame(gathered, &camera, options.base_frame.as_deref());
         let is_linked =
             gathered.frames.connects(&gathered.imu_frame, &camera) && gathered.imu_frame != camera;
+        let is_still = level.as_ref().is_some_and(|level| !gathered.frames.moves(level, &camera));
         let by_odometry = level.as_ref().is_some_and(|level| is_child_of_odometry(gathered, level));
         let source = match (gathered.imu.is_empty(), gathered.gravity.is_empty(), &level) {
             (false, _, _) if is_linked => AttitudeSource::ImuAndFrames,
             (false, _, level) if level.is_none() || gathered.imu_frame == camera => AttitudeSource::Imu,
+            (false, _, Some(_)) if is_still && is_camera_s(&gathered.imu_frame) => AttitudeSource::Imu,
+            (false, _, Some(_)) if is_still => AttitudeSource::ImuOnBase,
             (_, _, Some(_)) if by_odometry => AttitudeSource::OdometryAndFrames,
             (true, false, Some(_)) if is_linked => AttitudeSource::AccelerometerAndFrames,
             (_, _, Some(_)) => AttitudeSource::Frames,
             (_, false, None) => AttitudeSource::Accelerometer,
+            _ if !gathered.reference.is_empty() => AttitudeSource::Reference,
             _ => return Err(Lack::NoAttitude { frame: camera }),
         };
         let tolerance_ns = options.tolerance_ns();
@@ -111,6 +119,8 @@ impl<'a> CameraMount<'a> {
             AttitudeSource::Imu => attitude(&gathered.imu),
             AttitudeSource::Accelerometer => attitude(&gathered.gravity),
             AttitudeSource::ImuAndFrames => Some(attitude(&gathered.imu)? * transform(&gathered.imu_frame)?),
+            AttitudeSource::ImuOnBase => Some(attitude(&gathered.imu)? * transform(self.level.as_ref()?)?),
+            AttitudeSource::Reference => Some(gathered.reference.at(time_ns, self.tolerance_ns)?.rotation),
             AttitudeSource::AccelerometerAndFrames => {
                 Some(attitude(&gathered.gravity)? * transform(&gathered.imu_frame)?)
             }
@@ -131,6 +141,8 @@ impl<'a> CameraMount<'a> {
         match self.source {
             AttitudeSource::Imu => "imu".to_owned(),
             AttitudeSource::Accelerometer => "accelerometer".to_owned(),
+            AttitudeSource::Reference => "reference".to_owned(),
+            AttitudeSource::ImuOnBase => format!("imu+{}", from(level)),
             AttitudeSource::ImuAndFrames => format!("imu+{}", from(&self.gathered.imu_frame)),
             AttitudeSource::AccelerometerAndFrames => {
                 format!("accelerometer+{}", from(&self.gathered.imu_frame))
@@ -139,6 +151,12 @@ impl<'a> CameraMount<'a> {
             AttitudeSource::OdometryAndFrames => format!("odometry+{}", from(level)),
         }
     }
+}
+
+/// Returns whether a frame that tf does not know is one of the camera's or the head's, by its name.
+fn is_camera_s(frame: &str) -> bool {
+    let frame = frame.to_ascii_lowercase();
+    frame.is_empty() || ["cam", "head", "optical"].iter().any(|part| frame.contains(part))
 }
 
 /// Returns whether the odometry tells a frame's pose.

@@ -204,3 +204,34 @@ fn a_reference_of_the_base_is_moved_to_the_camera() {
         );
     }
 }
+
+#[test]
+fn an_imu_in_an_unknown_frame_tilts_a_base_whose_camera_never_moves() {
+    let walk = walk(20);
+    let mut messages = pictures(&walk, "camera_optical", "base_link");
+    let place = DVec3::Z * HEIGHT_M;
+    let link = robot::transform(0, "base_link", "camera_optical", place, body_from_optical());
+    add_tf(&mut messages, "/tf_static", 0, vec![link]);
+    for truth in &walk {
+        let value = robot::imu(truth, "imu_link", Some(truth.level_from_body(0.4)), DVec3::ZERO);
+        add_imu(&mut messages, truth, &value);
+    }
+    let imported = import(&messages, &ImportOptions { height_m: None, ..options() }).unwrap();
+    assert_like(&imported, &walk);
+    assert!(imported.report.notes.iter().any(|note| note.contains("imu_link")), "{:?}", imported.report);
+    assert_eq!(imported.sequence.setup.mount_height_m, HEIGHT_M);
+}
+
+#[test]
+fn reference_poses_tell_pitch_and_roll_where_nothing_else_does() {
+    let walk = walk(10);
+    let mut messages = pictures(&walk, "camera", "base_link");
+    for truth in &walk {
+        let place = DVec3::new(truth.x_m, truth.y_m, HEIGHT_M);
+        let pose = robot::pose(truth.time_ns, place, truth.level_from_optical(truth.yaw_rad));
+        add_pose(&mut messages, truth.time_ns, &pose);
+    }
+    let imported = import(&messages, &options()).unwrap();
+    assert_like(&imported, &walk);
+    assert_eq!(imported.report.attitude_source, "reference");
+}
