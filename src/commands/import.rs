@@ -13,7 +13,7 @@ use serde::Serialize;
 use reality_sim::{
     FieldDimensions,
     field::preset_names,
-    sequence::{counted, read_camera, read_field},
+    sequence::{counted, on_one_line, read_camera, read_field},
 };
 use reality_sim_formats::{
     Input,
@@ -174,7 +174,7 @@ impl ImportArgs {
 pub fn name_of(input: &Path) -> String {
     let path = input.canonicalize().unwrap_or_else(|_| input.to_path_buf());
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    name.chars().filter(|letter| !letter.is_control()).collect()
+    on_one_line(&name)
 }
 
 /// Returns the field on which a log was recorded: the given one, else that of the `field.toml` beside the log or in its folder.

@@ -131,8 +131,7 @@ fn camera(
     let setup = match (&options.camera, &choice.calibration, &gathered.calibration) {
         (Some(setup), _, _) => setup.clone(),
         (None, Some(chosen), Some(calibration)) => {
-            let is_rectified = topic.contains("rect") && !topic.contains("unrect");
-            let converted = if is_rectified {
+            let converted = if is_rectified(&topic) {
                 notes.push(format!(
                     "the pictures on {} are rectified: the lens is a pinhole",
                     on_one_line(&topic)
@@ -155,6 +154,11 @@ fn camera(
         return Err(Lack::OtherSize { calibration, pictures, topic });
     }
     Ok(setup)
+}
+
+/// Returns whether pictures are rectified, by the name of their topic: `image_rect`, `image_rect_color`, `rectified_image`.
+fn is_rectified(topic: &str) -> bool {
+    topic.split(['/', '_']).any(|part| part == "rect" || part.starts_with("rectif"))
 }
 
 /// Returns the median height of the camera over the frame that does not tilt.

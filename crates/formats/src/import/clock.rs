@@ -1,6 +1,7 @@
 //! Jumps of the robot's clock, lost and doubled frames.
 
 use super::shot::Shot;
+use crate::log::LATEST_NS;
 
 /// Difference between the steps of the stamps and of the log beyond which a clock has jumped, nanoseconds.
 const JUMP_NS: i64 = 500_000_000;
@@ -59,7 +60,8 @@ impl Clock {
         let candidates = self.corrections[around].iter().map(|(_, added)| *added).chain(none);
         let expected = log_time_ns.saturating_add(self.bias_ns);
         let moved = candidates.map(|added| stamp_ns.saturating_add(added));
-        moved.min_by_key(|stamp| stamp.saturating_sub(expected).saturating_abs()).unwrap_or(stamp_ns)
+        let nearest = moved.min_by_key(|stamp| stamp.saturating_sub(expected).saturating_abs());
+        nearest.unwrap_or(stamp_ns).clamp(-LATEST_NS, LATEST_NS)
     }
 }
 

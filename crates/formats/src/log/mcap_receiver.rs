@@ -10,7 +10,7 @@ use mcap::records::op;
 use super::{
     compressed::unpacked_message,
     mcap_records::{Channels, message},
-    sink::{Message, Sink},
+    sink::{LATEST_NS, Message, Sink},
     topic::TopicSet,
 };
 
@@ -57,7 +57,8 @@ impl<'a> Receiver<'a> {
         match self.channels.by_id.get(&channel) {
             Some(channel) if channel.is_wanted => {
                 let data = &unpacked_message(data);
-                let log_time_ns = i64::try_from(log_time_ns).unwrap_or(i64::MAX);
+                let log_time_ns =
+                    i64::try_from(log_time_ns).map_or(LATEST_NS, |time_ns| time_ns.min(LATEST_NS));
                 self.sink.take(Message { topic: &channel.topic, log_time_ns, data })
             }
             _ => ControlFlow::Continue(()),

@@ -25,7 +25,7 @@ use std::{
 pub use self::{
     error::{LogError, LogFault},
     files::is_log,
-    sink::{Ending, Message, Sink},
+    sink::{Ending, LATEST_NS, Message, Sink},
     survey::{Survey, TopicSummary},
     topic::{Topic, TopicSet},
 };

@@ -7,6 +7,10 @@ use super::topic::Topic;
 /// How reading a file or a part of one ended.
 pub(super) type Outcome = (ControlFlow<()>, Ending);
 
+/// Latest time that is believed, and with a minus the earliest, nanoseconds: the year 2096. Differences of two such times are numbers
+/// of 64 bits.
+pub const LATEST_NS: i64 = 4_000_000_000_000_000_000;
+
 /// Message of a log.
 #[derive(Debug, Clone, Copy)]
 pub struct Message<'a> {

@@ -18,7 +18,7 @@ use rusqlite::{Connection, OpenFlags, Row, Statement, limits::Limit};
 use super::{
     compressed::unpacked_message,
     error::{LogError, LogFault},
-    sink::{Ending, Message, Outcome, Sink},
+    sink::{Ending, LATEST_NS, Message, Outcome, Sink},
     topic::{Topic, TopicSet},
 };
 use crate::schema::RawDefinition;
@@ -200,6 +200,7 @@ impl Reader<'_> {
         };
         let data = row.get_ref(3)?.as_blob_or_null().ok().flatten().unwrap_or_default();
         self.bytes += data.len() as u64;
+        let log_time_ns = log_time_ns.clamp(-LATEST_NS, LATEST_NS);
         let flow = self.sink.take(Message { topic, log_time_ns, data: &unpacked_message(data) });
         self.sink.read_so_far(self.bytes.min(self.length));
         self.last_id = id;

@@ -1,6 +1,6 @@
 //! Time and frame of a message.
 
-use crate::schema::View;
+use crate::{log::LATEST_NS, schema::View};
 
 /// Nanoseconds in a second.
 const SECOND_NS: i64 = 1_000_000_000;
@@ -21,7 +21,9 @@ impl Header {
         let frame = header.any_field(&["frame_id", "parent_frame_id"]).as_ref().and_then(frame_name);
         let stamp = header.any_field(&["stamp", "timestamp"]);
         Self {
-            stamp_ns: stamp.and_then(stamp_ns).filter(|stamp| *stamp != 0),
+            stamp_ns: stamp
+                .and_then(stamp_ns)
+                .filter(|stamp| *stamp != 0 && stamp.unsigned_abs() <= LATEST_NS as u64),
             frame: frame.unwrap_or_default(),
         }
     }
