@@ -8,6 +8,7 @@ mod gap;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod image_at;
+mod import;
 mod kd_tree;
 mod neighbours;
 mod poses;
@@ -36,7 +37,7 @@ fn main() {
         .measurement_time(Duration::from_secs(1))
         .without_plots()
         .configure_from_args();
-    let stages: [fn(&mut Criterion, &Scene); 14] = [
+    let stages: [fn(&mut Criterion, &Scene); 15] = [
         blur::bench,
         border::bench,
         white_lines::bench,
@@ -51,6 +52,7 @@ fn main() {
         database::bench,
         image_at::bench,
         gap::bench,
+        import::bench,
     ];
     for stage in stages {
         stage(&mut criterion, &scene);

@@ -17,6 +17,7 @@ use reality_sim::{
 use super::{
     device::BackendArgs,
     filter::{filter_plan, pose_error},
+    input::Recording,
     model_file::{ModelArgs, Use, open_corrected},
     output::{StageProgress, aligned, check_output_file, print, print_json},
 };
@@ -24,12 +25,15 @@ use super::{
 /// Options of `build`.
 #[derive(Debug, Args)]
 pub struct BuildArgs {
-    /// Folders of the sequences, which contain sequence.toml
+    /// Folders of the sequences, which contain sequence.toml, or robots' logs
     #[arg(required = true)]
     sequences: Vec<PathBuf>,
     /// Database to add to, created if it does not exist; pictures that it contains are not added again
     #[arg(long, value_name = "DATABASE")]
     out: PathBuf,
+    /// Field on which logs were recorded: a field.toml, or the name of a preset
+    #[arg(long, value_name = "FILE|PRESET")]
+    field: Option<PathBuf>,
     /// Poses to use instead of the sequence's own, as `tag --out` writes them
     #[arg(long, value_name = "FILE", conflicts_with = "tag")]
     poses: Option<PathBuf>,
@@ -108,8 +112,11 @@ impl BuildArgs {
 /// Runs the command.
 pub fn run(args: &BuildArgs) -> anyhow::Result<()> {
     let model = args.model.read()?;
-    let open = |folder: &PathBuf| open_corrected(folder, model.as_ref()).map(Arc::new);
-    let sequences: Vec<Arc<Sequence>> = args.sequences.iter().map(open).collect::<Result<_, _>>()?;
+    let field = args.field.as_deref();
+    let recordings: Vec<Recording> =
+        args.sequences.iter().map(|path| Recording::open(path, field)).collect::<Result<_, _>>()?;
+    let open = |recording: &Recording| open_corrected(recording.folder(), model.as_ref()).map(Arc::new);
+    let sequences: Vec<Arc<Sequence>> = recordings.iter().map(open).collect::<Result<_, _>>()?;
     let mut inputs: Vec<PathBuf> = sequences.iter().flat_map(|sequence| sequence.files.clone()).collect();
     inputs.extend(args.model.model.clone());
     check_output_file(&args.out, &inputs)?;

@@ -1,4 +1,4 @@
-//! `reality-sim info`: summarises the contents of a database.
+//! `reality-sim info`: summarises the contents of a database, or of a log.
 
 use std::{collections::BTreeMap, fs, path::PathBuf};
 
@@ -14,7 +14,12 @@ use reality_sim::{
     sequence::{counted, write_atomically},
 };
 
-use super::output::{aligned, check_output_file, print, print_json};
+use reality_sim_formats::Input;
+
+use super::{
+    log_info,
+    output::{aligned, check_output_file, print, print_json},
+};
 
 /// Side of a cell of the carpet, metres.
 const CELL_M: f64 = 0.25;
@@ -25,7 +30,8 @@ const NEAR_PX: f64 = 100.0;
 /// Options of `info`.
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// Database, as `build` makes it
+    /// Database, as `build` makes it, or a robot's log
+    #[arg(value_name = "DATABASE|LOG")]
     database: PathBuf,
     /// Draw to this SVG file where and in which directions pictures were taken, and how far the nearest one is
     #[arg(long, value_name = "FILE")]
@@ -97,6 +103,12 @@ struct CoverageReport {
 
 /// Runs the command.
 pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
+    if Input::at(&args.database) == Some(Input::Log) {
+        if args.coverage.is_some() {
+            bail!("{}: is a log: --coverage draws databases only", args.database.display());
+        }
+        return log_info::run(&args.database, args.json);
+    }
     if let Some(file) = &args.coverage {
         if file.extension().is_none_or(|ending| ending != "svg") {
             bail!("{}: is not the name of an SVG file: give one that ends in .svg", file.display());

@@ -12,7 +12,10 @@ mod export;
 mod filter;
 mod frame_range;
 mod gap;
+mod import;
 mod info;
+mod input;
+mod log_info;
 mod model_file;
 mod output;
 mod output_folder;
@@ -38,11 +41,13 @@ pub enum Command {
     Calibrate(calibrate::CalibrateArgs),
     /// Store recordings with their poses in a database
     Build(build::BuildArgs),
+    /// Make a sequence of a robot's log, or of another program's model
+    Import(Box<import::ImportArgs>),
     /// Make the picture at a pose, or the pictures along a path, from a database
     Render(Box<render::RenderArgs>),
     /// Compare reconstructed pictures with true ones that are not in the database
     Evaluate(evaluate::EvaluateArgs),
-    /// Summarise a database: what it holds, and how much of the field it covers
+    /// Summarise a database, and how much of the field it covers, or list the topics of a robot's log
     Info(info::InfoArgs),
     /// Remove a sequence's pictures, or some of them, from a database
     Remove(remove::RemoveArgs),
@@ -71,9 +76,12 @@ impl Command {
             Self::Render(args) => args.check_usage(),
             Self::Evaluate(args) => args.check_usage(),
             Self::Export(args) => args.check_usage(),
-            Self::Calibrate(_) | Self::Info(_) | Self::Remove(_) | Self::Completions(_) | Self::Man(_) => {
-                Ok(())
-            }
+            Self::Calibrate(_)
+            | Self::Import(_)
+            | Self::Info(_)
+            | Self::Remove(_)
+            | Self::Completions(_)
+            | Self::Man(_) => Ok(()),
             Self::Gap(args) => args.check_usage(),
             #[cfg(feature = "gpu")]
             Self::Doctor(_) => Ok(()),
@@ -88,6 +96,7 @@ impl Command {
             Self::Tag(args) => tag::run(args),
             Self::Calibrate(args) => calibrate::run(args),
             Self::Build(args) => build::run(args),
+            Self::Import(args) => import::run(args),
             Self::Render(args) => render::run(args),
             Self::Evaluate(args) => evaluate::run(args),
             Self::Export(args) => export::run(args),

@@ -89,6 +89,13 @@ pub fn print(text: &str) -> anyhow::Result<()> {
     if is_quiet() { Ok(()) } else { print_all(for_terminal(text).as_bytes()) }
 }
 
+/// Prints a line on standard error, beside what the command reports, unless the program is quiet.
+pub fn notify(line: &str) {
+    if !is_quiet() {
+        eprintln!("{}", on_one_line(line));
+    }
+}
+
 /// Prints bytes on standard output as they are. It is not an error if the reader has closed the pipe.
 pub fn print_all(bytes: &[u8]) -> anyhow::Result<()> {
     let mut output = io::stdout().lock();

@@ -7,7 +7,7 @@ use clap::Args;
 
 use reality_sim_viewer::ViewerOptions;
 
-use super::{device, model_file::ModelArgs};
+use super::{device, input::Recording, model_file::ModelArgs};
 
 /// Path of the demonstration, relative to the project's folder.
 const DEMONSTRATION: &str = "assets/walk";
@@ -15,9 +15,12 @@ const DEMONSTRATION: &str = "assets/walk";
 /// Options of `viewer`.
 #[derive(Debug, Args)]
 pub struct ViewerArgs {
-    /// Folder of a sequence, database, or folder of a report; the demonstration walk if left out
+    /// Folder of a sequence, robot's log, database, or folder of a report; the demonstration walk if left out
     #[arg(value_name = "SEQUENCE|DATABASE|REPORT")]
     open: Option<PathBuf>,
+    /// Field on which a log was recorded: a field.toml, or the name of a preset
+    #[arg(long, value_name = "FILE|PRESET")]
+    field: Option<PathBuf>,
     #[command(flatten)]
     model: ModelArgs,
 }
@@ -39,6 +42,8 @@ pub fn run(args: &ViewerArgs) -> anyhow::Result<()> {
         ),
     };
     let model = args.model.read()?.map(|file| file.model);
+    let recording = Recording::open(&open, args.field.as_deref())?;
+    let open = recording.folder().to_path_buf();
     Ok(reality_sim_viewer::run(ViewerOptions { open, demonstration, model, devices: device::all() })?)
 }
 

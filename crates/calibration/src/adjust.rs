@@ -127,9 +127,7 @@ impl Adjustment<'_> {
     ) -> Option<Adjusted> {
         let (first_state, first_poses) = (state.clone(), poses(views));
         let rows = || measured.iter().zip(used).filter(|(_, used)| **used).flat_map(|(m, _)| &m.rows);
-        if rows().next().is_none() {
-            return None;
-        }
+        rows().next()?;
         let floor = self.lines.config().offset_sigma_px;
         let mut residual = Residuals::of(measured);
         noise.offset_px = residual.sigma().max(floor);

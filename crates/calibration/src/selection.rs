@@ -72,7 +72,7 @@ fn choices(state: &State) -> Vec<Vec<Parameter>> {
 /// Returns the choice with square pixels and two terms of distortion, or as many as there are.
 pub(crate) fn usual(state: &State) -> Vec<Parameter> {
     let is_simple = |choice: &Vec<Parameter>| !choice.contains(&Parameter::Distortion(2));
-    choices(state).into_iter().filter(is_simple).next_back().unwrap_or_default()
+    choices(state).into_iter().rfind(is_simple).unwrap_or_default()
 }
 
 /// Compares the choices, starting from a state that fits: first the numbers of terms with square pixels, then whether the best of

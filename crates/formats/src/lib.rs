@@ -3,6 +3,9 @@
 //!
 //! | what | where |
 //! |---|---|
+//! | which kind of input lies at a path | [`Input`] |
+//! | logs of robots, as streams of messages | [`log`], [`message`] |
+//! | a log as a recording | [`import`] |
 //! | pictures with poses, on their way out | [`posed::PosedPictures`], [`undistort::Undistortion`] |
 //! | COLMAP's models, written and read | [`colmap`] |
 //! | nerfstudio's `transforms.json`, written and read | [`nerfstudio`] |
@@ -13,17 +16,23 @@
 pub mod colmap;
 mod file;
 pub mod frame_table;
+pub mod import;
+mod input;
 pub mod line_points;
+pub mod log;
 pub mod mapped_table;
+pub mod message;
 pub mod model_error;
 pub mod model_import;
 pub mod nerfstudio;
 mod pixels;
 pub mod posed;
+mod schema;
 pub mod show;
 pub mod undistort;
 
 pub use self::{
+    input::Input,
     model_error::{ModelError, ModelFault},
     model_import::{ModelImport, ModelImportReport},
     posed::{PictureFiles, PosedPicture, PosedPictures},

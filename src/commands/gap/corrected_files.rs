@@ -19,7 +19,7 @@ pub fn corrected_files(
 ) -> anyhow::Result<[(&'static str, String); 2]> {
     let model = &analysis.model;
     let corrected = model.corrected(&sequence.setup, &sequence.field)?;
-    let stated = read_mounting(&Sequence::camera_file(&args.sequence)?)?;
+    let stated = read_mounting(&Sequence::camera_file(&sequence.folder)?)?;
     let mounting = stated.then(corrected.mounting().unwrap_or_default());
     let camera = corrected.setup_with_light().to_toml_with(&args.out, mounting)?;
     let field = corrected.field().to_toml(&args.out)?;

@@ -31,7 +31,8 @@ use super::{
 
 /// Runs the command.
 pub fn run(args: &GapArgs) -> anyhow::Result<()> {
-    let mut sequence = Sequence::open(&args.sequence)?;
+    let input = super::input::Recording::open(&args.sequence, args.field.as_deref())?;
+    let mut sequence = Sequence::open(input.folder())?;
     let mut given = args.model.as_deref().map_or_else(|| Ok(Model::default()), Model::read)?;
     // The model may lie in the output folder, so it is read before anything is written there.
     refuse_held(args, &given)?;

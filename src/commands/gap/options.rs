@@ -10,8 +10,11 @@ use crate::commands::{device::BackendArgs, frame_range::FrameRange};
 /// Options of `gap`.
 #[derive(Debug, Args)]
 pub struct GapArgs {
-    /// Folder of the sequence, which contains sequence.toml
+    /// Folder of the sequence, which contains sequence.toml, or a robot's log
     pub sequence: PathBuf,
+    /// Field on which a log was recorded: a field.toml, or the name of a preset
+    #[arg(long, value_name = "FILE|PRESET")]
+    pub field: Option<PathBuf>,
     /// Effects that the simulation already has: a model.toml, as this command writes it
     #[arg(long, value_name = "FILE")]
     pub model: Option<PathBuf>,

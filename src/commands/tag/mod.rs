@@ -23,13 +23,14 @@ use reality_sim::{
     write_tum,
 };
 
-pub use self::options::TagArgs;
+pub use self::options::{TagArgs, field_by_name};
 use self::{
     lines::LinesOfPictures,
     report::{PoseResult, Report, details_csv},
     watch::{Watchers, is_log, rows, write_details, write_log},
 };
 use super::{
+    input::Recording,
     model_file::Use,
     output::{check_distinct, check_output_file, frame_progress, print, print_json},
     output_folder::OutputFolder,
@@ -38,7 +39,8 @@ use super::{
 /// Runs the command.
 pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     let model = args.model.read()?;
-    let mut sequence = args.open_sequence(model.as_ref())?;
+    let recording = Recording::open(&args.sequence, args.field.as_deref())?;
+    let mut sequence = args.open_sequence(recording.folder(), model.as_ref())?;
     let overlays = check_outputs(args, &sequence)?;
     sequence.check_pictures()?;
 

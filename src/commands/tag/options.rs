@@ -31,7 +31,7 @@ const RESET_JUMP_M: f64 = 0.1;
 /// Options of `tag`.
 #[derive(Debug, Args)]
 pub struct TagArgs {
-    /// Folder of the sequence, which contains sequence.toml
+    /// Folder of the sequence, which contains sequence.toml, or a robot's log
     pub sequence: PathBuf,
     /// Observation model, which weighs the particles
     #[arg(long, value_parser = one_of::<ObservationKind>(ObservationKind::ALL.map(|entry| described(entry.name(), entry.description()))), default_value_t)]
@@ -83,7 +83,7 @@ pub struct TagArgs {
     no_recovery: bool,
     /// Field to use instead of the sequence's: a field.toml, or the name of a preset
     #[arg(long, value_name = "FILE|PRESET")]
-    field: Option<PathBuf>,
+    pub field: Option<PathBuf>,
     /// Camera to use instead of the sequence's: a camera.toml
     #[arg(long, value_name = "FILE")]
     camera: Option<PathBuf>,
@@ -190,8 +190,8 @@ impl TagArgs {
     }
 
     /// Opens the sequence and applies the options: another camera or field, a model, fewer frames, another start.
-    pub fn open_sequence(&self, model: Option<&ModelFile>) -> anyhow::Result<Sequence> {
-        let mut sequence = Sequence::open_with_camera(&self.sequence, self.camera.as_deref())?;
+    pub fn open_sequence(&self, folder: &Path, model: Option<&ModelFile>) -> anyhow::Result<Sequence> {
+        let mut sequence = Sequence::open_with_camera(folder, self.camera.as_deref())?;
         if let Some(field) = &self.field {
             sequence.field = field_by_name(field)?;
         }
@@ -243,7 +243,7 @@ impl TagArgs {
 }
 
 /// Returns a preset, or reads a field file.
-fn field_by_name(name: &Path) -> anyhow::Result<FieldDimensions> {
+pub fn field_by_name(name: &Path) -> anyhow::Result<FieldDimensions> {
     if let Some(field) = name.to_str().and_then(FieldDimensions::preset) {
         return Ok(field);
     }

@@ -1,0 +1,57 @@
+//! Kinds of recordings and models that are read, told by what lies at a path.
+
+use std::path::Path;
+
+use crate::log::is_log;
+
+/// Kind of an input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Input {
+    /// Folder of a sequence.
+    Sequence,
+    /// Robot's log: MCAP, SQLite bag, or folder of rosbag2.
+    Log,
+    /// Folder of a COLMAP model.
+    ColmapModel,
+    /// nerfstudio's `transforms.json`, or the folder that holds it.
+    Nerfstudio,
+    /// Mapping file that says which columns of a table are what.
+    Table,
+}
+
+/// Files of a COLMAP model, as text or binary.
+const COLMAP: [&str; 2] = ["cameras.bin", "cameras.txt"];
+
+/// Folders within a COLMAP project where its model lies.
+const COLMAP_FOLDERS: [&str; 3] = ["", "sparse", "sparse/0"];
+
+impl Input {
+    /// Tells what lies at a path; `None` if it is nothing that is read.
+    pub fn at(path: &Path) -> Option<Self> {
+        if path.is_dir() {
+            return Self::in_folder(path);
+        }
+        let name = path.file_name()?.to_str()?;
+        match path.extension().and_then(|ending| ending.to_str()) {
+            Some("json") if name.starts_with("transforms") => Some(Self::Nerfstudio),
+            Some("toml") if name != "sequence.toml" => Some(Self::Table),
+            _ => is_log(path).then_some(Self::Log),
+        }
+    }
+
+    fn in_folder(folder: &Path) -> Option<Self> {
+        let holds = |name: &str| folder.join(name).is_file();
+        let is_colmap = || {
+            COLMAP_FOLDERS.iter().any(|part| COLMAP.iter().any(|name| folder.join(part).join(name).is_file()))
+        };
+        if holds("sequence.toml") {
+            Some(Self::Sequence)
+        } else if is_log(folder) || holds("metadata.yaml") {
+            Some(Self::Log)
+        } else if holds("transforms.json") {
+            Some(Self::Nerfstudio)
+        } else {
+            is_colmap().then_some(Self::ColmapModel)
+        }
+    }
+}
