@@ -10,6 +10,7 @@ use reality_sim::{
     db::{DbError, DbFault, index::NoNeighbours},
     gap::RecordingError,
     pipeline::PipelineError,
+    sequence::{Fault, SequenceError},
 };
 #[cfg(feature = "viewer")]
 use reality_sim_viewer::ViewerError;
@@ -28,6 +29,7 @@ trait Remedied: Error + Sized + 'static {
 /// The errors that have remedies. Those that another one wraps transparently are asked by the wrapping one.
 const REMEDIES: &[fn(&(dyn Error + 'static)) -> Option<&'static str>] = &[
     PipelineError::remedy_of,
+    SequenceError::remedy_of,
     SynthesisError::remedy_of,
     LocalizationError::remedy_of,
     RecordingError::remedy_of,
@@ -53,6 +55,20 @@ impl Remedied for PipelineError {
             Self::Hall(error) => error.remedy(),
             _ => None,
         }
+    }
+}
+
+impl Remedied for SequenceError {
+    fn remedy(&self) -> Option<&'static str> {
+        let is_of_camera = self.path.file_name().is_some_and(|name| name == "camera.toml");
+        let lacks = match &self.fault {
+            Fault::Missing => true,
+            Fault::MissingKey { key } => key == "mount",
+            _ => false,
+        };
+        (is_of_camera && lacks).then_some(
+            "reality-sim calibrate SEQUENCE --out SEQUENCE/camera.toml finds the camera in the pictures",
+        )
     }
 }
 

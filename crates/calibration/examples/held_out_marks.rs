@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release -p reality-sim-calibration --example held_out_marks -- SEQUENCE [CAMERA]`
 
+#![allow(clippy::print_stdout, reason = "the report is all that this program is for")]
+
 use std::{collections::HashSet, error::Error, path::Path};
 
 use glam::DVec2;

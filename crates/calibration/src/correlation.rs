@@ -84,7 +84,7 @@ mod tests {
                 let (rows, mut value) = (vec![row(0); 400], 0.0_f64);
                 let residuals: Vec<f64> = (0..400)
                     .map(|index| {
-                        let fresh = f64::from(stream.normals(index)[0]);
+                        let fresh = stream.normals(index)[0];
                         value = coefficient * value + (1.0 - coefficient * coefficient).sqrt() * fresh;
                         value
                     })

@@ -93,7 +93,7 @@ mod tests {
                     let drawn: Vec<Vector3<f64>> = (0..2000)
                         .map(|index| {
                             let normals = stream.normals(index);
-                            let seen = true_m * f64::from(normals[0]) + 0.02 * f64::from(normals[1]);
+                            let seen = true_m * normals[0] + 0.02 * normals[1];
                             Vector3::new(gain * seen, 0.0, 0.0)
                         })
                         .collect();

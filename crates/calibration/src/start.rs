@@ -50,6 +50,8 @@ const LEAST_EXPLAINED: f64 = 0.55;
 pub(crate) struct Guess {
     /// Lens, with a height, and no turn of the mount.
     pub state: State,
+    /// Whether the lens is a guess, or does not fit.
+    pub lens_is_guessed: bool,
     /// Whether the height is unknown.
     pub height_is_guessed: bool,
 }
@@ -66,7 +68,8 @@ impl Guess {
             state.camera.fy *= factor;
             state
         };
-        let states = FOCAL_FACTORS.iter().map(|factor| scaled(*factor));
+        let focal_factors: &[f64] = if self.lens_is_guessed { &FOCAL_FACTORS } else { &[1.0] };
+        let states = focal_factors.iter().map(|factor| scaled(*factor));
         states
             .flat_map(|state| heights_m.iter().map(move |&height_m| State { height_m, ..state.clone() }))
             .collect()

@@ -217,7 +217,9 @@ impl Work<'_> {
         });
         let taken: Vec<Taken> = taken.collect::<Result<_, CalibrationError>>()?;
         let find = |height_is_guessed| {
-            let guess = Guess { state: self.stated(), height_is_guessed };
+            // A lens and a height that are both trusted were tried before: one of them is wrong.
+            let lens_is_guessed = !trusted.lens || trusted.height;
+            let guess = Guess { state: self.stated(), lens_is_guessed, height_is_guessed };
             start::find(&guess, &taken, &self.sequence.field, &self.lines)
         };
         // A stated height may be another robot's.

@@ -127,6 +127,7 @@ impl ForeignModel {
             start: self.pictures.first().map(|picture| picture.pose.planar()),
             frames,
             poses_between_frames: Vec::new(),
+            calibration: None,
             corrected_by: None,
         };
         sequence.write(out)?;

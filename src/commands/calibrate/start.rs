@@ -44,7 +44,10 @@ impl Start {
                 let keeps_lens = args.fov_deg.is_none() && args.model.is_none_or(|model| model == own);
                 if keeps_lens { Self::of_file(folder, sequence) } else { Self::of_guess(args, Ok(sequence)) }
             }
-            Err(error) if is_of_camera(folder, &error) => Self::of_guess(args, Err(error)),
+            Err(error) if is_of_camera(folder, &error) => match lens_alone(&error.path) {
+                Some(setup) if args.fov_deg.is_none() && args.model.is_none() => Self::of_lens(folder, setup),
+                _ => Self::of_guess(args, Err(error)),
+            },
             Err(error) => Err(error.into()),
         }
     }
@@ -54,6 +57,15 @@ impl Start {
         let words = format!("the camera in {}", file.display());
         let mounting = read_mounting(&file)?;
         Ok(Self { sequence, trusted: Trusted { lens: true, height: true }, mounting, words })
+    }
+
+    /// Starts from a lens whose height is not known.
+    fn of_lens(folder: &Path, setup: CameraSetup) -> anyhow::Result<Self> {
+        let words =
+            format!("the lens in {}; its height is not known", Sequence::camera_file(folder)?.display());
+        let sequence = Sequence::open_with_setup(folder, setup)?;
+        let trusted = Trusted { lens: true, height: false };
+        Ok(Self { sequence, trusted, mounting: Mounting::default(), words })
     }
 
     /// Starts from a guess of the field of view; the height and the image circle of a camera that can be read are kept.
@@ -90,6 +102,12 @@ impl Start {
 /// Returns whether an error is of the sequence's camera file.
 fn is_of_camera(folder: &Path, error: &SequenceError) -> bool {
     Sequence::camera_file(folder).is_ok_and(|file| file == error.path)
+}
+
+/// Reads a camera file that lacks nothing but the table of the mount.
+fn lens_alone(file: &Path) -> Option<CameraSetup> {
+    let text = std::fs::read_to_string(file).ok()?;
+    CameraSetup::from_toml(file, &format!("{text}\n[mount]\nheight_m = {ANY_HEIGHT_M}\n")).ok()
 }
 
 /// Returns the angle between the rays at the middles of the picture's left and right edges, degrees.

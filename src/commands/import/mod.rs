@@ -184,6 +184,7 @@ impl ImportArgs {
             base_frame: topics.base_frame.clone(),
             camera,
             height_m: self.height_m,
+            allows_uncalibrated: true,
             tolerance_s: self.tolerance_s,
             start_from_reference: self.start_from_reference,
             ..ImportOptions::new(name_of(&self.input), field)
@@ -251,7 +252,10 @@ fn text(report: &ImportReport, out: &Path) -> String {
     if let Some(words) = &report.odometry_source {
         lines.push(("", format!("odometry: {words}")));
     }
-    lines.push(("height", format!("{:.3} m, from {}", report.height_m, report.height_source)));
+    let height = report.height_m.zip(report.height_source.as_ref());
+    let height = height
+        .map_or_else(|| "not known".to_owned(), |(height_m, from)| format!("{height_m:.3} m, from {from}"));
+    lines.push(("height", height));
     lines.extend(report.notes.iter().map(|note| ("note", note.clone())));
     lines.push(("sequence", out.display().to_string()));
     aligned(&lines)

@@ -339,7 +339,8 @@ mod tests {
             let texture = Texture::pack(&whiteness(&test_scene::render(&camera, pose, &field)));
             let mount = MountPose::of(pose);
             let right = fitted(&camera, pose, mount, &texture);
-            let other_lens = Camera { fx: camera.fx + 1.0, ..camera.clone() };
+            let mut other_lens = camera.clone();
+            other_lens.fx += 1.0;
             let other_mount = MountPose { pitch_rad: mount.pitch_rad + 0.01, ..mount };
             let off = [
                 (0, 1.0, fitted(&other_lens, pose, mount, &texture)),

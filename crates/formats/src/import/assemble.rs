@@ -3,6 +3,7 @@
 use std::{collections::HashSet, f64::consts::TAU};
 
 use reality_sim_core::{
+    camera::{Camera, Distortion},
     pose::CameraPose,
     sequence::{CameraSetup, FrameRecord, Sequence, counted, on_one_line},
 };
@@ -25,6 +26,9 @@ use crate::message::{CalibrationFault, ConvertedCamera, seconds};
 /// Least height of a camera that is one, metres: below it, tf begins at the camera or close to it.
 const LEAST_HEIGHT_M: f64 = 0.02;
 
+/// Height that stands for one that is not known, metres; it is not written.
+const ANY_HEIGHT_M: f64 = 0.5;
+
 /// Steps in which numbers are written, metres and radians. A robot's numbers have fewer digits; what conversions between rotations
 /// leave behind the twelfth would make two imports of one recording differ.
 const STEPS_PER_UNIT: f64 = 1e12;
@@ -35,6 +39,31 @@ pub struct Assembled {
     pub sequence: Sequence,
     /// Report.
     pub report: ImportReport,
+    /// What is known of its camera.
+    pub known: KnownCamera,
+}
+
+/// What is known of a sequence's camera; the rest of its setup stands for anything.
+#[derive(Debug, Clone, Copy)]
+pub struct KnownCamera {
+    /// The lens.
+    pub lens: bool,
+    /// The height above the carpet.
+    pub height: bool,
+}
+
+impl KnownCamera {
+    /// Returns what a reader has to do about it.
+    fn note(self) -> Option<String> {
+        let lacks = match self {
+            Self { lens: true, height: true } => return None,
+            Self { lens: true, height: false } => "camera.toml lacks the height of the camera",
+            Self { lens: false, .. } => "there is no camera.toml",
+        };
+        Some(format!(
+            "{lacks}: `reality-sim calibrate SEQUENCE --out SEQUENCE/camera.toml` finds it in the pictures"
+        ))
+    }
 }
 
 /// Puts a sequence together. Fails with what the log lacks.
@@ -47,7 +76,15 @@ pub fn assemble(
     let (shots, doubled) = in_order(gathered, clock);
     check_pictures(gathered, choice, &shots)?;
     let mut notes = Vec::new();
-    let mut setup = camera(gathered, choice, options, &mut notes)?;
+    let mut known = KnownCamera { lens: true, height: true };
+    let mut setup = match camera(gathered, choice, options, &mut notes) {
+        Err(lack) if options.allows_uncalibrated => {
+            notes.push(lack.to_string());
+            known = KnownCamera { lens: false, height: false };
+            any_camera(gathered.picture_size.unwrap_or_default()).ok_or(lack)?
+        }
+        setup => setup?,
+    };
     let mount = CameraMount::find(gathered, &shots, options)?;
     let odometry = CameraOdometry::find(gathered, &mount);
     let by_frames = height_by_frames(&mount, &shots);
@@ -55,8 +92,16 @@ pub fn assemble(
         Some(frame) => Reference::of_frame(gathered, &mount, frame, &shots),
         None => Reference::of_topic(gathered, &mount, by_frames),
     };
-    let (height_m, height_source) = height(options, by_frames, &reference).ok_or(Lack::NoHeight)?;
-    setup.mount_height_m = rounded(height_m);
+    let height = height(options, by_frames, &reference);
+    known.height &= height.is_some();
+    if let Some((height_m, _)) = &height {
+        setup.mount_height_m = rounded(*height_m);
+    } else if !options.allows_uncalibrated {
+        return Err(Lack::NoHeight);
+    } else {
+        setup.mount_height_m = ANY_HEIGHT_M;
+    }
+    notes.extend(known.note());
     let frames = Matcher { gathered, options, mount: &mount, odometry: &odometry, reference: &reference }
         .frames(&shots)?;
 
@@ -78,9 +123,9 @@ pub fn assemble(
         topics: UsedTopics::of(choice),
         attitude_source: mount.source_name(),
         odometry_source: odometry.words(),
-        height_source,
-        height_m,
-        camera_model: setup.camera.distortion.colmap_name(),
+        height_m: height.as_ref().map(|(height_m, _)| *height_m),
+        height_source: height.map(|(_, source)| source),
+        camera_model: known.lens.then(|| setup.camera.distortion.colmap_name()),
         tolerance_s: options.tolerance_s,
         notes,
     };
@@ -94,9 +139,17 @@ pub fn assemble(
         frames,
         poses_between_frames: reference.between(&times_ns),
         start: first_pose.filter(|_| options.start_from_reference).map(CameraPose::planar),
+        calibration: None,
         corrected_by: None,
     };
-    Ok(Assembled { sequence, report })
+    Ok(Assembled { sequence, report, known })
+}
+
+/// Returns a camera that stands for one that is not known.
+fn any_camera(size: [u32; 2]) -> Option<CameraSetup> {
+    let [width, height] = size.map(f64::from);
+    let camera = Camera::new(size, [width, width, 0.5 * width, 0.5 * height], Distortion::Pinhole).ok()?;
+    Some(CameraSetup { camera, mount_height_m: ANY_HEIGHT_M, photometry: None })
 }
 
 /// Returns the pictures in order of time, each time once, and how many were left out for that.

@@ -74,7 +74,7 @@ pub enum Lack {
     },
     /// There is no calibration.
     #[error(
-        "no topic holds the camera's calibration: give a camera.toml by --camera, or make one with `reality-sim calibrate`"
+        "no topic holds the camera's calibration: give a camera.toml by --camera, or `reality-sim import` the log and find the camera with `reality-sim calibrate`"
     )]
     NoCalibration,
     /// The calibration cannot be used.
@@ -102,7 +102,9 @@ pub enum Lack {
         frame: String,
     },
     /// Nothing tells the height of the camera.
-    #[error("nothing tells the camera's height above the carpet: give it by --height-m")]
+    #[error(
+        "nothing tells the camera's height above the carpet: give `import` the height by --height-m, or calibrate the sequence that it makes (`reality-sim calibrate`)"
+    )]
     NoHeight,
     /// No frame has all that it needs.
     #[error(

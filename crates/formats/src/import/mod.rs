@@ -20,11 +20,17 @@ mod topics;
 mod urdf;
 mod writer;
 
-use std::{io, path::Path};
+use std::{fs, io, path::Path};
 
-use reality_sim_core::sequence::{Fault, SequenceError};
+use reality_sim_core::sequence::{Fault, SequenceError, write_atomically};
 
-use self::{assemble::assemble, clock::Clock, gather::Gatherer, topics::Choice, writer::PictureWriter};
+use self::{
+    assemble::{KnownCamera, assemble},
+    clock::Clock,
+    gather::Gatherer,
+    topics::Choice,
+    writer::PictureWriter,
+};
 pub use self::{
     error::{ImportError, Lack, PictureFault},
     options::{ImportOptions, TOLERANCE_S},
@@ -41,13 +47,7 @@ pub fn import_log(
     progress: &mut dyn FnMut(u64),
 ) -> Result<ImportReport, ImportError> {
     let lack = |lack: Lack| ImportError::Lack { path: log.path().to_path_buf(), lack };
-    let unwritable = |error: io::Error| {
-        ImportError::from(SequenceError {
-            path: out.to_path_buf(),
-            line: None,
-            fault: Fault::Unwritable(error),
-        })
-    };
+    let unwritable = |error| unwritable(out, error);
     let mut topics = TopicSet::default();
     let choice = Choice::of(&log.topics(&mut topics)?, options).map_err(lack)?;
     let writer = PictureWriter::start(out).map_err(unwritable)?;
@@ -70,5 +70,30 @@ pub fn import_log(
     sequence.folder = out.to_path_buf();
     pictures.keep(out, sequence.frames.iter().map(|frame| frame.image.as_path())).map_err(unwritable)?;
     sequence.write(out)?;
+    leave_out_unknown(&out.join(CAMERA_FILE), assembled.known)?;
     Ok(assembled.report)
+}
+
+/// Name of the camera's file in a sequence.
+const CAMERA_FILE: &str = "camera.toml";
+
+/// Takes out of a camera's file what is not known of the camera: the height, or everything.
+fn leave_out_unknown(camera: &Path, known: KnownCamera) -> Result<(), ImportError> {
+    let unwritable = |error| unwritable(camera, error);
+    match known {
+        KnownCamera { lens: true, height: true } => Ok(()),
+        KnownCamera { lens: false, .. } => fs::remove_file(camera).map_err(unwritable),
+        KnownCamera { lens: true, height: false } => {
+            let text = fs::read_to_string(camera).map_err(unwritable)?;
+            let is_of_mount = |line: &&str| line.starts_with("[mount]") || line.starts_with("height_m");
+            let lens: Vec<&str> = text.lines().filter(|line| !is_of_mount(line)).collect();
+            let header = "# The height of the camera above the carpet is not known yet.\n";
+            write_atomically(camera, (header.to_owned() + &lens.join("\n") + "\n").as_bytes())
+                .map_err(ImportError::from)
+        }
+    }
+}
+
+fn unwritable(path: &Path, error: io::Error) -> ImportError {
+    SequenceError { path: path.to_path_buf(), line: None, fault: Fault::Unwritable(error) }.into()
 }

@@ -28,6 +28,9 @@ pub struct ImportOptions {
     pub camera: Option<CameraSetup>,
     /// Height of the camera above the carpet, metres.
     pub height_m: Option<f64>,
+    /// Whether a log without a usable calibration, or without the camera's height, is imported all the same: `camera.toml` is then
+    /// left out, or lacks the height, until the sequence is calibrated.
+    pub allows_uncalibrated: bool,
     /// Field on which the log was recorded.
     pub field: FieldDimensions,
     /// Largest difference between the times of a picture and of what is matched to it, seconds.
@@ -52,6 +55,7 @@ impl ImportOptions {
             base_frame: None,
             camera: None,
             height_m: None,
+            allows_uncalibrated: false,
             field,
             tolerance_s: TOLERANCE_S,
             start_from_reference: false,

@@ -33,12 +33,12 @@ pub struct ImportReport {
     pub attitude_source: String,
     /// Source of the odometry, if there is any.
     pub odometry_source: Option<String>,
-    /// Source of the camera's height.
-    pub height_source: String,
-    /// Height of the camera above the carpet, metres.
-    pub height_m: f64,
-    /// Model of the lens, by COLMAP's name.
-    pub camera_model: &'static str,
+    /// Source of the camera's height; `None` if it is not known.
+    pub height_source: Option<String>,
+    /// Height of the camera above the carpet, metres; `None` if it is not known.
+    pub height_m: Option<f64>,
+    /// Model of the lens, by COLMAP's name; `None` if there is no calibration.
+    pub camera_model: Option<&'static str>,
     /// Largest time between a picture and what was matched to it, seconds.
     pub tolerance_s: f64,
     /// What else a reader should know, a sentence each.

@@ -74,6 +74,7 @@ pub fn read_table_as_sequence(mapping: &Path, out: &Path) -> Result<usize, Model
         start: frames.first().and_then(|frame| frame.reference_pose).map(CameraPose::planar),
         frames,
         poses_between_frames: Vec::new(),
+        calibration: None,
         corrected_by: None,
     };
     sequence.write(out)?;

@@ -235,3 +235,29 @@ fn a_file_that_is_no_log_is_called_that() {
     let error = import_file(folder, &file, &options()).err().unwrap().to_string();
     assert!(error.contains("SQLite"), "{error}");
 }
+
+/// A robot that nobody has calibrated: what is known is kept, the rest is left to `calibrate`.
+#[test]
+fn logs_without_calibration_or_height_become_sequences_if_that_is_wanted() {
+    let walk = walk(5);
+    let imported = |messages: &super::Messages| {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, out) = (folder.path().join("log.mcap"), folder.path().join("sequence"));
+        std::fs::write(&file, messages.mcap(None, None)).unwrap();
+        let options = ImportOptions { height_m: None, allows_uncalibrated: true, ..options() };
+        let log = reality_sim_formats::log::Log::open(&file).unwrap();
+        let report = reality_sim_formats::import::import_log(&log, &options, &out, &mut |_| {}).unwrap();
+        (report, std::fs::read_to_string(out.join("camera.toml")), folder)
+    };
+    let (report, camera, _folder) = imported(&with_imu(&walk));
+    let camera = camera.unwrap();
+    assert!(report.height_m.is_none() && report.camera_model == Some("OPENCV"));
+    assert!(camera.contains("fx = ") && !camera.contains("[mount]"), "{camera}");
+    assert!(report.notes.iter().any(|note| note.contains("calibrate")), "{:?}", report.notes);
+
+    let mut messages = with_imu(&walk);
+    messages.retain(|topic| !topic.ends_with("camera_info"));
+    let (report, camera, folder) = imported(&messages);
+    assert!(camera.is_err() && report.camera_model.is_none() && report.frames == 5);
+    assert!(folder.path().join("sequence/frames.csv").is_file());
+}

@@ -20,7 +20,7 @@ fn json_is_read_with_its_schema_and_by_its_name() {
         let imported =
             import(&json_log(&walk, with_schemas), &ImportOptions { height_m: None, ..options() }).unwrap();
         assert_like(&imported, &walk);
-        assert_eq!(imported.report.camera_model, "OPENCV_FISHEYE");
+        assert_eq!(imported.report.camera_model, Some("OPENCV_FISHEYE"));
         assert_eq!(imported.sequence.setup.mount_height_m, 0.5);
         assert_eq!(std::fs::read(imported.sequence.image_path(3).unwrap()).unwrap(), robot::jpeg(3));
     }

@@ -47,6 +47,13 @@ impl Messages {
         self.messages.push((topic.to_owned(), log_time_ns, data));
     }
 
+    /// Keeps the messages of some topics.
+    #[allow(dead_code, reason = "not every test that shares this file leaves topics out")]
+    pub fn retain(&mut self, is_kept: impl Fn(&str) -> bool) {
+        self.messages.retain(|(topic, ..)| is_kept(topic));
+        self.kinds.retain(|topic, _| is_kept(topic));
+    }
+
     /// Returns an MCAP file.
     pub fn mcap(&self, compression: Option<Compression>, chunk_bytes: Option<u64>) -> Vec<u8> {
         let mut file = Cursor::new(Vec::new());
