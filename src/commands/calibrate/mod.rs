@@ -1,58 +1,22 @@
 //! `reality-sim calibrate`: finds the camera's lens and mount from the lines of the field.
 
+mod options;
 mod report;
 mod start;
 
 use std::path::PathBuf;
 
 use anyhow::Context;
-use clap::Args;
-
 use reality_sim::{
     StampedPose,
-    calibration::{Calibration, LensModel, Stage, calibrate},
+    calibration::{Calibration, Stage, calibrate},
     sequence::{CameraSetup, camera_with_uncertainty, write_atomically},
     write_tum,
 };
 
+pub use self::options::CalibrateArgs;
 use self::{report::Report, start::Start};
-use super::{
-    choice::one_of,
-    output::{StageProgress, check_distinct, check_output_file, print, print_json},
-};
-
-/// Options of `calibrate`.
-#[derive(Debug, Args)]
-pub struct CalibrateArgs {
-    /// Folder of the sequence, which contains sequence.toml
-    pub sequence: PathBuf,
-    /// Model of the lens [default: that of the sequence's camera.toml, or by the field of view]
-    #[arg(long, value_parser = one_of::<LensModel>(LensModel::ALL.map(LensModel::name)))]
-    model: Option<LensModel>,
-    /// Rough field of view across the picture's width, degrees: the lens in camera.toml is then not used [default: 150 if there is
-    /// no usable camera.toml]
-    #[arg(long, value_name = "DEG", value_parser = fov_deg)]
-    fov_deg: Option<f64>,
-    /// Write the camera to this file, a camera.toml
-    #[arg(long, value_name = "FILE")]
-    out: PathBuf,
-    /// Write the poses of the pictures that were used to this file, in the TUM format
-    #[arg(long, value_name = "FILE")]
-    poses: Option<PathBuf>,
-    /// Draw how uncertain the projection is where in the picture, into this SVG file
-    #[arg(long, value_name = "FILE")]
-    uncertainty: Option<PathBuf>,
-    /// Print the report as one JSON object
-    #[arg(long)]
-    json: bool,
-}
-
-fn fov_deg(text: &str) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|fov| (5.0..=340.0).contains(fov))
-        .ok_or_else(|| "give a number of degrees from 5 to 340".to_owned())
-}
+use super::output::{StageProgress, check_distinct, check_output_file, print, print_json};
 
 /// Runs the command.
 pub fn run(args: &CalibrateArgs) -> anyhow::Result<()> {

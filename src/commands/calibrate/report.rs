@@ -9,7 +9,7 @@ use reality_sim::{
     sequence::counted,
 };
 
-use super::{CalibrateArgs, start::Start};
+use super::{options::CalibrateArgs, start::Start};
 use crate::commands::{output::aligned, parameter::of_parameter};
 
 /// Standard deviations above which the place and the heading of the camera on the body count as undetermined, metres and radians: what

@@ -13,7 +13,7 @@ use reality_sim::{
     sequence::{CameraSetup, Mounting, SequenceError, read_mounting},
 };
 
-use super::CalibrateArgs;
+use super::options::CalibrateArgs;
 
 /// Field of view of a wide lens and of a usual one if nothing is said of it, degrees.
 const WIDE_DEG: f64 = 150.0;

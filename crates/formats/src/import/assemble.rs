@@ -76,15 +76,7 @@ pub fn assemble(
     let (shots, doubled) = in_order(gathered, clock);
     check_pictures(gathered, choice, &shots)?;
     let mut notes = Vec::new();
-    let mut known = KnownCamera { lens: true, height: true };
-    let mut setup = match camera(gathered, choice, options, &mut notes) {
-        Err(lack) if options.allows_uncalibrated => {
-            notes.push(lack.to_string());
-            known = KnownCamera { lens: false, height: false };
-            any_camera(gathered.picture_size.unwrap_or_default()).ok_or(lack)?
-        }
-        setup => setup?,
-    };
+    let (mut setup, mut known) = camera_or_any(gathered, choice, options, &mut notes)?;
     let mount = CameraMount::find(gathered, &shots, options)?;
     let odometry = CameraOdometry::find(gathered, &mount);
     let by_frames = height_by_frames(&mount, &shots);
@@ -94,13 +86,10 @@ pub fn assemble(
     };
     let height = height(options, by_frames, &reference);
     known.height &= height.is_some();
-    if let Some((height_m, _)) = &height {
-        setup.mount_height_m = rounded(*height_m);
-    } else if !options.allows_uncalibrated {
+    if !known.height && !options.allows_uncalibrated {
         return Err(Lack::NoHeight);
-    } else {
-        setup.mount_height_m = ANY_HEIGHT_M;
     }
+    setup.mount_height_m = height.as_ref().map_or(ANY_HEIGHT_M, |(height_m, _)| rounded(*height_m));
     notes.extend(known.note());
     let frames = Matcher { gathered, options, mount: &mount, odometry: &odometry, reference: &reference }
         .frames(&shots)?;
@@ -112,22 +101,14 @@ pub fn assemble(
     let report = ImportReport {
         frames: frames.len(),
         unmatched: shots.len() - frames.len(),
-        salvaged: false,
-        bytes_lost: 0,
-        clock_jumps: clock.jumps,
-        doubled: gathered.tally.doubled + doubled,
         lost: lost_frames(&times_ns),
-        unusable: gathered.tally.unusable,
-        damaged: gathered.tally.damaged,
-        without_stamp: gathered.tally.without_stamp,
-        topics: UsedTopics::of(choice),
         attitude_source: mount.source_name(),
         odometry_source: odometry.words(),
         height_m: height.as_ref().map(|(height_m, _)| *height_m),
         height_source: height.map(|(_, source)| source),
         camera_model: known.lens.then(|| setup.camera.distortion.colmap_name()),
-        tolerance_s: options.tolerance_s,
         notes,
+        ..counted_report(gathered, clock, choice, options, doubled)
     };
     let first_pose = frames.first().and_then(|frame| frame.reference_pose);
     let sequence = Sequence {
@@ -143,6 +124,54 @@ pub fn assemble(
         corrected_by: None,
     };
     Ok(Assembled { sequence, report, known })
+}
+
+/// Returns the part of the report that counts what was read.
+fn counted_report(
+    gathered: &Gathered,
+    clock: &Clock,
+    choice: &Choice,
+    options: &ImportOptions,
+    doubled: usize,
+) -> ImportReport {
+    ImportReport {
+        frames: 0,
+        unmatched: 0,
+        salvaged: false,
+        bytes_lost: 0,
+        clock_jumps: clock.jumps,
+        doubled: gathered.tally.doubled + doubled,
+        lost: 0,
+        unusable: gathered.tally.unusable,
+        damaged: gathered.tally.damaged,
+        without_stamp: gathered.tally.without_stamp,
+        topics: UsedTopics::of(choice),
+        attitude_source: String::new(),
+        odometry_source: None,
+        height_source: None,
+        height_m: None,
+        camera_model: None,
+        tolerance_s: options.tolerance_s,
+        notes: Vec::new(),
+    }
+}
+
+/// Returns the camera, or one that stands for it where that is wanted and there is none.
+fn camera_or_any(
+    gathered: &Gathered,
+    choice: &Choice,
+    options: &ImportOptions,
+    notes: &mut Vec<String>,
+) -> Result<(CameraSetup, KnownCamera), Lack> {
+    match camera(gathered, choice, options, notes) {
+        Ok(setup) => Ok((setup, KnownCamera { lens: true, height: true })),
+        Err(lack) if options.allows_uncalibrated => {
+            notes.push(lack.to_string());
+            let any = any_camera(gathered.picture_size.unwrap_or_default()).ok_or(lack)?;
+            Ok((any, KnownCamera { lens: false, height: false }))
+        }
+        Err(lack) => Err(lack),
+    }
 }
 
 /// Returns a camera that stands for one that is not known.
