@@ -160,3 +160,60 @@ pub(crate) fn moved(pose: CameraPose, step: &Vector6<f64>) -> CameraPose {
         roll_rad: pose.roll_rad + step[5],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use reality_sim_core::{
+        camera::{Camera, Distortion, OpencvFisheye},
+        pose::Pose2,
+    };
+
+    use super::*;
+
+    const PARAMETERS: [Parameter; 5] = [
+        Parameter::FocalLength,
+        Parameter::AspectRatio,
+        Parameter::PrincipalX,
+        Parameter::PrincipalY,
+        Parameter::Distortion(1),
+    ];
+
+    fn state() -> State {
+        let distortion = Distortion::OpencvFisheye(OpencvFisheye { k: [-0.05, 0.008, -0.001, 0.0] });
+        let camera = Camera::new([640, 480], [215.0, 217.0, 321.0, 243.0], distortion).unwrap();
+        State { camera, height_m: 0.5, pitch_rad: 0.01, roll_rad: -0.02 }
+    }
+
+    proptest! {
+        /// The truth projects the point with a state and a pose that have moved.
+        #[test]
+        fn derivatives_are_those_of_the_projection(x in -2.0..2.0_f64, y in -1.5..1.5_f64, yaw in -3.0..3.0_f64, pitch in 0.0..0.6_f64) {
+            let (state, pose) = (state(), CameraPose::new(Pose2::new(x, y, yaw), 0.5, pitch, 0.03));
+            let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
+            let lines = Lines::new(&field, RefineConfig::default());
+            let gradients = Gradients::new(&state, pose, &PARAMETERS);
+            for visible in lines.visible(&state, pose).iter().step_by(7) {
+                let across = |state: &State, pose: CameraPose| {
+                    let point = pose.camera_from_world(visible.sample.point_in_world.extend(0.0));
+                    state.camera.project_unbounded(point).unwrap().dot(visible.normal_in_image)
+                };
+                let (by_pose, by_parameters) = gradients.of_sample(visible).unwrap();
+                for (index, parameter) in PARAMETERS.iter().enumerate() {
+                    let moved = |step: f64| state.stepped(&[*parameter], &DVector::from_element(1, step)).unwrap();
+                    let truth = (across(&moved(1e-5), pose) - across(&moved(-1e-5), pose)) / 2e-5;
+                    prop_assert!((by_parameters[index] - truth).abs() < 1e-4 * (1.0 + truth.abs()), "{parameter:?}");
+                }
+                for axis in 0..6 {
+                    let beside = |step: f64| {
+                        let mut change = Vector6::zeros();
+                        change[axis] = step;
+                        across(&state, moved(pose, &change))
+                    };
+                    let truth = (beside(1e-6) - beside(-1e-6)) / 2e-6;
+                    prop_assert!((by_pose[axis] - truth).abs() < 1e-3 * (1.0 + truth.abs()), "axis {axis}");
+                }
+            }
+        }
+    }
+}
