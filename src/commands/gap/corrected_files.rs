@@ -11,15 +11,15 @@ use reality_sim::{
 
 use super::GapArgs;
 
-/// Returns names and texts of the corrected files.
+/// Returns names and texts of the corrected files; `folder` is that of the sequence's own files.
 pub fn corrected_files(
     args: &GapArgs,
-    sequence: &Sequence,
+    (sequence, folder): (&Sequence, &Path),
     analysis: &Analysis,
 ) -> anyhow::Result<[(&'static str, String); 2]> {
     let model = &analysis.model;
     let corrected = model.corrected(&sequence.setup, &sequence.field)?;
-    let stated = read_mounting(&Sequence::camera_file(&sequence.folder)?)?;
+    let stated = read_mounting(&Sequence::camera_file(folder)?)?;
     let mounting = stated.then(corrected.mounting().unwrap_or_default());
     let camera = corrected.setup_with_light().to_toml_with(&args.out, mounting)?;
     let field = corrected.field().to_toml(&args.out)?;

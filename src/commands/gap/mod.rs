@@ -8,6 +8,8 @@ mod options;
 mod poses;
 mod text;
 
+use std::path::Path;
+
 use anyhow::bail;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
@@ -57,7 +59,8 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
         sequence.setup.photometry = Some(earlier.photometry);
     }
     let recording = Recording::new(&sequence, &poses.poses, poses.source, frames)?;
-    let run = Run { args, out, given: &given, options: &options, progress: &progress };
+    let run =
+        Run { args, out, folder: input.folder(), given: &given, options: &options, progress: &progress };
     let controls = Controls { recording: &recording, source: poses.source, args, options: &options };
     if let Some(Control::One(id, size)) = &args.inject {
         return controls.with_hidden(id, *size, |recording, hidden| run.control(recording, &hidden));
@@ -65,7 +68,7 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
     let analysis = run.analysed(&recording)?;
     let since = earlier.as_ref().map(|earlier| &earlier.told);
     let report = SinceReport { report: &analysis.report, reference: since };
-    write((args, out), &recording, &given, (&analysis, &report))?;
+    write((args, out, input.folder()), &recording, &given, (&analysis, &report))?;
     if args.inject.is_some() {
         let rows = controls.all(&analysis.report, |recording| run.analysed(recording))?;
         inject::write(out, &rows)?;
@@ -82,6 +85,8 @@ pub fn run(args: &GapArgs) -> anyhow::Result<()> {
 struct Run<'a> {
     args: &'a GapArgs,
     out: &'a OutputFolder,
+    /// Folder of the sequence, also where an effect is hidden in it.
+    folder: &'a Path,
     given: &'a Model,
     options: &'a Options,
     progress: &'a ProgressBar,
@@ -99,7 +104,7 @@ impl Run<'_> {
     fn control(&self, recording: &Recording<'_>, hidden: &inject::Hidden) -> anyhow::Result<()> {
         let analysis = self.analysed(recording)?;
         let control = ControlReport::new(&analysis.report, hidden);
-        write((self.args, self.out), recording, self.given, (&analysis, &control))?;
+        write((self.args, self.out, self.folder), recording, self.given, (&analysis, &control))?;
         if self.args.json {
             return print_json(&control);
         }
@@ -118,13 +123,13 @@ fn refuse_held(args: &GapArgs, given: &Model) -> anyhow::Result<()> {
 /// Writes the report's files. `report.json`, by which other commands recognise the folder, comes last; `report` is what goes into
 /// it.
 fn write(
-    (args, out): (&GapArgs, &OutputFolder),
+    (args, out, folder): (&GapArgs, &OutputFolder, &Path),
     recording: &Recording<'_>,
     given: &Model,
     (analysis, report): (&Analysis, &impl Serialize),
 ) -> anyhow::Result<()> {
     let pictures = &Pictures::new(recording, given, analysis)?;
-    let corrected = corrected_files(args, recording.sequence(), analysis)?;
+    let corrected = corrected_files(args, (recording.sequence(), folder), analysis)?;
     for (name, picture) in
         [("measured", &pictures.measured), ("before", &pictures.before), ("after", &pictures.after)]
     {

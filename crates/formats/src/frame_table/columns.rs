@@ -54,7 +54,9 @@ pub fn known_columns() -> Vec<(String, Kind)> {
     columns.push(named("sure", Kind::Flag));
     columns.extend(numbers(&["mirror_probability"]));
     columns.push(named("searched", Kind::Flag));
-    columns.extend(numbers(&["lines_within_5px", "lines_within_10px", "completeness"]));
+    columns.extend(numbers(&["lines_within_5px", "lines_within_10px"]));
+    columns.push(named("settled", Kind::Flag));
+    columns.extend(["lines_seen", "lines_unseen", "lines_unexplained"].map(|name| named(name, Kind::Count)));
     columns.extend(numbers(&["brightness", "sharpness", "error_m", "error_yaw_rad"]));
     columns
 }
