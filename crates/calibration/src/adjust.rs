@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector, Matrix6, Vector3, Vector6};
 use rayon::prelude::*;
 use reality_sim_core::{
     pose::{CameraPose, wrap_angle},
+    refine::{moved, pose_difference},
     statistics::robust_sigma,
 };
 
@@ -13,7 +14,7 @@ use crate::{
     correlation::Correlation,
     noise::Noise,
     parameter::Parameter,
-    picture::{Lines, Measured, Picture, Row, moved},
+    picture::{Lines, Measured, Picture, Row},
     state::State,
 };
 
@@ -265,7 +266,7 @@ impl Residuals {
         let change = |parameter: &Parameter| state.value(*parameter) - first_state.value(*parameter);
         let by_parameters = DVector::from_iterator(parameters.len(), parameters.iter().map(change));
         let of_picture = |index: usize| {
-            let by_pose = difference(first_poses[index], views[index].pose);
+            let by_pose = pose_difference(first_poses[index], views[index].pose);
             let left =
                 |row: &Row| row.offset_px - row.by_pose.dot(&by_pose) - row.by_parameters.dot(&by_parameters);
             measured[index].rows.iter().map(left).collect()
@@ -288,18 +289,6 @@ impl Residuals {
     fn sigma_of(&self, used: &[bool]) -> f64 {
         robust_sigma(self.used(used))
     }
-}
-
-/// Returns the step in the six numbers from one pose to another.
-pub(crate) fn difference(from: CameraPose, to: CameraPose) -> Vector6<f64> {
-    Vector6::new(
-        to.x_m - from.x_m,
-        to.y_m - from.y_m,
-        wrap_angle(to.yaw_rad - from.yaw_rad),
-        to.height_m - from.height_m,
-        to.pitch_rad - from.pitch_rad,
-        wrap_angle(to.roll_rad - from.roll_rad),
-    )
 }
 
 /// How far a pose is from what joints and IMU tell through the mount, and how that depends on the mount's parameters.

@@ -5,9 +5,9 @@ use nalgebra::{DVector, Vector6};
 use reality_sim_core::{
     field::{FieldDimensions, LineSample, VisibleSample, sample_lines, visible_samples},
     mount::MountPose,
-    pose::{CameraPose, wrap_angle},
+    pose::CameraPose,
     preprocess::Texture,
-    refine::{LineOffset, MeasureConfig, RefineConfig, measure_offsets},
+    refine::{LineOffset, MeasureConfig, RefineConfig, measure_offsets, moved},
 };
 
 use crate::{parameter::Parameter, state::State};
@@ -146,18 +146,6 @@ impl<'a> Gradients<'a> {
         let lens = self.state.lens_gradients(self.parameters, in_camera)?;
         let by_parameters = DVector::from_iterator(lens.len(), lens.iter().map(|lens| normal.dot(*lens)));
         Some((by_pose, by_parameters))
-    }
-}
-
-/// Returns the pose moved by a step in its six numbers.
-pub(crate) fn moved(pose: CameraPose, step: &Vector6<f64>) -> CameraPose {
-    CameraPose {
-        x_m: pose.x_m + step[0],
-        y_m: pose.y_m + step[1],
-        yaw_rad: wrap_angle(pose.yaw_rad + step[2]),
-        height_m: pose.height_m + step[3],
-        pitch_rad: pose.pitch_rad + step[4],
-        roll_rad: pose.roll_rad + step[5],
     }
 }
 

@@ -10,6 +10,6 @@ pub use self::{
     calibration::{ByCalibration, CalibrationUncertainty, InvalidCovariance, MOST as MOST_PARAMETERS},
     config::{RefineConfig, SmoothingConfig},
     measure::{LineOffset, MeasureConfig, measure_offsets},
-    picture::{PoseFit, Reach, Refiner},
+    picture::{PoseFit, Reach, Refiner, moved, pose_difference},
     trajectory::{SmoothedPose, TrajectoryFrame, smooth_trajectory},
 };

@@ -101,8 +101,8 @@ pub struct Refiner {
     calibration: Option<CalibrationUncertainty>,
 }
 
-/// Returns the pose moved by a step in its six numbers.
-pub(super) fn moved(pose: CameraPose, step: &Vector6<f64>) -> CameraPose {
+/// Returns the pose moved by a step in x, y, yaw, height, pitch and roll, metres and radians.
+pub fn moved(pose: CameraPose, step: &Vector6<f64>) -> CameraPose {
     CameraPose {
         x_m: pose.x_m + step[0],
         y_m: pose.y_m + step[1],
@@ -284,8 +284,8 @@ pub(super) fn mount_error(pose: CameraPose, mount: MountPose) -> Vector6<f64> {
     )
 }
 
-/// Returns the step in the six numbers from one pose to another.
-pub(super) fn pose_difference(from: CameraPose, to: CameraPose) -> Vector6<f64> {
+/// Returns the step in x, y, yaw, height, pitch and roll from one pose to another, metres and radians.
+pub fn pose_difference(from: CameraPose, to: CameraPose) -> Vector6<f64> {
     Vector6::new(
         to.x_m - from.x_m,
         to.y_m - from.y_m,
