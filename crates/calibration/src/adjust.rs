@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use reality_sim_core::{
     pose::{CameraPose, wrap_angle},
     refine::{moved, pose_difference},
-    statistics::robust_sigma,
+    statistics::{TUKEY, robust_sigma, tukey_weight},
 };
 
 use crate::{
@@ -26,9 +26,6 @@ const LEAST_ROWS: usize = 24;
 
 /// Smallest part of the lines in view that must be found in a picture that is used: at wrong places it is about a quarter.
 const LEAST_FOUND: f64 = 0.3;
-
-/// Residual, in standard deviations, from which a line has no weight: Tukey's constant for 95 % efficiency.
-const TUKEY: f64 = 4.685;
 
 /// A picture and where it was taken.
 #[derive(Debug, Clone, Copy)]
@@ -104,8 +101,7 @@ impl Adjustment<'_> {
         for &search_px in search_px {
             let measured = self.measure(&state, &views, search_px);
             let used: Vec<bool> = measured.iter().map(is_usable).collect();
-            let solved = self.solve(&mut state, &mut views, &measured, &used, &mut noise)?;
-            result = Some(Adjusted { used, ..solved });
+            result = Some(self.solve(&mut state, &mut views, &measured, &used, &mut noise)?);
         }
         result
     }
@@ -195,7 +191,7 @@ impl Adjustment<'_> {
         let scale = 1.0 / (noise.offset_px * noise.offset_px * noise.repeats);
         let mut block = Block::zeros(count);
         for (row, &residual) in rows.iter().zip(residuals) {
-            let weight = scale * tukey(residual / noise.offset_px);
+            let weight = scale * tukey_weight(residual / noise.offset_px);
             block.add(&row.by_pose, &row.by_parameters, residual, weight);
         }
         let mount = MountTerm::new(state, view, self.parameters);
@@ -241,11 +237,6 @@ fn poses(views: &[View<'_>]) -> Vec<CameraPose> {
 
 fn is_usable(measured: &Measured) -> bool {
     measured.rows.len() >= LEAST_ROWS && measured.rows.len() as f64 >= LEAST_FOUND * measured.looked_at as f64
-}
-
-fn tukey(scaled: f64) -> f64 {
-    let ratio = scaled / TUKEY;
-    if ratio.abs() < 1.0 { (1.0 - ratio * ratio).powi(2) } else { 0.0 }
 }
 
 /// Distances that remain between projected and measured lines, for each picture.

@@ -9,7 +9,7 @@ use reality_sim_core::{
     camera::Camera,
     localization::{LocalizedFrame, mount_of_frame},
     pose::CameraPose,
-    preprocess::{Preprocessor, Texture},
+    preprocess::Preprocessor,
     refine::{CalibrationUncertainty, RefineConfig},
     sequence::{Sequence, SequenceError},
 };
@@ -86,12 +86,7 @@ pub fn assess(
 fn picture(sequence: &Sequence, preprocessor: &Preprocessor, frame: usize) -> Result<Picture, SequenceError> {
     let stated = mount_of_frame(sequence, frame);
     let prepared = preprocessor.prepare(Arc::new(sequence.load_image(frame)?), stated);
-    Ok(Picture {
-        frame,
-        texture: Texture::pack(&prepared.whiteness),
-        contrast: f64::from(prepared.levels.contrast()),
-        stated,
-    })
+    Ok(Picture::new(frame, &prepared, stated))
 }
 
 fn assessment(stated: &State, parameters: &[Parameter], adjusted: &Adjusted) -> Option<Assessment> {

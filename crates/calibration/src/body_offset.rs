@@ -4,7 +4,7 @@
 use nalgebra::{Matrix2x3, Matrix3, Vector2, Vector3};
 use reality_sim_core::{
     pose::{Motion2, Pose2},
-    statistics::robust_sigma,
+    statistics::{robust_sigma, tukey_weight},
 };
 
 /// Fewest pairs of neighbouring pictures from which an offset is estimated.
@@ -12,9 +12,6 @@ const LEAST_PAIRS: usize = 10;
 
 /// Number of reweighted steps: the equations are nearly linear.
 const STEPS: usize = 8;
-
-/// Residual, in standard deviations, from which a pair has no weight: Tukey's constant.
-const TUKEY: f64 = 4.685;
 
 /// Standard deviations of the offset before anything is seen: no camera of a robot is farther from its body's centre, or turned
 /// farther without anybody knowing, metres and radians.
@@ -77,8 +74,7 @@ pub(crate) fn estimate(pairs: &[Pair]) -> Option<BodyOffset> {
         let sigma = robust_sigma(residuals.iter().flat_map(|r| [r.x, r.y])).max(1e-4);
         let (mut information, mut right) = (prior, -prior * value);
         for (pair, residual) in pairs.iter().zip(&residuals) {
-            let ratio = residual.norm() / (sigma * TUKEY);
-            let weight = if ratio < 1.0 { (1.0 - ratio * ratio).powi(2) } else { 0.0 };
+            let weight = tukey_weight(residual.norm() / sigma);
             let gradient = pair.gradient(&value);
             let scaled = weight / (sigma * sigma) * gradient.transpose();
             information += scaled * gradient;

@@ -6,7 +6,7 @@ use reality_sim_core::{
     field::{FieldDimensions, LineSample, VisibleSample, sample_lines, visible_samples},
     mount::MountPose,
     pose::CameraPose,
-    preprocess::Texture,
+    preprocess::{Prepared, Texture},
     refine::{LineOffset, MeasureConfig, RefineConfig, measure_offsets, moved},
 };
 
@@ -26,6 +26,14 @@ pub(crate) struct Picture {
     pub contrast: f64,
     /// Pitch and roll as the recording states them; the height is not used.
     pub stated: MountPose,
+}
+
+impl Picture {
+    /// Takes what is measured of a prepared picture.
+    pub fn new(frame: usize, prepared: &Prepared, stated: MountPose) -> Self {
+        let texture = Texture::pack(&prepared.whiteness);
+        Self { frame, texture, contrast: f64::from(prepared.levels.contrast()), stated }
+    }
 }
 
 /// A line found beside its projection: the offset between the two, and its derivatives.

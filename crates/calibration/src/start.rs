@@ -11,7 +11,7 @@ use reality_sim_core::{
     field::FieldDimensions,
     mount::{MountPose, MountPoseSigma},
     pose::CameraPose,
-    preprocess::{Preprocessor, Texture},
+    preprocess::Preprocessor,
     refine::{RefineConfig, Refiner},
     search::{GlobalSearch, SearchConfig},
     statistics::median,
@@ -165,12 +165,7 @@ fn search<'a>(
         let prepared = preprocessor.prepare(taken.pixels.clone(), mount);
         let Ok(modes) = search.search(&prepared, mount, None, 0) else { continue };
         let Some(best) = modes.first() else { continue };
-        let picture = Picture {
-            frame: taken.frame,
-            texture: Texture::pack(&prepared.whiteness),
-            contrast: f64::from(prepared.levels.contrast()),
-            stated: taken.stated,
-        };
+        let picture = Picture::new(taken.frame, &prepared, taken.stated);
         let explained = search.explained_fraction(best.pose);
         found.push(Found { picture, pose: best.pose, log_weight: best.log_weight, explained });
     }

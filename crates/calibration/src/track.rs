@@ -4,7 +4,7 @@ use reality_sim_core::{
     field::FieldDimensions,
     localization::{LocalizedFrame, Localizer, Observation, mount_of_frame},
     pose::CameraPose,
-    preprocess::{Preprocessor, Texture},
+    preprocess::Preprocessor,
     sequence::Sequence,
 };
 
@@ -45,12 +45,7 @@ pub(crate) fn track(
         done();
         if is_right(&localized) {
             let prepared = preprocessor.prepare(pixels, mount);
-            let picture = Picture {
-                frame,
-                texture: Texture::pack(&prepared.whiteness),
-                contrast: f64::from(prepared.levels.contrast()),
-                stated,
-            };
+            let picture = Picture::new(frame, &prepared, stated);
             placed.push(Placed { picture, pose: localized.pose });
         }
     }

@@ -18,6 +18,16 @@ pub fn robust_sigma(values: impl IntoIterator<Item = f64>) -> f64 {
     SIGMA_PER_ABSOLUTE_MEDIAN * median(values.into_iter().map(f64::abs))
 }
 
+/// Residual, in standard deviations, from which Tukey's biweight gives no weight: with it a fit to normal errors keeps 95 % of the
+/// efficiency of least squares.
+pub const TUKEY: f64 = 4.685;
+
+/// Returns the weight that Tukey's biweight gives a residual in standard deviations, from 1 for none to 0 beyond [`TUKEY`].
+pub fn tukey_weight(error_in_sigmas: f64) -> f64 {
+    let ratio = error_in_sigmas / TUKEY;
+    if ratio.abs() < 1.0 { (1.0 - ratio * ratio).powi(2) } else { 0.0 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

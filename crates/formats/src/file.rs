@@ -3,8 +3,10 @@
 use std::{
     fs::File,
     io::{self, Read},
-    path::{Component, Path},
+    path::Path,
 };
+
+pub(crate) use reality_sim_core::sequence::is_inside_folder;
 
 use crate::model_error::{ModelError, ModelFault};
 
@@ -44,10 +46,4 @@ pub(crate) fn read_text(path: &Path, limit_bytes: u64) -> Result<String, ModelEr
         Some(rest) => rest.to_owned(),
         None => text,
     })
-}
-
-/// Returns whether a relative path names something inside the folder to which it is relative.
-pub(crate) fn is_inside_folder(path: &Path) -> bool {
-    let is_plain = |component: Component<'_>| matches!(component, Component::Normal(_) | Component::CurDir);
-    path.components().all(is_plain) && path.file_name().is_some()
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::log::is_log;
+use crate::{colmap::is_colmap, log::is_log};
 
 /// Kind of an input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,12 +18,6 @@ pub enum Input {
     /// Mapping file that says which columns of a table are what.
     Table,
 }
-
-/// Files of a COLMAP model, as text or binary.
-const COLMAP: [&str; 2] = ["cameras.bin", "cameras.txt"];
-
-/// Folders within a COLMAP project where its model lies.
-const COLMAP_FOLDERS: [&str; 3] = ["", "sparse", "sparse/0"];
 
 impl Input {
     /// Tells what lies at a path; `None` if it is nothing that is read.
@@ -41,9 +35,6 @@ impl Input {
 
     fn in_folder(folder: &Path) -> Option<Self> {
         let holds = |name: &str| folder.join(name).is_file();
-        let is_colmap = || {
-            COLMAP_FOLDERS.iter().any(|part| COLMAP.iter().any(|name| folder.join(part).join(name).is_file()))
-        };
         if holds("sequence.toml") {
             Some(Self::Sequence)
         } else if is_log(folder) || holds("metadata.yaml") {
@@ -51,7 +42,7 @@ impl Input {
         } else if holds("transforms.json") {
             Some(Self::Nerfstudio)
         } else {
-            is_colmap().then_some(Self::ColmapModel)
+            is_colmap(folder).then_some(Self::ColmapModel)
         }
     }
 }

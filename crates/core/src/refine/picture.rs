@@ -15,7 +15,7 @@ use crate::{
     mount::{MountPose, MountPoseSigma},
     pose::{CameraPose, wrap_angle},
     preprocess::Texture,
-    statistics::robust_sigma,
+    statistics::{robust_sigma, tukey_weight},
 };
 
 /// How far from its projection a line is searched for.
@@ -234,7 +234,7 @@ impl Refiner {
         // Densely spaced samples share their errors: only one in `repeats` of them is independent.
         let repeats = (self.config.correlation_px / self.config.spacing_px).max(1.0);
         let scale = 1.0 / (sigma_px * sigma_px * repeats);
-        scale * tukey((offset.offset_px - gradient.dot(step)) / sigma_px)
+        scale * tukey_weight((offset.offset_px - gradient.dot(step)) / sigma_px)
     }
 
     /// Returns how the pose moves with the parameters of the calibration.
@@ -294,12 +294,6 @@ pub fn pose_difference(from: CameraPose, to: CameraPose) -> Vector6<f64> {
         to.pitch_rad - from.pitch_rad,
         wrap_angle(to.roll_rad - from.roll_rad),
     )
-}
-
-/// Returns the weight of Tukey's biweight with its usual constant.
-fn tukey(error_in_sigmas: f64) -> f64 {
-    let ratio = error_in_sigmas / 4.685;
-    if ratio.abs() < 1.0 { (1.0 - ratio * ratio).powi(2) } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -44,6 +44,7 @@ pub use self::{
     mounting::Mounting,
     picture::{check_image, decode_image, save_image},
     printable::{Printable, counted, for_terminal, on_one_line, one_line},
+    sequence_file::is_inside_folder,
     tum::{StampedPose, read_tum, write_tum},
 };
 use self::{

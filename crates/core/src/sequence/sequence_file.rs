@@ -77,7 +77,7 @@ pub(super) fn parse_sequence(path: &Path, text: &str) -> Result<SequenceTable, S
 }
 
 /// Returns whether a relative path names something inside the folder to which it is relative.
-pub(super) fn is_inside_folder(path: &Path) -> bool {
+pub fn is_inside_folder(path: &Path) -> bool {
     let mut names = 0;
     for component in path.components() {
         match component {

@@ -1,6 +1,6 @@
 //! Reference poses of the camera, from those that a log holds.
 
-use reality_sim_core::sequence::StampedPose;
+use reality_sim_core::{sequence::StampedPose, statistics};
 
 use super::{
     axes::Axes,
@@ -97,9 +97,8 @@ impl Reference {
 
 /// Returns the middle one of some values.
 pub fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
+    let values: Vec<f64> = values.collect();
+    (!values.is_empty()).then(|| statistics::median(values))
 }
 
 /// Returns the frame whose poses the reference tells, if it is not the camera's.
