@@ -51,7 +51,7 @@ struct Source {
 @group(0) @binding(1) var<uniform> sources: array<Source, SOURCES>;
 /// `RayTable`: blocks of sixteen pixels of a row, 0 where a pixel sees nothing.
 @group(0) @binding(2) var<storage, read> rays: array<f32>;
-/// One word per pixel: red in the lowest byte, then green and blue.
+/// One word per pixel: red in the lowest byte, then green, blue and the mask, 255 where the scene is shown.
 @group(0) @binding(3) var pictures: texture_2d_array<u32>;
 /// One word with colour and source, then one with the trust.
 @group(0) @binding(4) var<storage, read_write> warped: array<vec2<u32>>;
@@ -73,13 +73,17 @@ fn ray(column: u32, row: u32) -> vec3<f32> {
     return vec3<f32>(rays[first], rays[first + LANES], rays[first + 2u * LANES]);
 }
 
-fn texel(place: vec2<u32>, layer: u32) -> vec3<f32> {
-    let word = textureLoad(pictures, place, layer, 0).x;
+fn texel(place: vec2<u32>, layer: u32) -> u32 {
+    return textureLoad(pictures, place, layer, 0).x;
+}
+
+fn color_of(word: u32) -> vec3<f32> {
     return vec3<f32>(vec3<u32>(word & 255u, (word >> 8u) & 255u, (word >> 16u) & 255u));
 }
 
-/// Bilinear colours (0–255). A picture with only one column or row has no neighbour to interpolate with.
-fn sample(number: u32, place: vec2<f32>) -> vec3<f32> {
+/// Bilinear colours (0–255), and 1 where the scene is shown, else 0. A picture with only one column or row has no neighbour
+/// to interpolate with.
+fn sample(number: u32, place: vec2<f32>) -> vec4<f32> {
     let size = sources[number].size;
     let layer = sources[number].layer;
     let last = vec2<f32>(max(size, vec2<u32>(2u)) - 2u);
@@ -91,9 +95,10 @@ fn sample(number: u32, place: vec2<f32>) -> vec3<f32> {
     let b = texel(first + vec2<u32>(1u, 0u), layer);
     let c = texel(first + vec2<u32>(0u, 1u), layer);
     let d = texel(first + vec2<u32>(1u, 1u), layer);
-    let top = a + f.x * (b - a);
-    let bottom = c + f.x * (d - c);
-    return select(vec3<f32>(0.0), top + f.y * (bottom - top), all(size >= vec2<u32>(2u)));
+    let top = mix(color_of(a), color_of(b), f.x);
+    let bottom = mix(color_of(c), color_of(d), f.x);
+    let shown = select(0.0, 1.0, ((a & b & c & d) >> 24u) == 255u);
+    return select(vec4<f32>(0.0), vec4<f32>(mix(top, bottom, f.y), shown), all(size >= vec2<u32>(2u)));
 }
 
 /// Weight of a source that sees the point, before it is compared with the others.
@@ -121,8 +126,9 @@ fn opinion_of(number: u32, point: ProxyPoint) -> Opinion {
     if !(pixel.seen && unhidden(sources[number].placement.position.xyz, point)) {
         return Opinion(vec3<f32>(0.0), 0.0);
     }
-    let color = min(sample(number, pixel.place) * sources[number].gain.xyz, vec3<f32>(255.0));
-    return Opinion(color, source_weight(number, point, pixel));
+    let found = sample(number, pixel.place);
+    let color = min(found.xyz * sources[number].gain.xyz, vec3<f32>(255.0));
+    return Opinion(color, found.w * source_weight(number, point, pixel));
 }
 
 /// Weighted mean colour, and the sum of the weights.

@@ -33,10 +33,11 @@ const PARTS: &[&str] = &[
     "reality-sim-gap",
     "reality-sim-formats",
     "reality-sim-calibration",
+    "reality-sim-simulator",
 ];
 
 /// Packages of this workspace that each package may use.
-const MAY_USE: [(&str, &[&str]); 12] = [
+const MAY_USE: [(&str, &[&str]); 13] = [
     ("reality-sim-core", &[]),
     (GPU, &["reality-sim-core"]),
     ("reality-sim-db", &["reality-sim-core"]),
@@ -50,6 +51,10 @@ const MAY_USE: [(&str, &[&str]); 12] = [
     ("reality-sim-gap", &["reality-sim-core", "reality-sim-sensor"]),
     ("reality-sim-formats", &["reality-sim-core"]),
     ("reality-sim-calibration", &["reality-sim-core"]),
+    (
+        "reality-sim-simulator",
+        &["reality-sim-core", "reality-sim-db", "reality-sim-sensor", "reality-sim-synthesis"],
+    ),
     (LIBRARY, PARTS),
     ("reality-sim-viewer", PARTS),
 ];

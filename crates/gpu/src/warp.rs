@@ -218,7 +218,7 @@ mod tests {
 
     /// Makes a picture of one colour.
     fn plain([width, height]: [u32; 2], value: u8) -> Arc<Picture> {
-        let word = u32::from_le_bytes([value, 255 - value, 7, 0]);
+        let word = u32::from_le_bytes([value, 255 - value, 7, Picture::SHOWN]);
         Arc::new(Picture { width, height, pixels: vec![word; (width * height) as usize] })
     }
 

@@ -142,7 +142,7 @@ impl Taken {
     }
 }
 
-/// Draws waves in all three channels, with noise on top.
+/// Draws waves in all three channels, with noise on top and a masked disc.
 fn picture(camera: &Camera, stream: &Stream, number: u32) -> Picture {
     let pixel = |index: u32| {
         let (u, v) = (index % camera.width, index / camera.width);
@@ -151,7 +151,11 @@ fn picture(camera: &Camera, stream: &Stream, number: u32) -> Picture {
             let wave = (0.05 * f64::from((channel + 1) * u + number * v)).sin();
             (120.0 + 80.0 * wave) as u8 + (words[channel as usize] >> 27) as u8
         };
-        u32::from_le_bytes([channel(0), channel(1), channel(2), 0])
+        // A disc in every picture is hidden.
+        let from_disc = [u.abs_diff(camera.width / 3), v.abs_diff(camera.height / 2)];
+        let is_hidden = from_disc.iter().map(|px| px * px).sum::<u32>() < 300;
+        let mask = if is_hidden { Picture::HIDDEN } else { Picture::SHOWN };
+        u32::from_le_bytes([channel(0), channel(1), channel(2), mask])
     };
     let pixels = (0..camera.width * camera.height).map(pixel).collect();
     Picture { width: camera.width, height: camera.height, pixels }

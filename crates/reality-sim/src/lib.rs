@@ -13,6 +13,7 @@
 //! | find a camera's lens and mount from the lines of the field | [`calibration`] |
 //! | store pictures by pose, in one file | [`db::Database`] |
 //! | make the picture at a pose from recorded ones | [`Archive`], [`Synthesizer`], [`synthesis`] |
+//! | give a simulator a camera | [`simulator`] |
 //! | make the picture at a pose from the field's model | [`sensor::Renderer`] |
 //! | find what a model of the camera misses | [`gap`] |
 //! | compare poses with ground truth, and pictures with true ones | [`evaluation`], [`probing`] |
@@ -104,6 +105,7 @@ pub use reality_sim_db as db;
 pub use reality_sim_gap as gap;
 pub use reality_sim_pipeline as pipeline;
 pub use reality_sim_sensor as sensor;
+pub use reality_sim_simulator as simulator;
 pub use reality_sim_synthesis as synthesis;
 pub use reality_sim_synthesis::{Archive, Reconstruction, SynthesisError, Synthesizer};
 

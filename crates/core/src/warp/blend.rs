@@ -208,8 +208,12 @@ fn mix(
     for (opinion, source) in opinions.iter_mut().zip(sources) {
         opinion.weight = [0.0; LANES];
         if let Some(pixels) = see(source.camera, &source.placement, points) {
-            opinion.color = gained(sample(source.picture, &pixels), source.gain);
+            let samples = sample(source.picture, &pixels);
+            opinion.color = gained(samples.color, source.gain);
             opinion.weight = source_weight(target, source, weights, points, &pixels);
+            for i in 0..LANES {
+                opinion.weight[i] *= samples.shown[i];
+            }
         }
     }
     let best: Lanes = std::array::from_fn(|i| opinions.iter().map(|o| o.weight[i]).fold(0.0, f32::max));
@@ -347,17 +351,19 @@ pub fn costs(target: &Target, source: &Source, weights: &BlendWeights) -> Vec<f3
     costs
 }
 
-/// Returns the colours that a source shows at the pixels of [`costs`]; `None` where it does not see them.
+/// Returns the colours that a source shows at the pixels of [`costs`]; `None` where it does not see them, or its mask hides
+/// them.
 pub fn glimpses(target: &Target, source: &Source) -> Vec<Option<[f32; 3]>> {
     let mut glimpses = Vec::with_capacity(LOOK_ROWS * LANES);
     for points in spread_points(target) {
         let unhidden = unhidden(target.proxy, &source.placement, &points);
         let pixels = see(source.camera, &source.placement, &points);
         let colors = pixels.map(|pixels| (pixels.seen, sample(source.picture, &pixels)));
+        let colors = colors.as_ref();
         glimpses.extend((0..LANES).map(|i| {
             colors
-                .filter(|(seen, _)| seen[i] * unhidden[i] > 0.0)
-                .map(|(_, colors)| colors.map(|channel| channel[i]))
+                .filter(|(seen, samples)| seen[i] * unhidden[i] * samples.shown[i] > 0.0)
+                .map(|(_, samples)| samples.color.map(|channel| channel[i]))
         }));
     }
     glimpses

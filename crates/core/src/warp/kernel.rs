@@ -177,9 +177,17 @@ pub(crate) fn unhidden(proxy: &ProxyGeometry, from: &Placement, points: &ProxyPo
     unhidden
 }
 
-/// Returns bilinear colours (0–255); values at points that are not seen are meaningless.
+/// Colours at sixteen pixels.
+pub(crate) struct Samples {
+    /// Red, green and blue, 0–255.
+    pub color: [Lanes; 3],
+    /// 1 where the scene is shown, 0 where the picture's mask hides it.
+    pub shown: Lanes,
+}
+
+/// Returns bilinear colours; values at points that are not seen are meaningless.
 #[inline(always)]
-pub(crate) fn sample(picture: &Picture, pixels: &Pixels) -> [Lanes; 3] {
+pub(crate) fn sample(picture: &Picture, pixels: &Pixels) -> Samples {
     let mut index = [0usize; LANES];
     let (mut fu, mut fv) = ([0.0_f32; LANES], [0.0_f32; LANES]);
     let (last_u, last_v) = ((picture.width.max(2) - 2) as f32, (picture.height.max(2) - 2) as f32);
@@ -201,15 +209,20 @@ pub(crate) fn sample(picture: &Picture, pixels: &Pixels) -> [Lanes; 3] {
             (texels[0][i], texels[1][i], texels[2][i], texels[3][i]) = (*a, *b, *c, *d);
         }
     }
-    let mut colors = [[0.0_f32; LANES]; 3];
+    let mut color = [[0.0_f32; LANES]; 3];
+    let mut shown = [0.0_f32; LANES];
+    for i in 0..LANES {
+        let least = texels[0][i] & texels[1][i] & texels[2][i] & texels[3][i];
+        shown[i] = f32::from(u8::from(least >> 24 == u32::from(Picture::SHOWN)));
+    }
     for channel in 0..3 {
         let shift = 8 * channel as u32;
         for i in 0..LANES {
             let at = |tap: usize| (texels[tap][i] >> shift & 255) as f32;
             let top = at(0) + fu[i] * (at(1) - at(0));
             let bottom = at(2) + fu[i] * (at(3) - at(2));
-            colors[channel][i] = top + fv[i] * (bottom - top);
+            color[channel][i] = top + fv[i] * (bottom - top);
         }
     }
-    colors
+    Samples { color, shown }
 }

@@ -1,0 +1,17 @@
+//! The camera of a simulator: a recorded picture at any pose, with the ball and the robots that the simulator moves, and with
+//! labels.
+//!
+//! | type | purpose |
+//! |---|---|
+//! | [`Camera`] | a picture at a pose, drawn into a frame |
+//! | [`Frame`] | the picture, and what is known of its pixels |
+//! | [`Class`] | what a pixel shows |
+//!
+//! Pictures are RGB, 8 bits per channel; units and frames are those of [`reality_sim_core::pose`].
+
+mod camera;
+mod class;
+mod error;
+mod frame;
+
+pub use self::{camera::Camera, class::Class, error::LookError, frame::Frame};
