@@ -1,6 +1,7 @@
 //! Reconstructed picture at a pose, and the origin of its pixels.
 
 use image::{GrayImage, Luma, Rgb, RgbImage};
+use rayon::prelude::*;
 use reality_sim_core::warp::{MAX_SOURCES, Origin, RayTable};
 use reality_sim_db::index::ImageIndex;
 
@@ -37,6 +38,7 @@ pub struct Provenance {
     pub used: Vec<UsedImage>,
     /// Source in `used` and trust of every pixel, row by row.
     pub origins: Vec<Origin>,
+    covered: f64,
 }
 
 /// Reconstructed picture at a requested pose.
@@ -50,6 +52,7 @@ pub struct Reconstruction {
     pub used: Vec<UsedImage>,
     /// Source in `used` and trust of every pixel, row by row.
     pub origins: Vec<Origin>,
+    covered: f64,
 }
 
 impl Provenance {
@@ -61,39 +64,62 @@ impl Provenance {
         rays: &RayTable,
     ) -> Self {
         rays.mark_outside(&mut origins);
-        let mut counts = [0_usize; 256];
-        origins.iter().for_each(|origin| counts[usize::from(origin.source)] += 1);
-        let seen = origins.len() - counts[usize::from(Origin::OUTSIDE)];
-        let share = |source: usize| counts[source] as f64 / seen.max(1) as f64;
+        let counts = Counts::new(&origins);
         let used = images.enumerate().map(|(source, (image, distance_px))| UsedImage {
             image,
             distance_px,
-            share: share(source),
+            share: counts.share(source),
         });
-        Self { method, used: used.collect(), origins }
+        Self { method, used: used.collect(), origins, covered: counts.covered() }
     }
 
-    /// Share of the pixels that some recorded image shows, see [`Reconstruction::covered`].
+    /// Returns the share of the pixels that some recorded image shows, see [`Reconstruction::covered`].
     pub fn covered(&self) -> f64 {
-        covered(&self.origins)
+        self.covered
     }
 }
 
-fn covered(origins: &[Origin]) -> f64 {
-    let count = |of: fn(&Origin) -> bool| origins.iter().filter(|&origin| of(origin)).count() as f64;
-    let outside = count(|origin| origin.source == Origin::OUTSIDE);
-    count(|origin| origin.is_recorded()) / (origins.len() as f64 - outside).max(1.0)
+/// Number of pixels from every source.
+struct Counts([usize; 256]);
+
+/// Pixels that one task counts.
+const PIXELS_A_TASK: usize = 1 << 15;
+
+impl Counts {
+    fn new(origins: &[Origin]) -> Self {
+        let count = |origins: &[Origin]| {
+            let mut counts = [0; 256];
+            origins.iter().for_each(|origin| counts[usize::from(origin.source)] += 1);
+            counts
+        };
+        let sum = |a: [usize; 256], b: [usize; 256]| std::array::from_fn(|source| a[source] + b[source]);
+        Self(origins.par_chunks(PIXELS_A_TASK).map(count).reduce(|| [0; 256], sum))
+    }
+
+    /// Returns the number of pixels at which the camera sees something.
+    fn seen(&self) -> usize {
+        self.0.iter().sum::<usize>() - self.0[usize::from(Origin::OUTSIDE)]
+    }
+
+    fn share(&self, source: usize) -> f64 {
+        self.0[source] as f64 / self.seen().max(1) as f64
+    }
+
+    fn covered(&self) -> f64 {
+        let unseen = self.0[usize::from(Origin::NOWHERE)];
+        (self.seen() - unseen) as f64 / self.seen().max(1) as f64
+    }
 }
 
 impl Reconstruction {
-    pub(crate) fn new(picture: RgbImage, Provenance { method, used, origins }: Provenance) -> Self {
-        Self { picture, method, used, origins }
+    pub(crate) fn new(picture: RgbImage, Provenance { method, used, origins, covered }: Provenance) -> Self {
+        Self { picture, method, used, origins, covered }
     }
 
     /// Share of the pixels that some recorded image shows; the others are filled smoothly or black. Pixels where the
     /// camera sees nothing do not count.
     pub fn covered(&self) -> f64 {
-        covered(&self.origins)
+        self.covered
     }
 
     /// Draws how far each pixel can be trusted: white means fully, black not at all.

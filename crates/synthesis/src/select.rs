@@ -4,11 +4,19 @@
 //! chosen one after the other: each lowers the sum, over the target's pixels, of the least cost as much as possible
 //! (greedy facility location: within 1 − 1/e of the best choice).
 
+use rayon::prelude::*;
 use reality_sim_core::warp::{BlendWeights, Source, Target, costs};
+
+/// Candidates that one task looks through: less work would not outweigh its start.
+const CANDIDATES_A_TASK: usize = 16;
 
 /// Returns the indices of the candidates to use, at most `count`, the best first.
 pub fn select(target: &Target, candidates: &[Source], weights: &BlendWeights, count: usize) -> Vec<usize> {
-    let costs: Vec<Vec<f32>> = candidates.iter().map(|candidate| costs(target, candidate, weights)).collect();
+    let costs: Vec<Vec<f32>> = candidates
+        .par_iter()
+        .with_min_len(CANDIDATES_A_TASK)
+        .map(|candidate| costs(target, candidate, weights))
+        .collect();
     let Some(pixels) = costs.first().map(Vec::len) else { return Vec::new() };
     let mut least = vec![f32::INFINITY; pixels];
     let mut chosen: Vec<usize> = Vec::new();

@@ -99,23 +99,66 @@ pub struct Pixels {
     pub nearness: Lanes,
 }
 
+/// Places of sixteen points in the plane of a picture, whether the picture contains them or not.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Places {
+    /// Columns, pixels.
+    pub u: Lanes,
+    /// Rows, pixels.
+    pub v: Lanes,
+    /// One over the distance from the camera, per metre.
+    pub nearness: Lanes,
+    /// Cosines of the angles from the optical axis. Places are right where these are at least the camera's smallest.
+    pub cos: Lanes,
+}
+
 /// Projects sixteen points, given by x, y and z in the camera's axes, metres; `None` if the camera sees none of them. A
 /// point that is NaN is not seen.
 #[inline(always)]
 pub fn project_lanes(camera: &KernelCamera, points_in_camera: &[Lanes; 3]) -> Option<Pixels> {
-    let [x, y, z] = points_in_camera;
-    let mut inverse = [0.0_f32; LANES];
-    let mut cos = [0.0_f32; LANES];
+    let (nearness, cos) = directions(points_in_camera);
     let mut any = 0u32;
     for i in 0..LANES {
-        inverse[i] = 1.0 / (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt();
-        cos[i] = z[i] * inverse[i];
         any |= u32::from(cos[i] >= camera.min_cos);
     }
     if any == 0 {
         return None;
     }
-    let mut pixels = Pixels { u: [0.0; LANES], v: [0.0; LANES], seen: [0.0; LANES], nearness: inverse };
+    let [u, v] = places(camera, points_in_camera, &nearness, &cos);
+    let mut pixels = Pixels { u, v, seen: [0.0; LANES], nearness };
+    if !inside_lanes(camera, &mut pixels) {
+        return None;
+    }
+    for i in 0..LANES {
+        pixels.seen[i] = if cos[i] >= camera.min_cos { pixels.seen[i] } else { 0.0 };
+    }
+    Some(pixels)
+}
+
+/// Projects sixteen points like [`project_lanes`], without asking whether the camera sees them.
+#[inline(always)]
+pub(crate) fn place_lanes(camera: &KernelCamera, points_in_camera: &[Lanes; 3]) -> Places {
+    let (nearness, cos) = directions(points_in_camera);
+    let [u, v] = places(camera, points_in_camera, &nearness, &cos);
+    Places { u, v, nearness, cos }
+}
+
+/// Returns one over the distances of points, and the cosines of their angles from the optical axis.
+#[inline(always)]
+fn directions([x, y, z]: &[Lanes; 3]) -> (Lanes, Lanes) {
+    let mut inverse = [0.0_f32; LANES];
+    let mut cos = [0.0_f32; LANES];
+    for i in 0..LANES {
+        inverse[i] = 1.0 / (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt();
+        cos[i] = z[i] * inverse[i];
+    }
+    (inverse, cos)
+}
+
+/// Returns columns and rows of points.
+#[inline(always)]
+fn places(camera: &KernelCamera, [x, y, z]: &[Lanes; 3], inverse: &Lanes, cos: &Lanes) -> [Lanes; 2] {
+    let (mut u, mut v) = ([0.0_f32; LANES], [0.0_f32; LANES]);
     match &camera.lens {
         Lens::Radial { coefficients, scale, offset } => {
             for i in 0..LANES {
@@ -125,8 +168,8 @@ pub fn project_lanes(camera: &KernelCamera, points_in_camera: &[Lanes; 3]) -> Op
                     h = h * t + c;
                 }
                 let s = h * inverse[i];
-                pixels.u[i] = camera.fx * (x[i] * s) + camera.cx;
-                pixels.v[i] = camera.fy * (y[i] * s) + camera.cy;
+                u[i] = camera.fx * (x[i] * s) + camera.cx;
+                v[i] = camera.fy * (y[i] * s) + camera.cy;
             }
         }
         Lens::Perspective { distortion: [k1, k2, p1, p2, k3] } => {
@@ -138,23 +181,23 @@ pub fn project_lanes(camera: &KernelCamera, points_in_camera: &[Lanes; 3]) -> Op
                 let ab2 = 2.0 * a * b;
                 let da = a * radial + p1 * ab2 + p2 * (r2 + 2.0 * a * a);
                 let db = b * radial + p1 * (r2 + 2.0 * b * b) + p2 * ab2;
-                pixels.u[i] = camera.fx * da + camera.cx;
-                pixels.v[i] = camera.fy * db + camera.cy;
+                u[i] = camera.fx * da + camera.cx;
+                v[i] = camera.fy * db + camera.cy;
             }
         }
     }
-    see_inside(camera, &cos, &mut pixels).then_some(pixels)
+    [u, v]
 }
 
-/// Marks the points that have a pixel in the camera; returns false if none has.
+/// Marks the places that the picture contains; returns false if it contains none.
 #[inline(always)]
-fn see_inside(camera: &KernelCamera, cos: &Lanes, pixels: &mut Pixels) -> bool {
+pub(crate) fn inside_lanes(camera: &KernelCamera, pixels: &mut Pixels) -> bool {
+    let (max_u, max_v) = (camera.max_u, camera.max_v);
     let mut any = 0u32;
     for i in 0..LANES {
         let (u, v) = (pixels.u[i], pixels.v[i]);
-        let seen =
-            (cos[i] >= camera.min_cos) & (u >= 0.0) & (u <= camera.max_u) & (v >= 0.0) & (v <= camera.max_v);
-        pixels.seen[i] = f32::from(u8::from(seen));
+        let seen = (u >= 0.0) & (u <= max_u) & (v >= 0.0) & (v <= max_v);
+        pixels.seen[i] = if seen { 1.0 } else { 0.0 };
         any |= u32::from(seen);
     }
     if any == 0 {
@@ -164,7 +207,7 @@ fn see_inside(camera: &KernelCamera, cos: &Lanes, pixels: &mut Pixels) -> bool {
         for i in 0..LANES {
             let (du, dv) = (pixels.u[i] - circle_u, pixels.v[i] - circle_v);
             let inside = du * du + dv * dv <= radius_squared;
-            pixels.seen[i] *= f32::from(u8::from(inside));
+            pixels.seen[i] = if inside { pixels.seen[i] } else { 0.0 };
         }
     }
     true

@@ -14,9 +14,12 @@ use rayon::prelude::*;
 use super::{
     Picture, ProxyGeometry,
     fill::fill,
-    kernel::{Placement, ProxyPoints, proxy_points, sample, see, unhidden},
+    kernel::{Placement, ProxyPoints, proxy_points, see, unhidden},
+    lanes::{least, most},
+    mix::{Opinion, Opinions},
     origin::Origin,
     rays::{RayBlock, RayTable},
+    sampling::{Samples, sample},
 };
 use crate::camera::{KernelCamera, LANES, Lanes, Pixels};
 
@@ -123,10 +126,10 @@ pub struct Warped {
 /// This is the last step of [`blend`], on all devices.
 pub fn complete(rays: &RayTable, colors: &mut [[u8; 3]], origins: &mut [Origin]) {
     rays.mark_outside(origins);
-    for (color, _) in colors.iter_mut().zip(&*origins).filter(|(_, o)| o.source == Origin::OUTSIDE) {
-        *color = [0; 3];
+    for run in rays.outside() {
+        colors[run.clone()].fill([0; 3]);
     }
-    fill(colors, rays.width as usize, |index| origins[index].source);
+    fill(colors, origins, rays.width as usize);
 }
 
 /// Draws the picture at the target from the sources; uses at most [`MAX_SOURCES`] of them.
@@ -168,100 +171,69 @@ fn blend_row(
     colors: &mut [[u8; 3]],
     origins: &mut [Origin],
 ) {
-    let mut opinions = [Opinion { color: [[0.0; LANES]; 3], weight: [0.0; LANES] }; MAX_SOURCES];
-    let opinions = &mut opinions[..sources.len()];
+    let mut opinions = Opinions::NONE;
     for ((rays, colors), origins) in rays.iter().zip(colors.chunks_mut(LANES)).zip(origins.chunks_mut(LANES))
     {
         let points = proxy_points(target.proxy, &target.placement, rays);
-        let mixed = mix(target, sources, weights, &points, opinions);
-        for (lane, (color, origin)) in colors.iter_mut().zip(origins).enumerate() {
-            *color = mixed.color.map(|channel| (channel[lane] + 0.5) as u8);
-            *origin = Origin { source: mixed.source[lane], trust: (255.0 * mixed.trust[lane] + 0.5) as u8 };
-        }
-    }
-}
-
-/// Sixteen pixels of a blended picture.
-struct Mixed {
-    color: [Lanes; 3],
-    source: [u8; LANES],
-    trust: Lanes,
-}
-
-/// Colours and weights of one source at sixteen pixels.
-#[derive(Clone, Copy)]
-struct Opinion {
-    color: [Lanes; 3],
-    weight: Lanes,
-}
-
-/// Mixes the sources at sixteen pixels. `opinions` is working memory with one element per source; allocating it for
-/// every block would take time.
-#[inline(always)]
-fn mix(
-    target: &Target,
-    sources: &[Source],
-    weights: &BlendWeights,
-    points: &ProxyPoints,
-    opinions: &mut [Opinion],
-) -> Mixed {
-    for (opinion, source) in opinions.iter_mut().zip(sources) {
-        opinion.weight = [0.0; LANES];
-        if let Some(pixels) = see(source.camera, &source.placement, points) {
-            let samples = sample(source.picture, &pixels);
-            opinion.color = gained(samples.color, source.gain);
-            opinion.weight = source_weight(target, source, weights, points, &pixels);
-            for i in 0..LANES {
-                opinion.weight[i] *= samples.shown[i];
+        opinions.clear();
+        for (number, source) in sources.iter().enumerate() {
+            // A closure would not be compiled for the processor's vectors.
+            if form(opinions.next(number), target, source, weights, &points) {
+                opinions.keep();
             }
         }
+        opinions.mixed(sources.len(), weights, 0.0).write(colors, origins);
     }
-    let best: Lanes = std::array::from_fn(|i| opinions.iter().map(|o| o.weight[i]).fold(0.0, f32::max));
-    let before: Lanes = std::array::from_fn(|i| opinions.iter().map(|o| o.weight[i]).sum());
-    let mean = agreed(opinions, weights.disagreement);
-    let (mut source, mut largest) = ([Origin::NOWHERE; LANES], [0.0_f32; LANES]);
-    let mut total = [0.0_f32; LANES];
-    for (number, opinion) in opinions.iter().enumerate() {
-        for i in 0..LANES {
-            if opinion.weight[i] > largest[i] {
-                (largest[i], source[i]) = (opinion.weight[i], number as u8);
-            }
-            total[i] += opinion.weight[i];
-        }
-    }
-    let trust = std::array::from_fn(|i| {
-        let penalty = 1.0 / best[i].max(1e-12).sqrt() - weights.softness;
-        let agreement = total[i] / before[i].max(1e-12);
-        if source[i] == Origin::NOWHERE { 0.0 } else { (agreement / (1.0 + penalty.max(0.0))).min(1.0) }
-    });
-    Mixed { color: mean, source, trust }
 }
 
+/// Forms the opinion of a source on sixteen points; returns false if it sees none of them.
 #[inline(always)]
-fn gained(mut color: [Lanes; 3], gain: [f32; 3]) -> [Lanes; 3] {
-    for channel in 0..3 {
-        for i in 0..LANES {
-            color[channel][i] = (color[channel][i] * gain[channel]).min(255.0);
-        }
-    }
-    color
-}
-
-/// Returns the weight of a source before it is compared with the others.
-#[inline(always)]
-fn source_weight(
+pub(crate) fn form(
+    opinion: &mut Opinion,
     target: &Target,
     source: &Source,
     weights: &BlendWeights,
     points: &ProxyPoints,
-    pixels: &Pixels,
+) -> bool {
+    let Some(pixels) = see(source.camera, &source.placement, points) else { return false };
+    let penalty = penalties(target, source, weights, points, &pixels.nearness);
+    let unhidden = unhidden(target.proxy, &source.placement, points);
+    let mut prior = weigh(source, weights, &pixels, &penalty);
+    for i in 0..LANES {
+        prior[i] *= unhidden[i];
+    }
+    say(opinion, source, &sample(source.picture, &pixels), &prior);
+    true
+}
+
+/// Writes down what a source shows, and its weight where the scene is shown.
+#[inline(always)]
+pub(crate) fn say(opinion: &mut Opinion, source: &Source, samples: &Samples, prior: &Lanes) {
+    for channel in 0..3 {
+        let gain = source.gain[channel];
+        for i in 0..LANES {
+            opinion.color[channel][i] = least(samples.color[channel][i] * gain, 255.0);
+        }
+    }
+    for i in 0..LANES {
+        opinion.prior[i] = prior[i] * samples.shown[i];
+    }
+}
+
+/// Returns how badly a source shows points: a penalty for each.
+#[inline(always)]
+pub(crate) fn penalties(
+    target: &Target,
+    source: &Source,
+    weights: &BlendWeights,
+    points: &ProxyPoints,
+    nearness: &Lanes,
 ) -> Lanes {
     let [x, y, z] = source.placement.position_in_world;
     let (height, target_height) = (z, target.placement.position_in_world[2]);
-    let unhidden = unhidden(target.proxy, &source.placement, points);
-    let mut weight = [0.0_f32; LANES];
+    let mut penalties = [0.0_f32; LANES];
     for i in 0..LANES {
-        let nearness = pixels.nearness[i];
+        let nearness = nearness[i];
         let along = points.direction[0][i] * (points.place[0][i] - x)
             + points.direction[1][i] * (points.place[1][i] - y)
             + points.direction[2][i] * (points.place[2][i] - z);
@@ -273,61 +245,26 @@ fn source_weight(
         let flatter = nearer * target_height / height;
         let density = nearer * nearer * (1.0 + ground * (flatter - 1.0));
         let per_angle = weights.angle_above + ground * (weights.angle_on_ground - weights.angle_above);
-        let penalty = weights.softness
+        penalties[i] = weights.softness
             + per_angle * (1.0 - cosine)
-            + weights.resolution * (density - 1.0).max(0.0) / 3.0;
+            + weights.resolution * most(density - 1.0, 0.0) / 3.0;
+    }
+    penalties
+}
+
+/// Returns the weight of a source before it is compared with the others.
+#[inline(always)]
+pub(crate) fn weigh(source: &Source, weights: &BlendWeights, pixels: &Pixels, penalty: &Lanes) -> Lanes {
+    let per_px = 1.0 / weights.border_px;
+    let (max_u, max_v) = (source.camera.max_u, source.camera.max_v);
+    let mut weight = [0.0_f32; LANES];
+    for i in 0..LANES {
         let (u, v) = (pixels.u[i], pixels.v[i]);
-        let inside_px = u.min(v).min(source.camera.max_u - u).min(source.camera.max_v - v);
-        let fade = (inside_px + 1.0) / weights.border_px;
-        let fade = if fade < 1.0 { fade } else { 1.0 };
-        weight[i] = if pixels.seen[i] * unhidden[i] > 0.0 { fade / (penalty * penalty) } else { 0.0 };
+        let inside_px = least(least(u, v), least(max_u - u, max_v - v));
+        let fade = least((inside_px + 1.0) * per_px, 1.0);
+        weight[i] = if pixels.seen[i] > 0.0 { fade / (penalty[i] * penalty[i]) } else { 0.0 };
     }
     weight
-}
-
-/// Returns the weighted mean colour, with less weight for colours far from it; leaves the weights as they were used.
-#[inline(always)]
-fn agreed(opinions: &mut [Opinion], disagreement: f32) -> [Lanes; 3] {
-    let per_square = 1.0 / (disagreement * disagreement);
-    let prior: [Lanes; MAX_SOURCES] =
-        std::array::from_fn(|number| opinions.get(number).map_or([0.0; LANES], |opinion| opinion.weight));
-    let mut mean = weighted_mean(opinions);
-    if opinions.len() < 3 {
-        return mean;
-    }
-    for _ in 0..3 {
-        for (opinion, prior) in opinions.iter_mut().zip(&prior) {
-            for i in 0..LANES {
-                let mut square = 0.0;
-                for channel in 0..3 {
-                    let difference = opinion.color[channel][i] - mean[channel][i];
-                    square += difference * difference;
-                }
-                opinion.weight[i] = prior[i] / (1.0 + per_square * square);
-            }
-        }
-        mean = weighted_mean(opinions);
-    }
-    mean
-}
-
-#[inline(always)]
-fn weighted_mean(opinions: &[Opinion]) -> [Lanes; 3] {
-    let (mut sum, mut total) = ([[0.0_f32; LANES]; 3], [1e-12_f32; LANES]);
-    for opinion in opinions {
-        for i in 0..LANES {
-            total[i] += opinion.weight[i];
-            for channel in 0..3 {
-                sum[channel][i] += opinion.weight[i] * opinion.color[channel][i];
-            }
-        }
-    }
-    for channel in 0..3 {
-        for i in 0..LANES {
-            sum[channel][i] /= total[i];
-        }
-    }
-    sum
 }
 
 /// Number of rows of pixels that [`costs`] and [`glimpses`] examine, with sixteen pixels each.
@@ -342,13 +279,30 @@ pub fn costs(target: &Target, source: &Source, weights: &BlendWeights) -> Vec<f3
     for points in spread_points(target) {
         let pixels = see(source.camera, &source.placement, &points);
         let weight =
-            pixels.map_or([0.0; LANES], |pixels| source_weight(target, source, weights, &points, &pixels));
+            pixels.map_or([0.0; LANES], |pixels| view_weight(target, source, weights, &points, &pixels));
         costs.extend((0..LANES).map(|i| {
             let has_ray = !points.distance[i].is_nan();
             if has_ray { (1.0 / weight[i].max(1e-6).sqrt()).min(UNSEEN) } else { 0.0 }
         }));
     }
     costs
+}
+
+/// Returns the weight of a source at points, 0 where a goal hides them.
+fn view_weight(
+    target: &Target,
+    source: &Source,
+    weights: &BlendWeights,
+    points: &ProxyPoints,
+    pixels: &Pixels,
+) -> Lanes {
+    let penalty = penalties(target, source, weights, points, &pixels.nearness);
+    let mut weight = weigh(source, weights, pixels, &penalty);
+    let unhidden = unhidden(target.proxy, &source.placement, points);
+    for i in 0..LANES {
+        weight[i] *= unhidden[i];
+    }
+    weight
 }
 
 /// Returns the colours that a source shows at the pixels of [`costs`]; `None` where it does not see them, or its mask hides

@@ -19,16 +19,16 @@ struct Level {
 }
 
 /// Fills the pixels whose source is [`Origin::NOWHERE`]. Does nothing if no pixel was recorded at all.
-pub(crate) fn fill(colors: &mut [[u8; 3]], width: usize, source: impl Fn(usize) -> u8 + Sync) {
-    let is_unknown = |index: usize| source(index) == Origin::NOWHERE;
-    let is_known = |index: usize| source(index) < Origin::OUTSIDE;
-    if !(0..colors.len()).any(is_unknown) || !(0..colors.len()).any(is_known) {
+pub(crate) fn fill(colors: &mut [[u8; 3]], origins: &[Origin], width: usize) {
+    let has =
+        |is_it: fn(&Origin) -> bool| origins.par_chunks(PIXELS_A_TASK).any(|part| part.iter().any(is_it));
+    if !has(is_unknown) || !has(|origin| origin.is_recorded()) {
         return;
     }
-    let filled = half_size(colors, width, &is_known).filled();
-    let rows = colors.par_chunks_mut(width).enumerate().with_min_len(PIXELS_A_TASK.div_ceil(width));
-    rows.for_each(|(v, row)| {
-        for (u, color) in row.iter_mut().enumerate().filter(|(u, _)| is_unknown(v * width + u)) {
+    let filled = half_size(colors, origins, width).filled();
+    let rows = colors.par_chunks_mut(width).zip(origins.par_chunks(width)).enumerate();
+    rows.with_min_len(PIXELS_A_TASK.div_ceil(width)).for_each(|(v, (row, origins))| {
+        for (u, (color, _)) in row.iter_mut().zip(origins).enumerate().filter(|(_, (_, o))| is_unknown(o)) {
             if let Some(pixel) = filled.bilinear(u, v) {
                 *color = [0, 1, 2].map(|channel| (pixel[channel] + 0.5) as u8);
             }
@@ -36,18 +36,40 @@ pub(crate) fn fill(colors: &mut [[u8; 3]], width: usize, source: impl Fn(usize) 
     });
 }
 
+fn is_unknown(origin: &Origin) -> bool {
+    origin.source == Origin::NOWHERE
+}
+
 /// Returns a picture at half its size. The full size is never converted to floats: memory access takes most of the
 /// time.
-fn half_size(colors: &[[u8; 3]], width: usize, is_known: &(impl Fn(usize) -> bool + Sync)) -> Level {
+fn half_size(colors: &[[u8; 3]], origins: &[Origin], width: usize) -> Level {
     let height = colors.len() / width;
-    Level::by_rows(width.div_ceil(2), height.div_ceil(2), |v, sums| {
-        for row in [2 * v, 2 * v + 1].into_iter().filter(|row| *row < height) {
-            for u in (0..width).filter(|u| is_known(row * width + u)) {
-                let [red, green, blue] = colors[row * width + u].map(f32::from);
-                add(&mut sums[u / 2], [red, green, blue, 1.0]);
-            }
+    Level::by_rows(width.div_ceil(2), height.div_ceil(2), |v, pixels| {
+        let rows = [2 * v, (2 * v + 1).min(height - 1)].map(|row| row * width..(row + 1) * width);
+        let [upper, lower] = rows.map(|row| colors[row.clone()].chunks(2).zip(origins[row].chunks(2)));
+        // The last row of an odd number has none below it.
+        let lower_counts = u64::from(2 * v + 1 < height);
+        for (pixel, (upper, lower)) in pixels.iter_mut().zip(upper.zip(lower)) {
+            *pixel = mean(known_sum(upper.0, upper.1) + lower_counts * known_sum(lower.0, lower.1));
         }
     })
+}
+
+/// Returns the sums of red, green and blue of known pixels and their number, sixteen bits each: at most four pixels fit.
+fn known_sum(colors: &[[u8; 3]], origins: &[Origin]) -> u64 {
+    let spread = |[red, green, blue]: [u8; 3]| {
+        u64::from(red) | u64::from(green) << 16 | u64::from(blue) << 32 | 1 << 48
+    };
+    let known = colors.iter().zip(origins);
+    known.map(|(color, origin)| if origin.is_recorded() { spread(*color) } else { 0 }).sum()
+}
+
+/// Returns the mean colour of summed pixels, and a weight of 1 if there are any.
+fn mean(sum: u64) -> [f32; 4] {
+    let part = |number: u32| f32::from((sum >> (16 * number)) as u16);
+    let count = part(3);
+    let share = 1.0 / count.max(1.0);
+    [part(0) * share, part(1) * share, part(2) * share, count.min(1.0)]
 }
 
 /// Returns a level at half its size.

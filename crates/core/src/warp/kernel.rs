@@ -6,7 +6,11 @@
 
 #![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
 
-use super::{Billboard, Picture, ProxyGeometry, rays::RayBlock};
+use super::{
+    ProxyGeometry,
+    edges::{Edges, post_margin},
+    rays::RayBlock,
+};
 use crate::{
     camera::{KernelCamera, LANES, Lanes, Pixels, project_lanes},
     pose::CameraPose,
@@ -33,34 +37,10 @@ impl Placement {
     }
 }
 
-/// Edges of a billboard, metres.
-struct Edges {
-    half_width: f32,
-    top: f32,
-    opening_half_width: f32,
-    opening_top: f32,
-}
-
-impl Edges {
-    #[inline(always)]
-    fn new(billboard: &Billboard) -> Self {
-        Self {
-            half_width: billboard.half_width_m as f32,
-            top: billboard.height_m as f32,
-            opening_half_width: billboard.opening_half_width_m as f32,
-            opening_top: billboard.opening_height_m as f32,
-        }
-    }
-
-    /// Returns whether a point in the billboard's plane, above the ground, lies on it or at most `margin` beside it,
-    /// metres.
-    #[inline(always)]
-    fn hold(&self, across: f32, up: f32, margin: f32) -> bool {
-        let across = across.abs();
-        let is_opening = (across < self.opening_half_width - margin) & (up < self.opening_top - margin);
-        (across <= self.half_width + margin) & (up <= self.top + margin) & !is_opening
-    }
-}
+/// Number of the ground among the surfaces: the lower end of the third axis.
+const GROUND: f32 = 2.0;
+/// Number of the first billboard among the surfaces.
+const FIRST_BILLBOARD: usize = 6;
 
 /// Points of the proxy geometry that sixteen pixels see.
 #[derive(Clone, Copy)]
@@ -73,6 +53,8 @@ pub(crate) struct ProxyPoints {
     pub distance: Lanes,
     /// 1 on the ground, else 0.
     pub on_ground: Lanes,
+    /// Surfaces on which the points lie: a number for each side of the box and for each billboard.
+    pub surface: Lanes,
 }
 
 /// Follows rays from a camera inside the proxy geometry.
@@ -81,7 +63,7 @@ pub(crate) fn proxy_points(proxy: &ProxyGeometry, from: &Placement, rays: &RayBl
     let axes = &from.axes_in_world;
     let mut direction = [[0.0_f32; LANES]; 3];
     let mut distance = [f32::INFINITY; LANES];
-    let mut on_ground = [0.0_f32; LANES];
+    let mut surface = [f32::NAN; LANES];
     for axis in 0..3 {
         let low = proxy.min_in_world[axis] as f32 - from.position_in_world[axis];
         let high = proxy.max_in_world[axis] as f32 - from.position_in_world[axis];
@@ -92,12 +74,11 @@ pub(crate) fn proxy_points(proxy: &ProxyGeometry, from: &Placement, rays: &RayBl
             let to_wall = end / d;
             let is_nearer = to_wall < distance[i];
             distance[i] = if is_nearer { to_wall } else { distance[i] };
-            if axis == 2 {
-                on_ground[i] = if is_nearer & (d < 0.0) { 1.0 } else { 0.0 };
-            }
+            let side = if d < 0.0 { axis as f32 } else { (axis + 3) as f32 };
+            surface[i] = if is_nearer { side } else { surface[i] };
         }
     }
-    for billboard in &proxy.billboards {
+    for (number, billboard) in proxy.billboards.iter().enumerate() {
         let x = billboard.x_m as f32 - from.position_in_world[0];
         if !direction[0].iter().any(|d| d * x > 0.0) {
             continue;
@@ -110,7 +91,7 @@ pub(crate) fn proxy_points(proxy: &ProxyGeometry, from: &Placement, rays: &RayBl
             let is_hit =
                 (to_billboard > 0.0) & (to_billboard < distance[i]) & (z >= 0.0) & billboard.hold(y, z, 0.0);
             distance[i] = if is_hit { to_billboard } else { distance[i] };
-            on_ground[i] = if is_hit { 0.0 } else { on_ground[i] };
+            surface[i] = if is_hit { (FIRST_BILLBOARD + number) as f32 } else { surface[i] };
         }
     }
     let mut place = [[0.0_f32; LANES]; 3];
@@ -119,12 +100,22 @@ pub(crate) fn proxy_points(proxy: &ProxyGeometry, from: &Placement, rays: &RayBl
             place[axis][i] = from.position_in_world[axis] + distance[i] * direction[axis][i];
         }
     }
-    ProxyPoints { place, direction, distance, on_ground }
+    let mut on_ground = [0.0_f32; LANES];
+    for i in 0..LANES {
+        on_ground[i] = if surface[i] == GROUND { 1.0 } else { 0.0 };
+    }
+    ProxyPoints { place, direction, distance, on_ground, surface }
 }
 
 /// Projects the points into another camera; `None` if it sees none of them.
 #[inline(always)]
 pub(crate) fn see(camera: &KernelCamera, placement: &Placement, points: &ProxyPoints) -> Option<Pixels> {
+    project_lanes(camera, &in_camera(placement, points))
+}
+
+/// Returns the points in the axes of another camera, metres.
+#[inline(always)]
+pub(crate) fn in_camera(placement: &Placement, points: &ProxyPoints) -> [Lanes; 3] {
     let mut in_camera = [[0.0_f32; LANES]; 3];
     let [x, y, z] = placement.position_in_world;
     for axis in 0..3 {
@@ -134,22 +125,15 @@ pub(crate) fn see(camera: &KernelCamera, placement: &Placement, points: &ProxyPo
                 a * (points.place[0][i] - x) + b * (points.place[1][i] - y) + c * (points.place[2][i] - z);
         }
     }
-    project_lanes(camera, &in_camera)
+    in_camera
 }
+
+/// Fraction of the way to a point beyond which a billboard does not hide it: a point on the billboard is not hidden by it.
+pub(crate) const ON_SCREEN: f32 = 1.0 - 1e-3;
 
 /// Returns 0 for points hidden from a camera by a goal, else 1.
 #[inline(always)]
 pub(crate) fn unhidden(proxy: &ProxyGeometry, from: &Placement, points: &ProxyPoints) -> Lanes {
-    /// Fraction of the way to a point beyond which a billboard does not hide it: a point on the billboard is not hidden
-    /// by it.
-    const ON_SCREEN: f32 = 1.0 - 1e-3;
-    /// Radius of a typical post. Seen obliquely, a round post hides more than the flat one that stands for it, by
-    /// an amount that grows with one over the cosine.
-    const POST_RADIUS_M: f32 = 0.05;
-    /// Less than 1, since pixels and compression spread a post's colour beyond its edge.
-    const SHARP_EDGE: f32 = 0.6;
-    /// Maximum of one over the cosine: seen nearly edge-on, a billboard would hide everything.
-    const MOST_OBLIQUE: f32 = 4.0;
     let [x, y, z] = from.position_in_world;
     let mut unhidden = [1.0_f32; LANES];
     // Both minimum and maximum ignore NaN.
@@ -168,61 +152,9 @@ pub(crate) fn unhidden(proxy: &ProxyGeometry, from: &Placement, points: &ProxyPo
             let across = y + share * dy;
             let up = z + share * (points.place[2][i] - z);
             let is_between = (share > 0.0) & (share < ON_SCREEN);
-            let slope = dy / dx;
-            let margin = POST_RADIUS_M * ((1.0 + slope * slope).sqrt().min(MOST_OBLIQUE) - SHARP_EDGE);
-            let is_hidden = is_between & billboard.hold(across, up, margin);
+            let is_hidden = is_between & billboard.hold(across, up, post_margin(dy / dx));
             unhidden[i] = if is_hidden { 0.0 } else { unhidden[i] };
         }
     }
     unhidden
-}
-
-/// Colours at sixteen pixels.
-pub(crate) struct Samples {
-    /// Red, green and blue, 0–255.
-    pub color: [Lanes; 3],
-    /// 1 where the scene is shown, 0 where the picture's mask hides it.
-    pub shown: Lanes,
-}
-
-/// Returns bilinear colours; values at points that are not seen are meaningless.
-#[inline(always)]
-pub(crate) fn sample(picture: &Picture, pixels: &Pixels) -> Samples {
-    let mut index = [0usize; LANES];
-    let (mut fu, mut fv) = ([0.0_f32; LANES], [0.0_f32; LANES]);
-    let (last_u, last_v) = ((picture.width.max(2) - 2) as f32, (picture.height.max(2) - 2) as f32);
-    for i in 0..LANES {
-        // `clamp` keeps NaN, `max` does not.
-        let (u, v) = (pixels.u[i].max(0.0).min(last_u + 1.0), pixels.v[i].max(0.0).min(last_v + 1.0));
-        let (column, row) = (u.min(last_u) as i32 as f32, v.min(last_v) as i32 as f32);
-        fu[i] = u - column;
-        fv[i] = v - row;
-        index[i] = (row as i32 * picture.width as i32 + column as i32) as usize;
-    }
-    let mut texels = [[0u32; LANES]; 4];
-    let width = picture.width as usize;
-    for i in 0..LANES {
-        // A picture of one column or row has no second one.
-        if let (Some([a, b, ..]), Some([c, d, ..])) =
-            (picture.pixels.get(index[i]..), picture.pixels.get(index[i] + width..))
-        {
-            (texels[0][i], texels[1][i], texels[2][i], texels[3][i]) = (*a, *b, *c, *d);
-        }
-    }
-    let mut color = [[0.0_f32; LANES]; 3];
-    let mut shown = [0.0_f32; LANES];
-    for i in 0..LANES {
-        let least = texels[0][i] & texels[1][i] & texels[2][i] & texels[3][i];
-        shown[i] = f32::from(u8::from(least >> 24 == u32::from(Picture::SHOWN)));
-    }
-    for channel in 0..3 {
-        let shift = 8 * channel as u32;
-        for i in 0..LANES {
-            let at = |tap: usize| (texels[tap][i] >> shift & 255) as f32;
-            let top = at(0) + fu[i] * (at(1) - at(0));
-            let bottom = at(2) + fu[i] * (at(3) - at(2));
-            color[channel][i] = top + fv[i] * (bottom - top);
-        }
-    }
-    Samples { color, shown }
 }

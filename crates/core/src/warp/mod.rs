@@ -4,17 +4,24 @@
 //! The trait [`Warper`] lets other devices do the same.
 
 mod blend;
+mod cells;
+mod edges;
 mod fill;
 mod kernel;
+mod lanes;
+mod mix;
 mod origin;
 mod picture;
 mod proxy_geometry;
 mod rays;
+mod sampling;
+mod smooth;
 
 pub use self::{
     blend::{
         BlendWeights, MAX_SOURCES, Source, Target, Warped, blend, blend_into, complete, costs, glimpses,
     },
+    cells::blend_cells_into,
     kernel::Placement,
     origin::Origin,
     picture::Picture,
@@ -59,7 +66,7 @@ impl Warper for CpuWarper {
         weights: &BlendWeights,
         colors: &mut [[u8; 3]],
     ) -> Result<Vec<Origin>, BackendError> {
-        Ok(blend_into(target, sources, weights, colors))
+        Ok(blend_cells_into(target, sources, weights, colors))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Viewing directions of a camera's pixels, computed once.
 
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -20,6 +20,8 @@ pub struct RayTable {
     pub height: u32,
     blocks_in_row: usize,
     blocks: Arc<Vec<RayBlock>>,
+    /// Runs of pixels, row by row, that see nothing.
+    outside: Arc<Vec<Range<usize>>>,
 }
 
 impl RayTable {
@@ -29,8 +31,14 @@ impl RayTable {
         let rows = (0..camera.height).into_par_iter();
         let blocks =
             rows.flat_map_iter(|row| (0..blocks_in_row).map(move |block| ray_block(camera, block, row)));
-        let blocks = Arc::new(blocks.collect());
-        Self { width: camera.width, height: camera.height, blocks_in_row, blocks }
+        let blocks: Vec<RayBlock> = blocks.collect();
+        let width = camera.width as usize;
+        let is_outside = |pixel: usize| {
+            blocks[pixel / width * blocks_in_row + pixel % width / LANES][0][pixel % width % LANES].is_nan()
+        };
+        let outside = Arc::new(runs(width * camera.height as usize, is_outside));
+        let blocks = Arc::new(blocks);
+        Self { width: camera.width, height: camera.height, blocks_in_row, blocks, outside }
     }
 
     /// Returns the number of pixels.
@@ -47,13 +55,14 @@ impl RayTable {
 
     /// Marks the pixels, row by row, that see nothing because the lens leaves them black.
     pub fn mark_outside(&self, origins: &mut [Origin]) {
-        for (row, origins) in origins.chunks_mut(self.width as usize).enumerate() {
-            for (block, origins) in self.row(row).iter().zip(origins.chunks_mut(LANES)) {
-                for (_, origin) in block[0].iter().zip(origins).filter(|(ray, _)| ray.is_nan()) {
-                    *origin = Origin { source: Origin::OUTSIDE, trust: 0 };
-                }
-            }
+        for run in self.outside.iter() {
+            origins[run.clone()].fill(Origin { source: Origin::OUTSIDE, trust: 0 });
         }
+    }
+
+    /// Returns runs of pixels, row by row, that see nothing.
+    pub(crate) fn outside(&self) -> &[Range<usize>] {
+        &self.outside
     }
 
     /// Returns the directions of a row, sixteen pixels per block; the last block is padded with NaN.
@@ -75,4 +84,16 @@ fn ray_block(camera: &Camera, block: usize, row: u32) -> RayBlock {
         }
     }
     rays
+}
+
+/// Returns the runs of numbers below `count` that are of a kind.
+fn runs(count: usize, is_of_kind: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for number in (0..count).filter(|number| is_of_kind(*number)) {
+        match runs.last_mut() {
+            Some(run) if run.end == number => run.end = number + 1,
+            _ => runs.push(number..number + 1),
+        }
+    }
+    runs
 }
