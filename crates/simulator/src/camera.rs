@@ -6,13 +6,14 @@ use image::RgbImage;
 use reality_sim_core::pose::CameraPose;
 use reality_sim_synthesis::{Archive, MethodKind, Synthesizer};
 
-use crate::{Frame, LookError};
+use crate::{Frame, LookError, labels::{Labeler, Labels}};
 
 /// Camera that a simulator moves over a recorded field.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Camera {
     synthesizer: Arc<Synthesizer>,
     method: MethodKind,
+    labeler: Option<Arc<Labeler>>,
 }
 
 impl Camera {
@@ -23,7 +24,16 @@ impl Camera {
 
     /// Makes a camera whose pictures come from a synthesizer, by a method.
     pub fn with(synthesizer: Arc<Synthesizer>, method: MethodKind) -> Self {
-        Self { synthesizer, method }
+        Self { synthesizer, method, labeler: None }
+    }
+
+    /// Sets whether frames get labels. The first time takes some milliseconds; clones of a camera share the work.
+    pub fn with_labels(self, is_wanted: bool) -> Self {
+        let Self { synthesizer, method, labeler } = self;
+        let archive = synthesizer.archive();
+        let new = || Arc::new(Labeler::new(synthesizer.camera(), archive.field(), archive.proxy_geometry()));
+        let labeler = is_wanted.then(|| labeler.unwrap_or_else(new));
+        Self { synthesizer, method, labeler }
     }
 
     /// Returns the synthesizer behind the camera.
@@ -41,6 +51,10 @@ impl Camera {
         frame.pose = pose;
         frame.used = provenance.used;
         frame.origins = provenance.origins;
+        match &self.labeler {
+            Some(labeler) => labeler.label(pose, &frame.origins, &mut frame.labels),
+            None => frame.labels = Labels::default(),
+        }
         Ok(())
     }
 }

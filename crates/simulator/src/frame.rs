@@ -4,6 +4,8 @@ use image::RgbImage;
 use reality_sim_core::{pose::CameraPose, warp::Origin};
 use reality_sim_synthesis::UsedImage;
 
+use crate::labels::Labels;
+
 /// Picture of a [`crate::Camera`] with what is known of its pixels. Used again and again, it keeps its memory.
 #[derive(Debug, Clone, Default)]
 pub struct Frame {
@@ -15,4 +17,6 @@ pub struct Frame {
     pub used: Vec<UsedImage>,
     /// Source in `used` and trust of every pixel of the scene, row by row.
     pub origins: Vec<Origin>,
+    /// Labels of the picture; empty unless the camera was asked for them.
+    pub labels: Labels,
 }

@@ -1,0 +1,150 @@
+//! All labels of a picture.
+
+use glam::DVec2;
+use rayon::prelude::*;
+use reality_sim_core::{
+    camera::{Camera, LANES},
+    field::{Crossing, Curve, FieldDimensions, Goal, LineKind},
+    pose::CameraPose,
+    warp::{Origin, ProxyGeometry, RayTable},
+};
+
+use super::{
+    extent::Extent,
+    painted_ground::PaintedGround,
+    pixels::{Row, View, label_row},
+    record::{LabeledBox, Labels},
+    seen_lines::Sight,
+};
+use crate::Class;
+
+/// Number of goals, which come first among the things.
+const GOALS: usize = 2;
+/// Number of points along posts and crossbar of a goal by which the part outside the picture is told: 1 % is a goal seen whole but
+/// for what its edges hide.
+const GOAL_POINTS: u32 = 100;
+/// Number of rows that a thread takes at a time.
+const ROWS: usize = 8;
+
+/// Source of the labels of one camera on one field. Threads share one.
+#[derive(Debug, Clone)]
+pub struct Labeler {
+    camera: Camera,
+    rays: RayTable,
+    field: FieldDimensions,
+    proxy: ProxyGeometry,
+    ground: PaintedGround,
+    lines: Vec<(LineKind, Curve)>,
+    crossings: Vec<Crossing>,
+}
+
+impl Labeler {
+    /// Prepares the labels of a camera's pictures.
+    pub fn new(camera: &Camera, field: &FieldDimensions, proxy: &ProxyGeometry) -> Self {
+        Self {
+            camera: camera.clone(),
+            rays: RayTable::new(camera),
+            field: field.clone(),
+            proxy: *proxy,
+            ground: PaintedGround::new(field),
+            lines: field.lines(),
+            crossings: field.crossings(),
+        }
+    }
+
+    /// Labels the picture at a pose, which must be possible for a camera. `origins` has one element for every pixel, or none where
+    /// the picture comes from elsewhere: then all of it is trusted.
+    pub fn label(&self, pose: CameraPose, origins: &[Origin], labels: &mut Labels) {
+        self.make_room(labels);
+        labels.trust.clear();
+        labels.trust.extend(origins.iter().map(|origin| origin.trust));
+        labels.trust.resize(self.rays.pixels(), u8::MAX);
+        let seen = self.label_pixels(pose, labels);
+        let goals = self.field.goals();
+        labels.boxes.clear();
+        labels.boxes.extend((0..GOALS).map(|goal| LabeledBox {
+            class: Class::Goal,
+            visible: seen.visible[goal],
+            whole: seen.whole[goal],
+            truncation: self.truncation(pose, &goals[goal]),
+        }));
+        let (classes, width) = (&labels.classes, self.rays.width as usize);
+        let is_hidden = |pixel: DVec2| {
+            let index = pixel.y.round() as usize * width + pixel.x.round() as usize;
+            classes.get(index).is_some_and(|class| *class >= Class::Goal)
+        };
+        let sight = Sight { camera: &self.camera, pose, is_hidden };
+        (labels.lines, labels.crossings) = (sight.lines(&self.lines), sight.crossings(&self.crossings));
+    }
+
+    fn make_room(&self, labels: &mut Labels) {
+        (labels.width, labels.height) = (self.rays.width, self.rays.height);
+        labels.classes.resize(self.rays.pixels(), Class::default());
+        labels.distance_m.resize(self.rays.pixels(), f32::INFINITY);
+        labels.instances.resize(self.rays.pixels(), 0);
+    }
+
+    fn label_pixels(&self, pose: CameraPose, labels: &mut Labels) -> Seen {
+        let view = View::new(&self.ground, &self.field, &self.proxy, pose);
+        let width = self.rays.width as usize;
+        let rows = labels.classes.par_chunks_mut(width).zip(labels.distance_m.par_chunks_mut(width));
+        let rows = rows.zip(labels.instances.par_chunks_mut(width));
+        let rows = rows.zip(self.rays.blocks().par_chunks(width.div_ceil(LANES))).enumerate();
+        let label = |mut seen: Seen, (number, (((classes, distance_m), instances), rays))| {
+            let mut row = Row { number: number as u32, classes, distance_m, instances };
+            label_row(&view, rays, &mut row, &mut seen.whole);
+            seen.add_visible(&row);
+            seen
+        };
+        rows.with_min_len(ROWS).fold(|| Seen::new(GOALS), label).reduce(|| Seen::new(GOALS), Seen::merged)
+    }
+
+    /// Returns the share of posts and crossbar that lies outside the picture.
+    fn truncation(&self, pose: CameraPose, goal: &Goal) -> f64 {
+        let [a, b] = goal.posts;
+        let top_m = a.height_m - a.radius_m;
+        let corners = [a.center.extend(0.0), a.center.extend(top_m), b.center.extend(top_m), b.center.extend(0.0)];
+        let lengths = [top_m, a.center.distance(b.center), top_m];
+        let whole_m: f64 = lengths.iter().sum();
+        let point = |number: u32| {
+            let mut along_m = whole_m * (f64::from(number) + 0.5) / f64::from(GOAL_POINTS);
+            let mut bar = 0;
+            while bar < 2 && along_m > lengths[bar] {
+                along_m -= lengths[bar];
+                bar += 1;
+            }
+            corners[bar].lerp(corners[bar + 1], along_m / lengths[bar].max(f64::MIN_POSITIVE))
+        };
+        let outside = (0..GOAL_POINTS)
+            .filter(|number| self.camera.project(pose.camera_from_world(point(*number))).is_err())
+            .count();
+        outside as f64 / f64::from(GOAL_POINTS)
+    }
+}
+
+/// Pixels of every thing.
+#[derive(Debug, Clone)]
+struct Seen {
+    /// Pixels that show it.
+    visible: Vec<Extent>,
+    /// Pixels that would show it if nothing stood before it.
+    whole: Vec<Extent>,
+}
+
+impl Seen {
+    fn new(things: usize) -> Self {
+        Self { visible: vec![Extent::NONE; things], whole: vec![Extent::NONE; things] }
+    }
+
+    fn add_visible(&mut self, row: &Row) {
+        for (column, instance) in row.instances.iter().enumerate().filter(|(_, instance)| **instance != 0) {
+            self.visible[usize::from(*instance) - 1].add([column as u32, row.number]);
+        }
+    }
+
+    fn merged(mut self, other: Self) -> Self {
+        self.visible.iter_mut().zip(other.visible).for_each(|(extent, other)| extent.merge(other));
+        self.whole.iter_mut().zip(other.whole).for_each(|(extent, other)| extent.merge(other));
+        self
+    }
+}

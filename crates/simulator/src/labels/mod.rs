@@ -1,0 +1,19 @@
+//! Labels of a picture, from the field's dimensions through the camera's lens: what every pixel shows, and where lines, crossings
+//! and things are.
+
+mod extent;
+mod goal_view;
+mod labeler;
+mod painted_ground;
+mod pixels;
+mod record;
+mod seen_lines;
+
+pub use self::{
+    extent::Extent,
+    labeler::Labeler,
+    record::{LabeledBox, Labels, SeenCrossing, SeenLine},
+};
+
+#[cfg(test)]
+mod tests;
