@@ -14,12 +14,13 @@ use super::record::{SeenCrossing, SeenLine};
 const STEP_M: f64 = 0.05;
 /// Maximum number of these steps for the longest lines, so that large fields take no longer.
 const MOST_STEPS: f64 = 200.0;
-/// Maximum distance of neighbouring points in the picture, pixels, before those in between that a straight line tells are left out.
-const MAX_STEP_PX: f64 = 12.0;
+/// Maximum distance of neighbouring points in the picture, pixels: between them, a circle of 90 px is 0.05 px beside the chord.
+const MAX_STEP_PX: f64 = 6.0;
 /// Maximum number of times that a step is halved, for the end of a line in view and for points between two others: a step of 5 cm
 /// becomes 0.2 mm.
 const MOST_HALVINGS: u32 = 8;
-/// Maximum distance of a line from the straight lines that stand for it, pixels: a tenth of what lines are measured to.
+/// Maximum distance of a line from the straight lines that stand for it, pixels: a ninth of how far the lines
+/// of recorded pictures lie from their places (docs/reconstruction.md).
 const STRAIGHT_PX: f64 = 0.05;
 
 /// Camera at its pose, and what it sees in front of the ground.

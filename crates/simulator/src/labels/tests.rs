@@ -16,8 +16,8 @@ use reality_sim_sensor::{Renderer, SceneColors};
 use super::*;
 use crate::Class;
 
-/// Share of the pixels of one colour that must have its class. The rest is what single precision makes of pixels whose centre lies
-/// on an edge: measured 1.0 in all pictures below, and no less than 0.99999.
+/// Share of the pixels of one colour that must have its class. All 3.0 million of the pictures below do; the rest is room for what
+/// single precision makes of other processors' rays.
 const LEAST_AGREEMENT: f64 = 0.9999;
 
 fn setup() -> CameraSetup {
@@ -163,6 +163,14 @@ fn distance_px(lines: &[SeenLine], line: usize, pixel: DVec2) -> f64 {
     pieces.map(|ends| Curve::Segment { from: ends[0], to: ends[1] }.distance_m(pixel)).fold(f64::INFINITY, f64::min)
 }
 
+/// Whether a goal is seen near a pixel. Parts of a line that come into view for less than 5 cm beside a post are lost.
+fn is_near_a_goal(labels: &Labels, index: usize) -> bool {
+    const NEAR_PX: i64 = 8;
+    let offsets = (-NEAR_PX..=NEAR_PX).flat_map(|v| (-NEAR_PX..=NEAR_PX).map(move |u| 640 * v + u));
+    let places = offsets.filter_map(|offset| usize::try_from(index as i64 + offset).ok());
+    places.filter_map(|place| labels.classes.get(place)).any(|class| *class == Class::Goal)
+}
+
 #[test]
 fn lines_hold_all_that_is_in_view_and_nothing_else() {
     for (setup, field) in setups().iter().zip(&fields()) {
@@ -175,7 +183,7 @@ fn lines_hold_all_that_is_in_view_and_nothing_else() {
                     let Ok(pixel) = setup.camera.project(point) else { continue };
                     let index = pixel.y.round() as usize * 640 + pixel.x.round() as usize;
                     let found_px = distance_px(&labels.lines, line, pixel);
-                    if labels.classes[index] != Class::Goal {
+                    if !is_near_a_goal(&labels, index) {
                         assert!(found_px < 0.1, "{pose:?}: line {line} at {pixel}: {found_px} px");
                     }
                 }
