@@ -1,5 +1,7 @@
 //! Lines and crossings in pixels.
 
+use std::cell::LazyCell;
+
 use glam::DVec2;
 use reality_sim_core::{
     camera::Camera,
@@ -14,8 +16,10 @@ use super::record::{SeenCrossing, SeenLine};
 const STEP_M: f64 = 0.05;
 /// Maximum number of these steps for the longest lines, so that large fields take no longer.
 const MOST_STEPS: f64 = 200.0;
-/// Maximum distance of neighbouring points in the picture, pixels: between them, a circle of 90 px is 0.05 px beside the chord.
-const MAX_STEP_PX: f64 = 6.0;
+/// Maximum distance of neighbouring points in the picture between which a hidden part is not looked for, pixels.
+const MAX_STEP_PX: f64 = 12.0;
+/// Distance of neighbouring points in the picture that are taken to be joined by a straight line, pixels.
+const SHORT_PX: f64 = 1.0;
 /// Maximum number of times that a step is halved, for the end of a line in view and for points between two others: a step of 5 cm
 /// becomes 0.2 mm.
 const MOST_HALVINGS: u32 = 8;
@@ -78,8 +82,14 @@ impl<Hidden: Fn(DVec2) -> bool> Sight<'_, Hidden> {
 
     /// Follows a curve from one of its points to the next.
     fn follow(&self, curve: &Curve, [from, to]: [(f64, Option<DVec2>); 2], halvings: u32, parts: &mut Parts) {
+        let fraction = 0.5 * (from.0 + to.0);
+        let middle = LazyCell::new(|| (fraction, self.visible(curve, fraction)));
         let is_short = match (from.1, to.1) {
-            (Some(a), Some(b)) => a.distance(b) <= MAX_STEP_PX,
+            (Some(a), Some(b)) if a.distance(b) <= SHORT_PX => true,
+            (Some(from), Some(to)) if from.distance(to) <= MAX_STEP_PX => {
+                let chord = Curve::Segment { from, to };
+                middle.1.is_some_and(|middle| chord.distance_m(middle) <= STRAIGHT_PX / 2.0)
+            }
             (None, None) => true,
             _ => false,
         };
@@ -90,8 +100,7 @@ impl<Hidden: Fn(DVec2) -> bool> Sight<'_, Hidden> {
             }
             return;
         }
-        let fraction = 0.5 * (from.0 + to.0);
-        let middle = (fraction, self.visible(curve, fraction));
+        let middle = *middle;
         self.follow(curve, [from, middle], halvings + 1, parts);
         self.follow(curve, [middle, to], halvings + 1, parts);
     }
