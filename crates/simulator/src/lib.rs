@@ -4,18 +4,61 @@
 //! | type | purpose |
 //! |---|---|
 //! | [`Camera`] | a picture at a pose, drawn into a frame |
-//! | [`Frame`] | the picture, and what is known of its pixels |
+//! | [`Frame`], [`SeenObject`], [`PixelBox`] | the picture, and what is known of its pixels |
 //! | [`Class`] | what a pixel shows |
 //! | [`labels`] | what all pixels show, lines and crossings in pixels, boxes |
 //! | [`coco`] | labels in the form of COCO |
+//! | [`Layer`], [`Object`], [`Sphere`] | something that is drawn over the recorded scene |
+//! | [`Ball`], [`Humanoid`], [`Body`], [`PictureLayer`] | layers that are ready to use |
+//! | [`Mesh`], [`Placed`], [`draw_mesh`] | surfaces of triangles, and the rasteriser |
+//! | [`View`], [`Canvas`], [`Fragment`] | what a layer sees of the camera, and what it draws on |
+//! | [`Light`], [`light_left`] | the hall's light, and what is left of it beside a thing |
 //!
 //! Pictures are RGB, 8 bits per channel; units and frames are those of [`reality_sim_core::pose`].
 
+mod ball;
+mod body;
 mod camera;
+mod canvas;
 mod class;
 pub mod coco;
+mod compose;
+mod drawing;
 mod error;
 mod frame;
+mod humanoid;
 pub mod labels;
+mod layer;
+mod layer_settings;
+mod light;
+mod light_reference;
+mod mesh;
+mod picture_layer;
+mod pixel_box;
+mod raster;
+mod scene_light;
+mod seen_object;
+mod shadow;
+mod view;
 
-pub use self::{camera::Camera, class::Class, error::LookError, frame::Frame};
+pub use self::{
+    ball::Ball,
+    body::Body,
+    camera::Camera,
+    canvas::{Canvas, Fragment, PARTS},
+    class::Class,
+    error::LookError,
+    frame::Frame,
+    humanoid::Humanoid,
+    layer::{Layer, Object, Sphere},
+    layer_settings::LayerSettings,
+    light::Light,
+    light_reference::LightReference,
+    mesh::{Mesh, Vertex},
+    picture_layer::{LayerPixel, PictureLayer},
+    pixel_box::PixelBox,
+    raster::{Placed, draw_mesh},
+    seen_object::{NO_OBJECT, SeenObject},
+    shadow::light_left,
+    view::{Instant, SeenPoint, View},
+};

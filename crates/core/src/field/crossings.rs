@@ -51,9 +51,8 @@ impl FieldDimensions {
         let mut crossings: Vec<Crossing> = Vec::new();
         for (index, a) in curves.iter().enumerate() {
             for crossing in curves[index + 1..].iter().flat_map(|b| meetings(a, b)) {
-                let is_known = |known: &Crossing| {
-                    known.point_in_world.distance(crossing.point_in_world) < SAME_POINT_M
-                };
+                let is_known =
+                    |known: &Crossing| known.point_in_world.distance(crossing.point_in_world) < SAME_POINT_M;
                 if !crossings.iter().any(is_known) {
                     crossings.push(crossing);
                 }

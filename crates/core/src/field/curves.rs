@@ -147,8 +147,7 @@ impl FieldDimensions {
             }
         }
         if self.center_circle_diameter_m > 0.0 {
-            let circle =
-                Curve::Circle { center: DVec2::ZERO, radius_m: self.center_circle_diameter_m / 2.0 };
+            let circle = Curve::Circle { center: DVec2::ZERO, radius_m: self.center_circle_diameter_m / 2.0 };
             lines.push((LineKind::CenterCircle, circle));
         }
         lines

@@ -10,6 +10,7 @@ mod origin;
 mod picture;
 mod proxy_geometry;
 mod rays;
+mod surfaces;
 
 pub use self::{
     blend::{
@@ -20,6 +21,7 @@ pub use self::{
     picture::Picture,
     proxy_geometry::{Billboard, Hall, ProxyGeometry},
     rays::RayTable,
+    surfaces::{Surface, SurfaceBlock},
 };
 use crate::backend_error::BackendError;
 

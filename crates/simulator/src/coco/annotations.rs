@@ -8,8 +8,9 @@ use super::{
     rle::Rle,
 };
 use crate::{
-    Class,
-    labels::{Extent, LabeledBox, Labels, SeenCrossing, SeenLine},
+    class::Class,
+    labels::{Extent, Labels, SeenCrossing, SeenLine},
+    seen_object::SeenObject,
 };
 
 /// Numbers of annotations that are set aside for each picture, so that they do not depend on other pictures.
@@ -27,7 +28,8 @@ pub fn annotations(labels: &Labels, image_id: u64) -> Vec<Annotation> {
         masked(labels, class.number().into(), is_inside)
     });
     let field = field_annotation(labels);
-    let things = labels.boxes.iter().enumerate().map(|(number, thing)| thing_annotation(labels, number, thing));
+    let things =
+        labels.things.iter().enumerate().map(|(number, thing)| thing_annotation(labels, number, thing));
     let seen = surfaces.into_iter().chain(things).chain([field]).filter(|annotation| annotation.area > 0);
     let number = |(index, annotation): (usize, Annotation)| Annotation {
         id: image_id * IDS_PER_IMAGE + index as u64 + 1,
@@ -73,11 +75,12 @@ fn field_annotation(labels: &Labels) -> Annotation {
     }
 }
 
-fn thing_annotation(labels: &Labels, number: usize, thing: &LabeledBox) -> Annotation {
+fn thing_annotation(labels: &Labels, number: usize, thing: &SeenObject) -> Annotation {
     let instance = number as u16 + 1;
     Annotation {
         visibility: Some(to_thousandths(thing.visibility())),
-        truncation: Some(to_thousandths(thing.truncation)),
+        truncation: Some(to_thousandths(f64::from(thing.truncation))),
+        name: Some(thing.name.clone()),
         instance: Some(instance),
         ..masked(labels, thing.class.number().into(), |index| labels.instances[index] == instance)
     }
@@ -86,23 +89,23 @@ fn thing_annotation(labels: &Labels, number: usize, thing: &LabeledBox) -> Annot
 /// Makes an annotation of some pixels, without numbers of its own.
 fn masked(labels: &Labels, category_id: u32, is_inside: impl Fn(usize) -> bool) -> Annotation {
     let Labels { width, height, .. } = *labels;
-    let mut extent = Extent::NONE;
+    let mut extent = Extent::default();
     for index in (0..width * height).filter(|index| is_inside(*index as usize)) {
-        extent.add([index % width, index / width]);
+        extent.add(index % width, index / width);
     }
-    let Extent { count, min, max } = extent;
-    let bbox = if count == 0 { [0; 4] } else { [min[0], min[1], max[0] - min[0] + 1, max[1] - min[1] + 1] };
+    let around = extent.around().unwrap_or_default();
     Annotation {
         id: 0,
         image_id: 0,
         category_id,
-        bbox,
-        area: count,
+        bbox: [around.left, around.top, around.width(), around.height()],
+        area: extent.count,
         segmentation: Rle::new([width, height], is_inside),
         iscrowd: 0,
         visibility: None,
         truncation: None,
         instance: None,
+        name: None,
         keypoints: None,
         num_keypoints: None,
     }

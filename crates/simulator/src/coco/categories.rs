@@ -3,7 +3,7 @@
 use reality_sim_core::field::FieldDimensions;
 
 use super::records::Category;
-use crate::Class;
+use crate::class::Class;
 
 /// Category of the whole field; those of the classes have the classes' numbers.
 pub const FIELD_CATEGORY: u32 = 100;

@@ -50,6 +50,9 @@ pub struct Annotation {
     /// Value of its pixels in a picture of instances.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub instance: Option<u16>,
+    /// Name of the thing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// Column, row and visibility of every keypoint: 0 outside the picture, 1 hidden, 2 visible.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub keypoints: Option<Vec<f64>>,

@@ -1,31 +1,32 @@
 //! Pixels that a thing covers: how many, and the box around them.
 
+use crate::pixel_box::PixelBox;
+
 /// Number of some pixels and the box around them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Extent {
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Extent {
     /// Number of the pixels.
-    pub count: u32,
-    /// First column and first row.
-    pub min: [u32; 2],
-    /// Last column and last row.
-    pub max: [u32; 2],
+    pub(crate) count: u32,
+    /// Box around them; empty if there are none.
+    around: PixelBox,
 }
 
 impl Extent {
-    /// No pixel.
-    pub const NONE: Self = Self { count: 0, min: [u32::MAX; 2], max: [0; 2] };
-
     /// Adds the pixel in a column and a row.
-    pub fn add(&mut self, pixel: [u32; 2]) {
-        self.merge(Self { count: 1, min: pixel, max: pixel });
+    #[inline]
+    pub(crate) fn add(&mut self, column: u32, row: u32) {
+        self.merge(Self { count: 1, around: PixelBox::around(column, row) });
     }
 
     /// Adds other pixels.
-    pub fn merge(&mut self, other: Self) {
+    #[inline]
+    pub(crate) fn merge(&mut self, other: Self) {
         self.count += other.count;
-        for axis in 0..2 {
-            self.min[axis] = self.min[axis].min(other.min[axis]);
-            self.max[axis] = self.max[axis].max(other.max[axis]);
-        }
+        self.around = self.around.union(other.around);
+    }
+
+    /// Returns the box around the pixels, if there are any.
+    pub(crate) fn around(self) -> Option<PixelBox> {
+        (self.count > 0).then_some(self.around)
     }
 }

@@ -4,15 +4,17 @@
 mod extent;
 mod goal_view;
 mod labeler;
+mod overlay;
 mod painted_ground;
 mod pixels;
 mod record;
 mod seen_lines;
 
+pub(crate) use self::extent::Extent;
 pub use self::{
-    extent::Extent,
     labeler::Labeler,
-    record::{LabeledBox, Labels, SeenCrossing, SeenLine},
+    overlay::Overlay,
+    record::{Labels, SeenCrossing, SeenLine},
 };
 
 #[cfg(test)]

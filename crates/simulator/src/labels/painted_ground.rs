@@ -3,7 +3,7 @@
 use glam::DVec2;
 use reality_sim_core::field::{Curve, FieldDimensions, MARK_HALF_SIDE_M};
 
-use crate::Class;
+use crate::class::Class;
 
 /// Side of a cell, metres: about a line's width, so that few cells hold two classes and the table fits the cache.
 const CELL_M: f64 = 0.05;
@@ -51,26 +51,20 @@ impl Shape {
     fn holds(&self, point: DVec2) -> bool {
         match *self {
             Self::Rectangle { min, max } => point.cmpge(min).all() && point.cmple(max).all(),
-            Self::Ring { center, inner_m, outer_m } => {
-                (inner_m..=outer_m).contains(&point.distance(center))
-            }
+            Self::Ring { center, inner_m, outer_m } => (inner_m..=outer_m).contains(&point.distance(center)),
         }
     }
 
     /// Returns how much of the rectangle between two corners is covered.
     fn cover(&self, [low, high]: [DVec2; 2]) -> Cover {
         let (touches, covers) = match *self {
-            Self::Rectangle { min, max } => (
-                low.cmple(max).all() && high.cmpge(min).all(),
-                low.cmpge(min).all() && high.cmple(max).all(),
-            ),
+            Self::Rectangle { min, max } => {
+                (low.cmple(max).all() && high.cmpge(min).all(), low.cmpge(min).all() && high.cmple(max).all())
+            }
             Self::Ring { center, inner_m, outer_m } => {
                 let nearest_m = center.clamp(low, high).distance(center);
                 let farthest_m = (low - center).abs().max((high - center).abs()).length();
-                (
-                    nearest_m <= outer_m && farthest_m >= inner_m,
-                    nearest_m >= inner_m && farthest_m <= outer_m,
-                )
+                (nearest_m <= outer_m && farthest_m >= inner_m, nearest_m >= inner_m && farthest_m <= outer_m)
             }
         };
         match (touches, covers) {
@@ -114,7 +108,8 @@ impl PaintedGround {
             mixed: Vec::new(),
         };
         for number in 0..columns * rows {
-            let corner = DVec2::new((number % columns) as f64, (number / columns) as f64) * cell_m - half_extent;
+            let corner =
+                DVec2::new((number % columns) as f64, (number / columns) as f64) * cell_m - half_extent;
             ground.push_cell([corner - ROUNDING_M, corner + cell_m + ROUNDING_M], &shapes);
         }
         ground

@@ -11,7 +11,7 @@ use reality_sim_core::{
 };
 
 use super::{extent::Extent, goal_view::GoalView, painted_ground::PaintedGround};
-use crate::Class;
+use crate::class::Class;
 
 /// What stands around a camera.
 pub(super) struct View<'a> {
@@ -72,7 +72,7 @@ pub(super) fn label_row(view: &View, rays: &[[Lanes; 3]], row: &mut Row, goals: 
             }
             for i in (0..classes.len()).filter(|i| candidates[*i] != 0) {
                 let Some(to_goal) = goal.distance(direction.map(|axis| axis[i])) else { continue };
-                goals[goal_number].add([(number * LANES + i) as u32, row.number]);
+                goals[goal_number].add((number * LANES + i) as u32, row.number);
                 if to_goal < distance[i] {
                     (distance[i], goal_of[i]) = (to_goal, goal_number as u16 + 1);
                 }

@@ -4,8 +4,7 @@ use glam::DVec2;
 use image::{GrayImage, ImageBuffer, Luma};
 use reality_sim_core::field::{Crossing, LineKind};
 
-use super::extent::Extent;
-use crate::Class;
+use crate::{class::Class, seen_object::SeenObject};
 
 /// Labels of a picture. A label is what the centre of its pixel shows, and is exact for the field's dimensions, the pose and the
 /// lens: neither blur nor light plays a part.
@@ -17,7 +16,7 @@ pub struct Labels {
     pub height: u32,
     /// Class of every pixel, row by row from the top.
     pub classes: Vec<Class>,
-    /// Thing that every pixel shows: 0 for none, else its place in `boxes`, from 1.
+    /// Thing that every pixel shows: 0 for none, else its place in `things`, from 1.
     pub instances: Vec<u16>,
     /// Distance from the camera to what every pixel shows, along its ray, metres; infinite where the lens leaves it black. Beyond
     /// the field it is the distance to the box that stands for the hall.
@@ -29,7 +28,7 @@ pub struct Labels {
     /// All crossings and marks of the field, in the order of [`reality_sim_core::field::FieldDimensions::crossings`].
     pub crossings: Vec<SeenCrossing>,
     /// Goals at −x and at +x, then the objects, in the order in which they were given; also those out of view.
-    pub boxes: Vec<LabeledBox>,
+    pub things: Vec<SeenObject>,
 }
 
 /// Part of a white line in view.
@@ -52,26 +51,6 @@ pub struct SeenCrossing {
     pub pixel: Option<DVec2>,
     /// Whether nothing stands before it.
     pub is_visible: bool,
-}
-
-/// Thing that stands on the field.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LabeledBox {
-    /// Class of the thing.
-    pub class: Class,
-    /// Pixels that show it.
-    pub visible: Extent,
-    /// Pixels that would show it if nothing stood before it.
-    pub whole: Extent,
-    /// Share of it that lies outside the picture, 0 to 1.
-    pub truncation: f64,
-}
-
-impl LabeledBox {
-    /// Returns the share of its pixels in the picture before which nothing stands, 0 to 1; 0 for a thing out of view.
-    pub fn visibility(&self) -> f64 {
-        f64::from(self.visible.count) / f64::from(self.whole.count.max(1))
-    }
 }
 
 impl Labels {

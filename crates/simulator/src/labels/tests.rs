@@ -14,7 +14,7 @@ use reality_sim_core::{
 use reality_sim_sensor::{Renderer, SceneColors};
 
 use super::*;
-use crate::Class;
+use crate::class::Class;
 
 /// Share of the pixels of one colour that must have its class. All 3.0 million of the pictures below do; the rest is room for what
 /// single precision makes of other processors' rays.
@@ -60,7 +60,12 @@ fn without_backs(field: &FieldDimensions) -> ProxyGeometry {
 
 fn labels_at(setup: &CameraSetup, field: &FieldDimensions, pose: CameraPose) -> Labels {
     let mut labels = Labels::default();
-    Labeler::new(&setup.camera, field, &without_backs(field)).label(pose, &[], &mut labels);
+    Labeler::new(&setup.camera, field, &without_backs(field)).label(
+        pose,
+        &[],
+        Overlay::default(),
+        &mut labels,
+    );
     labels
 }
 
@@ -160,7 +165,9 @@ fn distance_px(lines: &[SeenLine], line: usize, pixel: DVec2) -> f64 {
     use reality_sim_core::field::Curve;
     let of_line = lines.iter().filter(|seen| seen.line == line);
     let pieces = of_line.flat_map(|seen| seen.pixels.windows(2));
-    pieces.map(|ends| Curve::Segment { from: ends[0], to: ends[1] }.distance_m(pixel)).fold(f64::INFINITY, f64::min)
+    pieces
+        .map(|ends| Curve::Segment { from: ends[0], to: ends[1] }.distance_m(pixel))
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// Whether a goal is seen near a pixel. Parts of a line that come into view for less than 5 cm beside a post are lost.
@@ -203,18 +210,18 @@ fn boxes_bound_the_pixels_of_their_things() {
     for pose in poses(&field) {
         let mut labels = Labels::default();
         let proxy = ProxyGeometry::new(&Hall::usual(&field), &field);
-        Labeler::new(&setup.camera, &field, &proxy).label(pose, &[], &mut labels);
-        assert_eq!(labels.boxes.len(), 2);
-        for (number, thing) in labels.boxes.iter().enumerate() {
-            let mut extent = Extent::NONE;
+        Labeler::new(&setup.camera, &field, &proxy).label(pose, &[], Overlay::default(), &mut labels);
+        assert_eq!(labels.things.len(), 2);
+        for (number, thing) in labels.things.iter().enumerate() {
+            let mut extent = Extent::default();
             for (index, instance) in labels.instances.iter().enumerate() {
                 if usize::from(*instance) == number + 1 {
                     assert_eq!(labels.classes[index], Class::Goal);
-                    extent.add([index as u32 % 640, index as u32 / 640]);
+                    extent.add(index as u32 % 640, index as u32 / 640);
                 }
             }
-            assert_eq!(extent, thing.visible, "{pose:?}");
-            assert!(thing.visible.count <= thing.whole.count && (0.0..=1.0).contains(&thing.truncation));
+            assert_eq!((extent.count, extent.around()), (thing.visible_pixels, thing.visible), "{pose:?}");
+            assert!(thing.visible_pixels <= thing.whole_pixels && (0.0..=1.0).contains(&thing.truncation));
         }
     }
 }
@@ -223,18 +230,19 @@ fn boxes_bound_the_pixels_of_their_things() {
 fn what_a_goal_hides_is_hidden_and_what_is_behind_the_camera_is_outside() {
     let (setup, field) = (setup(), FieldDimensions::preset("humanoid-kidsize-2010").unwrap());
     // Behind the goal at +x, looking at its back from close by: nothing of the field's middle is seen through it.
-    let behind = CameraPose::new(Pose2::new(field.length_m / 2.0 + 0.8, 0.0, std::f64::consts::PI), 0.4, 0.1, 0.0);
+    let behind =
+        CameraPose::new(Pose2::new(field.length_m / 2.0 + 0.8, 0.0, std::f64::consts::PI), 0.4, 0.1, 0.0);
     let mut labels = Labels::default();
     let proxy = ProxyGeometry::new(&Hall::usual(&field), &field);
-    Labeler::new(&setup.camera, &field, &proxy).label(behind, &[], &mut labels);
-    let [far, near] = [labels.boxes[0], labels.boxes[1]];
-    assert!(far.whole.count > 100 && far.visibility() == 0.0, "{far:?}");
+    Labeler::new(&setup.camera, &field, &proxy).label(behind, &[], Overlay::default(), &mut labels);
+    let [far, near] = [&labels.things[0], &labels.things[1]];
+    assert!(far.whole_pixels > 100 && far.visibility() == 0.0, "{far:?}");
     assert!(near.visibility() == 1.0);
     let center = labels.crossings.iter().find(|seen| seen.crossing.point_in_world == DVec2::ZERO).unwrap();
     assert!(center.pixel.is_some() && !center.is_visible);
     // Looking away from the field, only the goal beside the camera may be in view.
     let away = CameraPose { yaw_rad: 0.0, pitch_rad: -0.5, ..behind };
-    Labeler::new(&setup.camera, &field, &proxy).label(away, &[], &mut labels);
-    assert_eq!(labels.boxes[0].truncation, 1.0);
-    assert_eq!(labels.boxes[0].whole.count, 0);
+    Labeler::new(&setup.camera, &field, &proxy).label(away, &[], Overlay::default(), &mut labels);
+    assert_eq!(labels.things[0].truncation, 1.0);
+    assert_eq!(labels.things[0].whole_pixels, 0);
 }

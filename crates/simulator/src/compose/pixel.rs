@@ -1,0 +1,96 @@
+//! Fragments of one pixel, put over each other.
+
+use glam::Vec3;
+
+use crate::canvas::{Fragment, PARTS};
+
+/// Light that gets through fragments below which nothing behind them is seen.
+const LEAST_LIGHT: f32 = 1e-3;
+
+/// What the layers show in a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Pixel {
+    /// Linear red, green and blue, times the covered part.
+    pub(crate) color: Vec3,
+    /// Covered part, 0 to 1.
+    pub(crate) cover: f32,
+    /// Object that covers most, if objects cover half of the pixel or more.
+    pub(crate) object: Option<u16>,
+    /// Its mean distance, metres.
+    pub(crate) distance_m: f32,
+}
+
+impl Pixel {
+    pub(crate) const EMPTY: Self =
+        Self { color: Vec3::ZERO, cover: 0.0, object: None, distance_m: f32::INFINITY };
+}
+
+/// Memory for the fragments of one pixel.
+#[derive(Debug, Default)]
+pub(crate) struct Stack {
+    pub(crate) fragments: Vec<Fragment>,
+    /// Parts of the pixel that are alike, with the share of the light that gets through the fragments so far.
+    groups: Vec<(u16, f32)>,
+    /// Covered part and sum of the distances of each object.
+    shares: Vec<(u16, f32, f32)>,
+}
+
+impl Stack {
+    /// Puts all fragments over each other, the nearest in front, part by part.
+    pub(crate) fn composed(&mut self) -> Pixel {
+        if self.fragments.is_empty() {
+            return Pixel::EMPTY;
+        }
+        self.fragments.sort_unstable_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+        self.groups.clear();
+        self.groups.push((Fragment::ALL, 1.0));
+        self.shares.clear();
+        let mut pixel = Pixel::EMPTY;
+        for index in 0..self.fragments.len() {
+            let fragment = self.fragments[index];
+            let share = self.seen_share(&fragment);
+            if share > 0.0 {
+                pixel.color += share * fragment.color;
+                pixel.cover += share * fragment.alpha;
+                self.add_share(fragment.object, share * fragment.alpha, fragment.distance_m);
+            }
+            if self.groups.is_empty() {
+                break;
+            }
+        }
+        pixel.cover = pixel.cover.min(1.0);
+        if pixel.cover >= 0.5
+            && let Some((object, share, sum)) = self.shares.iter().max_by(|a, b| a.1.total_cmp(&b.1))
+        {
+            (pixel.object, pixel.distance_m) = (Some(*object), sum / share);
+        }
+        pixel
+    }
+
+    /// Returns the part of the pixel in which a fragment is seen, and lets it hide what follows.
+    fn seen_share(&mut self, fragment: &Fragment) -> f32 {
+        let mut share = 0.0;
+        for index in 0..self.groups.len() {
+            let (parts, light) = self.groups[index];
+            let hit = parts & fragment.parts;
+            if hit == 0 {
+                continue;
+            }
+            share += light * hit.count_ones() as f32 / PARTS as f32;
+            self.groups[index].0 = parts & !hit;
+            self.groups.push((hit, light * (1.0 - fragment.alpha)));
+        }
+        self.groups.retain(|(parts, light)| *parts != 0 && *light > LEAST_LIGHT);
+        share
+    }
+
+    fn add_share(&mut self, object: u16, share: f32, distance_m: f32) {
+        match self.shares.iter_mut().find(|(known, ..)| *known == object) {
+            Some((_, sum, distances)) => {
+                *sum += share;
+                *distances += share * distance_m;
+            }
+            None => self.shares.push((object, share, share * distance_m)),
+        }
+    }
+}
