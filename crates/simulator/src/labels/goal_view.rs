@@ -51,10 +51,11 @@ impl GoalView {
         }
     }
 
-    /// Returns 1 for the rays that may meet the goal, else 0: all those that do, and few others.
+    /// Returns 1 for the rays that may meet the goal, else 0: all those that do, and few others. `inverse_x` is one over the
+    /// directions' x.
     #[expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
     #[inline(always)]
-    pub(super) fn candidates(&self, direction: &[Lanes; 3]) -> [u32; LANES] {
+    pub(super) fn candidates(&self, direction: &[Lanes; 3], inverse_x: &Lanes) -> [u32; LANES] {
         let mut found = [0_u32; LANES];
         let square = self.radius * self.radius;
         let [x, y, z] = direction;
@@ -73,7 +74,7 @@ impl GoalView {
         }
         let Back { x: screen, sides: [low, high], top } = self.back;
         for i in 0..LANES {
-            let distance = screen / x[i];
+            let distance = screen * inverse_x[i];
             let (across, up) = (distance * y[i], distance * z[i]);
             let is_on = (across >= low) & (across <= high) & (up <= top) & (up >= self.foot);
             found[i] |= u32::from((distance > 0.0) & is_on);

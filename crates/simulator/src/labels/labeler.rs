@@ -169,8 +169,15 @@ impl Seen {
     }
 
     fn add_visible(&mut self, row: &Row) {
-        for (column, instance) in row.instances.iter().enumerate().filter(|(_, instance)| **instance != 0) {
-            self.visible[usize::from(*instance) - 1].add(column as u32, row.number);
+        for (block, instances) in row.instances.chunks(LANES).enumerate() {
+            // Most blocks show none.
+            if instances.iter().fold(0, |any, instance| any | instance) == 0 {
+                continue;
+            }
+            for (lane, instance) in instances.iter().enumerate().filter(|(_, instance)| **instance != 0) {
+                let column = block * LANES + lane;
+                self.visible[usize::from(*instance) - 1].add(column as u32, row.number);
+            }
         }
     }
 

@@ -1,7 +1,12 @@
 //! What is painted on the ground: exact for every point, and fast by a table of cells most of which hold one class only.
 
+#![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
+
 use glam::DVec2;
-use reality_sim_core::field::{Curve, FieldDimensions, MARK_HALF_SIDE_M};
+use reality_sim_core::{
+    camera::{LANES, Lanes},
+    field::{Curve, FieldDimensions, MARK_HALF_SIDE_M},
+};
 
 use crate::class::Class;
 
@@ -135,26 +140,41 @@ impl PaintedGround {
         }
     }
 
-    /// Returns the class of a point on the ground, world axes, metres.
+    /// Returns the classes of sixteen points on the ground, world axes, metres; [`Class::Outside`] for NaN.
     #[inline(always)]
-    pub(super) fn class_at(&self, x_m: f32, y_m: f32) -> Class {
+    pub(super) fn classes_at(&self, [x_m, y_m]: &[Lanes; 2]) -> [Class; LANES] {
         let [half_x_m, half_y_m] = self.half_extent_m;
-        // Also false for NaN.
-        let is_on_carpet = (x_m.abs() <= half_x_m) & (y_m.abs() <= half_y_m);
-        if !is_on_carpet {
-            return Class::Outside;
+        let (columns, last) = (self.columns as f32, (self.cells.len() - 1) as f32);
+        let mut is_on_carpet = [0_u32; LANES];
+        let mut index = [0_u32; LANES];
+        for i in 0..LANES {
+            is_on_carpet[i] = u32::from((x_m[i].abs() <= half_x_m) & (y_m[i].abs() <= half_y_m));
+            let column = ((x_m[i] + half_x_m) * self.cells_per_m).floor();
+            let row = ((y_m[i] + half_y_m) * self.cells_per_m).floor();
+            // Whole numbers up to the number of cells are exact; `max` makes 0 of NaN.
+            index[i] = (row * columns + column).max(0.0).min(last) as u32;
         }
-        let column = ((x_m + half_x_m) * self.cells_per_m) as usize;
-        let row = ((y_m + half_y_m) * self.cells_per_m) as usize;
-        match self.cells.get(row * self.columns + column.min(self.columns - 1)) {
-            Some(&LINE) => Class::Line,
-            Some(&cell) if cell >= FIRST_MIXED => {
-                let point = DVec2::new(f64::from(x_m), f64::from(y_m));
-                let shapes = &self.mixed[(cell - FIRST_MIXED) as usize];
-                if shapes.iter().any(|shape| shape.holds(point)) { Class::Line } else { Class::Carpet }
+        let mut cell = [CARPET; LANES];
+        for i in 0..LANES {
+            cell[i] = self.cells[index[i] as usize];
+            cell[i] = if is_on_carpet[i] == 0 { CARPET } else { cell[i] };
+        }
+        let mut classes = [Class::Outside; LANES];
+        let mut mixed = 0;
+        for i in 0..LANES {
+            mixed |= u32::from(cell[i] >= FIRST_MIXED);
+            let painted = if cell[i] == LINE { Class::Line } else { Class::Carpet };
+            classes[i] = if is_on_carpet[i] == 0 { Class::Outside } else { painted };
+        }
+        if mixed != 0 {
+            for i in (0..LANES).filter(|i| cell[*i] >= FIRST_MIXED) {
+                let point = DVec2::new(f64::from(x_m[i]), f64::from(y_m[i]));
+                let shapes = &self.mixed[(cell[i] - FIRST_MIXED) as usize];
+                classes[i] =
+                    if shapes.iter().any(|shape| shape.holds(point)) { Class::Line } else { Class::Carpet };
             }
-            _ => Class::Carpet,
         }
+        classes
     }
 }
 
@@ -164,6 +184,12 @@ mod tests {
     use reality_sim_core::field::preset_names;
 
     use super::*;
+
+    impl PaintedGround {
+        fn class_at(&self, x_m: f32, y_m: f32) -> Class {
+            self.classes_at(&[[x_m; LANES], [y_m; LANES]])[LANES - 1]
+        }
+    }
 
     /// The same by the distances of a point from all lines, which square corners but at ends.
     fn slow_class(field: &FieldDimensions, point: DVec2) -> Class {

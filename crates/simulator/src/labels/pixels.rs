@@ -63,10 +63,10 @@ pub(super) fn label_row(view: &View, rays: &[[Lanes; 3]], row: &mut Row, goals: 
     let blocks = row.classes.chunks_mut(LANES).zip(row.distance_m.chunks_mut(LANES));
     let blocks = blocks.zip(row.instances.chunks_mut(LANES)).zip(rays).enumerate();
     for (number, (((classes, distances), instances), rays)) in blocks {
-        let Surroundings { direction, mut distance, on_ground } = surroundings(view, rays);
+        let Surroundings { direction, inverse_x, mut distance, on_ground } = surroundings(view, rays);
         let mut goal_of = [0_u16; LANES];
         for (goal_number, goal) in view.goals.iter().enumerate() {
-            let candidates = goal.candidates(&direction);
+            let candidates = goal.candidates(&direction, &inverse_x);
             if candidates.iter().all(|candidate| *candidate == 0) {
                 continue;
             }
@@ -78,25 +78,48 @@ pub(super) fn label_row(view: &View, rays: &[[Lanes; 3]], row: &mut Row, goals: 
                 }
             }
         }
-        let [x, y, _] = view.placement.position_in_world;
-        for i in 0..classes.len() {
-            classes[i] = if goal_of[i] != 0 {
-                Class::Goal
-            } else if on_ground[i] != 0 {
-                view.ground.class_at(x + distance[i] * direction[0][i], y + distance[i] * direction[1][i])
-            } else {
-                Class::Outside
-            };
-            distances[i] = distance[i];
-            instances[i] = goal_of[i];
+        let mut class = [Class::Outside; LANES];
+        // Above the horizon no pixel of a block shows the ground.
+        if on_ground.iter().any(|on| *on != 0) {
+            class = ground_classes(view, &direction, &distance, &on_ground);
+        }
+        for i in 0..LANES {
+            class[i] = if goal_of[i] != 0 { Class::Goal } else { class[i] };
+        }
+        let count = classes.len();
+        classes.copy_from_slice(&class[..count]);
+        distances.copy_from_slice(&distance[..count]);
+        instances.copy_from_slice(&goal_of[..count]);
+    }
+}
+
+/// Returns what is painted where rays end on the ground.
+#[inline(always)]
+fn ground_classes(
+    view: &View,
+    direction: &[Lanes; 3],
+    distance: &Lanes,
+    on_ground: &[u32; LANES],
+) -> [Class; LANES] {
+    let mut ground = [[0.0_f32; LANES]; 2];
+    for axis in 0..2 {
+        for i in 0..LANES {
+            ground[axis][i] = view.placement.position_in_world[axis] + distance[i] * direction[axis][i];
         }
     }
+    let mut classes = view.ground.classes_at(&ground);
+    for i in 0..LANES {
+        classes[i] = if on_ground[i] != 0 { classes[i] } else { Class::Outside };
+    }
+    classes
 }
 
 /// Ground and hall along sixteen rays.
 struct Surroundings {
     /// Unit directions, world axes.
     direction: [Lanes; 3],
+    /// One over the directions' x: divisions are what takes most time here.
+    inverse_x: Lanes,
     /// Distances, metres; infinite where there is no ray.
     distance: Lanes,
     /// 1 where the ray ends on the ground, else 0.
@@ -107,6 +130,7 @@ struct Surroundings {
 fn surroundings(view: &View, rays: &[Lanes; 3]) -> Surroundings {
     let axes = &view.placement.axes_in_world;
     let mut direction = [[0.0_f32; LANES]; 3];
+    let mut inverse_x = [0.0_f32; LANES];
     let mut distance = [f32::INFINITY; LANES];
     let mut on_ground = [0_u32; LANES];
     for axis in 0..3 {
@@ -114,7 +138,11 @@ fn surroundings(view: &View, rays: &[Lanes; 3]) -> Surroundings {
         for i in 0..LANES {
             let d = axes[0][axis] * rays[0][i] + axes[1][axis] * rays[1][i] + axes[2][axis] * rays[2][i];
             direction[axis][i] = d;
-            let to_wall = if d < 0.0 { low } else { high } / d;
+            let inverse = 1.0 / d;
+            let to_wall = if d < 0.0 { low } else { high } * inverse;
+            if axis == 0 {
+                inverse_x[i] = inverse;
+            }
             // False for NaN, which a pixel without a ray has.
             let is_nearer = to_wall < distance[i];
             distance[i] = if is_nearer { to_wall } else { distance[i] };
@@ -123,5 +151,5 @@ fn surroundings(view: &View, rays: &[Lanes; 3]) -> Surroundings {
             }
         }
     }
-    Surroundings { direction, distance, on_ground }
+    Surroundings { direction, inverse_x, distance, on_ground }
 }

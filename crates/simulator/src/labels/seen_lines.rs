@@ -3,6 +3,7 @@
 use std::cell::LazyCell;
 
 use glam::DVec2;
+use rayon::prelude::*;
 use reality_sim_core::{
     camera::Camera,
     field::{Crossing, Curve, LineKind},
@@ -35,15 +36,14 @@ pub(super) struct Sight<'a, Hidden> {
     pub(super) is_hidden: Hidden,
 }
 
-impl<Hidden: Fn(DVec2) -> bool> Sight<'_, Hidden> {
+impl<Hidden: Fn(DVec2) -> bool + Sync> Sight<'_, Hidden> {
     /// Returns the parts of lines that are in view.
     pub(super) fn lines(&self, lines: &[(LineKind, Curve)]) -> Vec<SeenLine> {
-        let mut seen = Vec::new();
-        for (line, (kind, curve)) in lines.iter().enumerate() {
+        let seen = lines.par_iter().enumerate().flat_map_iter(|(line, (kind, curve))| {
             let parts = self.parts(curve).into_iter().filter(|pixels| pixels.len() > 1);
-            seen.extend(parts.map(|pixels| SeenLine { kind: *kind, line, pixels: straightened(&pixels) }));
-        }
-        seen
+            parts.map(move |pixels| SeenLine { kind: *kind, line, pixels: straightened(&pixels) })
+        });
+        seen.collect()
     }
 
     /// Returns all crossings with the pixels at which they are.
