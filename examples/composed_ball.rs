@@ -31,14 +31,18 @@ use crate::{
 };
 
 /// Standard deviations of the blur that are tried, pixels.
-const SIGMAS_PX: [f64; 9] = [0.0, 0.2, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.7];
+const SIGMAS_PX: [f64; 9] = [0.0, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0];
 /// Reflectance that the search for the ball's starts from, and the number of its steps: each brings the ball's mean colour to
 /// the true one.
 const START: Vec3 = Vec3::new(0.6, 0.3, 0.05);
 const STEPS: usize = 4;
+/// Shares of mirrored light that are tried.
+const GLOSSES: [f32; 5] = [0.0, 0.1, 0.2, 0.3, 0.4];
+/// Shot noise that the search for the pictures' starts from.
+const START_SHOT: f64 = 0.0007;
 
 /// Stages on the way of a ball into a picture.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Stages {
     smooth_edges: bool,
     blur: bool,
@@ -83,6 +87,7 @@ struct Developed {
     sigma_px: f64,
     noise_shot: f64,
     reflectance: Vec3,
+    gloss: f32,
 }
 
 struct Study {
@@ -124,8 +129,7 @@ impl Study {
         let mut compared = Vec::new();
         for probe in self.probes.iter().filter(|probe| probe.number % 2 == first) {
             let [x, y, z] = probe.ball;
-            let ball =
-                Ball { center_in_world: [x, y, z].into(), ..Ball::on_ground(x, y, z, developed.reflectance) };
+            let ball = Ball::on_ground(x, y, z, developed.reflectance).glossy(developed.gloss);
             let hard = HardEdges { layer: &ball };
             let layer: &dyn Layer = if stages.smooth_edges { &ball } else { &hard };
             let (without, with) = if over_truth {
@@ -136,7 +140,9 @@ impl Study {
                 camera.look(probe.pose, &[layer], &mut with)?;
                 (without.picture, with.picture)
             };
-            if let Ok(folder) = std::env::var("COMPOSED_BALL_PICTURES") {
+            if let Ok(folder) = std::env::var("COMPOSED_BALL_PICTURES")
+                && stages == Stages::ALL
+            {
                 let name = format!("{:02}-{}.png", probe.number, if over_truth { "truth" } else { "blend" });
                 with.save(Path::new(&folder).join(name))?;
             }
@@ -147,23 +153,35 @@ impl Study {
 
     /// Finds colour, blur and noise of the balls in the even probes.
     fn develop(&self, vignetting: Option<Vec<f64>>) -> anyhow::Result<Developed> {
-        let mut developed = Developed { vignetting, sigma_px: 0.4, noise_shot: 0.0, reflectance: START };
-        for _ in 0..STEPS {
-            let all = self.compared(0, Stages { noise: false, ..Stages::ALL }, &developed, true)?;
-            let ratio = Mean::color_ratio(&all);
-            developed.reflectance = (developed.reflectance * ratio).clamp(Vec3::ZERO, Vec3::splat(2.0));
-        }
+        let quiet = Stages { noise: false, ..Stages::ALL };
+        let mut developed =
+            Developed { vignetting, sigma_px: 0.5, noise_shot: 0.0, reflectance: START, gloss: 0.0 };
         let mut best = f64::INFINITY;
+        for gloss in GLOSSES {
+            let mut tried = Developed { gloss, reflectance: START, ..developed.clone() };
+            for _ in 0..STEPS {
+                let ratio = Mean::color_ratio(&self.compared(0, quiet, &tried, true)?);
+                tried.reflectance = (tried.reflectance * ratio).clamp(Vec3::ZERO, Vec3::splat(2.0));
+            }
+            let error = Mean::of(&self.compared(0, quiet, &tried, true)?, |compared| compared.inner_error);
+            if error < best {
+                (best, developed) = (error, tried);
+            }
+        }
+        best = f64::INFINITY;
         for sigma_px in SIGMAS_PX {
             let tried = Developed { sigma_px, ..developed.clone() };
-            let all = self.compared(0, Stages { noise: false, ..Stages::ALL }, &tried, true)?;
-            let error = Mean::of(&all, |compared| compared.edge_error);
+            let error = Mean::of(&self.compared(0, quiet, &tried, true)?, |compared| compared.edge_error);
             if error < best {
                 (best, developed.sigma_px) = (error, sigma_px);
             }
         }
-        let all = self.compared(0, Stages { noise: false, ..Stages::ALL }, &developed, true)?;
-        developed.noise_shot = Mean::of(&all, |compared| compared.missing_shot).max(0.0);
+        developed.noise_shot = START_SHOT;
+        for _ in 0..STEPS {
+            let noise =
+                Mean::of(&self.compared(0, Stages::ALL, &developed, true)?, |compared| compared.noise);
+            developed.noise_shot /= noise * noise;
+        }
         Ok(developed)
     }
 }
@@ -183,10 +201,11 @@ fn main() -> anyhow::Result<()> {
     let mut out = std::io::stdout();
     writeln!(
         out,
-        "found on even probes: reflectance {:.3} {:.3} {:.3}, blur {} px, shot noise {:.5}",
+        "found on even probes: reflectance {:.3} {:.3} {:.3}, gloss {}, blur {} px, shot noise {:.5}",
         developed.reflectance.x,
         developed.reflectance.y,
         developed.reflectance.z,
+        developed.gloss,
         developed.sigma_px,
         developed.noise_shot
     )?;

@@ -4,17 +4,19 @@ use glam::{DVec2, DVec3, Vec3};
 use image::{RgbImage, imageops::crop_imm};
 use reality_sim::{
     Camera,
+    evaluation::percentile,
     preprocess::luma,
     synthesis::quality::{psnr_db, ssim},
 };
 
 use crate::probes::Probe;
 
-/// Differences to the empty picture from and to which a pixel belongs to the ball, grey levels: shadows change less.
-const BALL_LEVELS: [f64; 2] = [50.0, 110.0];
+/// Parts of the ball's own redness from and to which a pixel belongs to it. Its dark lower side has a third of it, lines, carpet
+/// and shadows next to none.
+const BALL_SHARES: [f64; 2] = [0.08, 0.32];
 /// Parts of the ball's radius: inside the first there is nothing but the ball, outside the last none of it.
-const INSIDE: f64 = 0.75;
-const OUTSIDE: f64 = 1.3;
+const INSIDE: f64 = 0.85;
+const OUTSIDE: f64 = 1.15;
 /// Half the side of the surroundings that are compared, in radii of the ball.
 const SURROUNDINGS: f64 = 3.0;
 /// Smallest radius of a ball that is compared, pixels.
@@ -36,8 +38,8 @@ pub struct Compared {
     pub colors: [Vec3; 2],
     /// Standard deviation of the noise inside, against the true one.
     pub noise: f64,
-    /// Shot noise that the composed ball lacks.
-    pub missing_shot: f64,
+    /// Mean squared difference inside, grey levels².
+    pub inner_error: f64,
 }
 
 impl Probe {
@@ -59,13 +61,15 @@ impl Probe {
         let crop = |picture: &RgbImage| crop_imm(picture, left, top, side, side).to_image();
         let [empty, truth, without, with] = [&self.empty, &self.truth, without, with].map(crop);
         let middle = middle - DVec2::new(left.into(), top.into());
-        let [(true_place, true_area), (place, area)] = [ball(&empty, &truth), ball(&without, &with)];
+        let ring =
+            |pixel: DVec2, from: f64, to: f64| (from..to).contains(&(pixel.distance(middle) / radius_px));
+        let is_inside = |pixel: DVec2| ring(pixel, 0.0, INSIDE);
+        let (true_place, true_area) = ball(&empty, &truth, is_inside);
+        let (place, area) = ball(&without, &with, is_inside);
         let expected = std::f64::consts::PI * radius_px * radius_px;
         if !(0.7..1.5).contains(&(true_area / expected)) {
             return None;
         }
-        let ring =
-            |pixel: DVec2, from: f64, to: f64| (from..to).contains(&(pixel.distance(middle) / radius_px));
         let [noise, true_noise] = [&with, &truth].map(|picture| noise(picture, |p| ring(p, 0.0, INSIDE)));
         Some(Compared {
             place_px: place.distance(true_place),
@@ -74,8 +78,8 @@ impl Probe {
             psnr_db: psnr_db(&with, &truth, None),
             edge_error: squared(&with, &truth, |p| ring(p, INSIDE, OUTSIDE)),
             colors: [&with, &truth].map(|picture| mean(picture, &truth, |p| ring(p, 0.0, INSIDE))),
-            noise: noise.0 / true_noise.0.max(1e-6),
-            missing_shot: true_noise.1 - noise.1,
+            noise: noise / true_noise.max(1e-6),
+            inner_error: squared(&with, &truth, |p| ring(p, 0.0, INSIDE)),
         })
     }
 }
@@ -84,13 +88,21 @@ fn pixels(picture: &RgbImage) -> impl Iterator<Item = (DVec2, [u8; 3])> {
     picture.enumerate_pixels().map(|(u, v, pixel)| (DVec2::new(u.into(), v.into()), pixel.0))
 }
 
-/// Returns centroid and area of what differs between two pictures by more than a shadow.
-fn ball(without: &RgbImage, with: &RgbImage) -> (DVec2, f64) {
+/// Returns centroid and area of what has got redder against blue: the orange ball without its shadow.
+fn ball(without: &RgbImage, with: &RgbImage, is_inside: impl Fn(DVec2) -> bool) -> (DVec2, f64) {
+    let redness = |color: [u8; 3]| f64::from(color[0]) - f64::from(color[2]);
+    let changes: Vec<(DVec2, f64)> = pixels(without)
+        .zip(pixels(with))
+        .map(|((place, a), (_, b))| (place, redness(b) - redness(a)))
+        .collect();
+    let inside = changes.iter().filter(|(place, _)| is_inside(*place));
+    let mut inside: Vec<f64> = inside.map(|(_, change)| *change).collect();
+    inside.sort_by(f64::total_cmp);
+    let level = percentile(&inside, 0.5).unwrap_or(0.0).max(1.0);
     let (mut sum, mut area) = (DVec2::ZERO, 0.0);
-    for ((place, a), (_, b)) in pixels(without).zip(pixels(with)) {
-        let difference = (0..3).map(|c| f64::from(a[c].abs_diff(b[c]))).fold(0.0, f64::max);
-        let [least, most] = BALL_LEVELS;
-        let share = ((difference - least) / (most - least)).clamp(0.0, 1.0);
+    for (place, change) in changes {
+        let [least, most] = BALL_SHARES;
+        let share = ((change / level - least) / (most - least)).clamp(0.0, 1.0);
         sum += share * place;
         area += share;
     }
@@ -123,25 +135,22 @@ fn mean(picture: &RgbImage, truth: &RgbImage, is_of: impl Fn(DVec2) -> bool) -> 
     sum / count.max(Vec3::ONE)
 }
 
-/// Returns the standard deviation of what differs from the mean of four neighbours, green, grey levels; and the variance of the
-/// linear value against it.
-fn noise(picture: &RgbImage, is_of: impl Fn(DVec2) -> bool) -> (f64, f64) {
-    let (mut sum, mut shot, mut count) = (0.0, 0.0, 0.0_f64);
+/// Returns the standard deviation of what differs from the mean of four neighbours, green, grey
+/// levels.
+fn noise(picture: &RgbImage, is_of: impl Fn(DVec2) -> bool) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0_f64);
     for (u, v) in (1..picture.height() - 1).flat_map(|v| (1..picture.width() - 1).map(move |u| (u, v))) {
         if !is_of(DVec2::new(u.into(), v.into())) {
             continue;
         }
         let at = |u: u32, v: u32| f64::from(picture.get_pixel(u, v).0[1]);
-        let linear_at = |u: u32, v: u32| f64::from(linear(picture.get_pixel(u, v).0[1]));
         let around = [(u - 1, v), (u + 1, v), (u, v - 1), (u, v + 1)];
         // The difference of a number and the mean of four others has 5/4 of their variance.
         let off = at(u, v) - around.iter().map(|(u, v)| at(*u, *v)).sum::<f64>() / 4.0;
-        let off_linear = linear_at(u, v) - around.iter().map(|(u, v)| linear_at(*u, *v)).sum::<f64>() / 4.0;
         sum += 0.8 * off * off;
-        shot += 0.8 * off_linear * off_linear / linear_at(u, v).max(0.01);
         count += 1.0;
     }
-    ((sum / count.max(1.0)).sqrt(), shot / count.max(1.0))
+    (sum / count.max(1.0)).sqrt()
 }
 
 /// Means over several balls.

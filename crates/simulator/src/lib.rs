@@ -10,7 +10,7 @@
 //! | [`Ball`], [`Humanoid`], [`Body`], [`PictureLayer`] | layers that are ready to use |
 //! | [`Mesh`], [`Placed`], [`draw_mesh`] | surfaces of triangles, and the rasteriser |
 //! | [`View`], [`Canvas`], [`Fragment`] | what a layer sees of the camera, and what it draws on |
-//! | [`Light`], [`light_left`] | the hall's light, and what is left of it beside a thing |
+//! | [`Light`], [`Shading`], [`light_left`] | the hall's light, how a body looks in it, and what is left of it beside a thing |
 //!
 //! Pictures are RGB, 8 bits per channel; units and frames are those of [`reality_sim_core::pose`].
 
@@ -33,6 +33,7 @@ mod picture_layer;
 mod pixel_box;
 mod raster;
 mod scene_light;
+mod shading;
 mod shadow;
 mod view;
 
@@ -53,6 +54,7 @@ pub use self::{
     picture_layer::{LayerPixel, PictureLayer},
     pixel_box::PixelBox,
     raster::{Placed, draw_mesh},
+    shading::Shading,
     shadow::light_left,
     view::{Instant, SeenPoint, View},
 };
