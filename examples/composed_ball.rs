@@ -13,14 +13,16 @@ mod hard_edges;
 #[path = "composed_ball/probes.rs"]
 mod probes;
 
-use std::{io::Write, path::Path, sync::Arc};
+use std::{io::Write, path::Path, sync::Arc, time::Instant};
 
 use anyhow::{Context, bail};
-use glam::Vec3;
+use glam::{DVec2, Vec3};
 use reality_sim::{
     Archive, Synthesizer,
+    evaluation::percentile,
+    pose::Motion2,
     sensor::{Model, effect},
-    simulator::{Ball, Camera, Frame, Layer, LayerSettings},
+    simulator::{Ball, Camera, Frame, Humanoid, Layer, LayerSettings},
     synthesis::MethodKind,
 };
 
@@ -31,7 +33,7 @@ use crate::{
 };
 
 /// Standard deviations of the blur that are tried, pixels.
-const SIGMAS_PX: [f64; 9] = [0.0, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0];
+const SIGMAS_PX: [f64; 9] = [0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4];
 /// Reflectance that the search for the ball's starts from, and the number of its steps: each brings the ball's mean colour to
 /// the true one.
 const START: Vec3 = Vec3::new(0.6, 0.3, 0.05);
@@ -186,6 +188,36 @@ impl Study {
     }
 }
 
+/// Returns the median time that a ball and three robots before the camera take, milliseconds.
+fn milliseconds(study: &Study, developed: &Developed) -> anyhow::Result<f64> {
+    let mut camera = study.camera(Stages::ALL, developed)?;
+    let mut times = Vec::new();
+    for probe in &study.probes {
+        let ahead = |distance_m: f64, left_m: f64| {
+            probe.pose.planar().moved(Motion2 {
+                forward_m: distance_m,
+                left_m,
+                turn_rad: std::f64::consts::PI,
+            })
+        };
+        let place = ahead(1.0, 0.1);
+        let ball = Ball::on_ground(place.x_m, place.y_m, 0.065, developed.reflectance);
+        let robots = [(1.2, -0.4), (1.8, 0.5), (2.5, -0.9)].map(|(x, y)| {
+            Humanoid::standing(ahead(x, y), 0.55, Vec3::new(0.1, 0.2, 0.6)).walking(x, DVec2::ZERO)
+        });
+        let layers: [&dyn Layer; 4] = [&ball, &robots[0], &robots[1], &robots[2]];
+        let picture = probe.empty.clone();
+        let start = Instant::now();
+        let frame = camera.compose(probe.pose, &layers, picture);
+        times.push(1e3 * start.elapsed().as_secs_f64());
+        if let Ok(folder) = std::env::var("COMPOSED_BALL_PICTURES") {
+            frame.picture.save(Path::new(&folder).join(format!("{:02}-robots.png", probe.number)))?;
+        }
+    }
+    times.sort_by(f64::total_cmp);
+    percentile(&times, 0.5).context("there are no probes")
+}
+
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (database, empty, balls, model) = match arguments.as_slice() {
@@ -218,5 +250,6 @@ fn main() -> anyhow::Result<()> {
             writeln!(out, "{}", Mean::new(&all).row(stage))?;
         }
     }
+    writeln!(out, "\na ball and three robots at 1 to 2.5 m: {:.2} ms", milliseconds(&study, &developed)?)?;
     Ok(())
 }
