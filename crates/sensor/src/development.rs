@@ -180,7 +180,9 @@ impl Development {
             return;
         }
         let (left, top) = (tile.left as f64, tile.top as f64);
-        tile.blur(SEGMENT_PX, |column, row| self.blur_at(DVec2::new(left + column, top + row)));
+        // A blur that is the same everywhere takes whole rows at once.
+        let segment = if self.blurs.len() == 1 { tile.width } else { SEGMENT_PX };
+        tile.blur(segment, |column, row| self.blur_at(DVec2::new(left + column, top + row)));
     }
 
     fn blur_at(&self, pixel: DVec2) -> &[f32] {
@@ -242,7 +244,7 @@ impl Development {
         };
         let color = [0, 1, 2].map(change);
         let mut smooth = LightTile { color: color.clone(), cover: Vec::new(), ..*tile };
-        smooth.blur(SEGMENT_PX, |_, _| &self.mask);
+        smooth.blur(tile.width, |_, _| &self.mask);
         let amount = self.chain.sharpening() as f32;
         for (index, value) in values.iter_mut().enumerate() {
             for channel in 0..3 {

@@ -10,6 +10,7 @@ use crate::{
     layer::{Layer, Object, Sphere},
     mesh::Mesh,
     raster::{Placed, draw_mesh},
+    shading::Shading,
     view::View,
 };
 
@@ -32,6 +33,8 @@ pub struct Ball {
     pub radius_m: f64,
     /// Reflectance in red, green and blue, linear, 0 to 1.
     pub reflectance: Vec3,
+    /// Share of the light from above that its surface mirrors: 0 for a matt ball.
+    pub gloss: f32,
     /// Velocity, metres per second.
     pub velocity_in_world: DVec3,
 }
@@ -44,6 +47,7 @@ impl Ball {
             center_in_world: DVec3::new(x_m, y_m, radius_m),
             radius_m,
             reflectance,
+            gloss: 0.0,
             velocity_in_world: DVec3::ZERO,
         }
     }
@@ -51,6 +55,11 @@ impl Ball {
     /// Gives the ball a name.
     pub fn named(self, name: impl Into<String>) -> Self {
         Self { name: name.into(), ..self }
+    }
+
+    /// Lets the ball's surface mirror a share of the light from above.
+    pub fn glossy(self, gloss: f32) -> Self {
+        Self { gloss, ..self }
     }
 
     /// Lets the ball move, metres per second.
@@ -81,8 +90,11 @@ impl Layer for Ball {
             world_from_mesh: DAffine3::from_mat3_translation(size, self.center_in_world),
             velocity_in_world: self.velocity_in_world,
         };
-        let light = view.light_at(self.center_in_world.truncate()).reflected_by(self.reflectance);
-        draw_mesh(view, canvas, &SPHERES[detail], &placed, light, 0);
+        let light = view.light_at(self.center_in_world.truncate());
+        let occluders = self.occluders();
+        let shading =
+            Shading { light, reflectance: self.reflectance, gloss: self.gloss, occluders: &occluders };
+        draw_mesh(view, canvas, &SPHERES[detail], &placed, &shading, 0);
     }
 
     fn occluders(&self) -> Vec<Sphere> {

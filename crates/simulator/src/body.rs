@@ -8,6 +8,7 @@ use crate::{
     layer::{Layer, Object, Sphere},
     mesh::Mesh,
     raster::{Placed, draw_mesh},
+    shading::Shading,
     view::View,
 };
 
@@ -33,7 +34,8 @@ impl Layer for Body {
 
     fn draw(&self, view: &View<'_>, canvas: &mut Canvas) {
         let light = view.light_at(self.placed.world_from_mesh.translation.truncate());
-        draw_mesh(view, canvas, &self.mesh, &self.placed, light, 0);
+        let shading = Shading { occluders: &self.occluders, ..Shading::matt(light) };
+        draw_mesh(view, canvas, &self.mesh, &self.placed, &shading, 0);
     }
 
     fn occluders(&self) -> Vec<Sphere> {

@@ -11,6 +11,7 @@ use crate::{
     layer::{Layer, Object, Sphere},
     mesh::Mesh,
     raster::{Placed, draw_mesh},
+    shading::Shading,
     view::View,
 };
 
@@ -172,8 +173,10 @@ impl Layer for Humanoid {
             world_from_mesh: self.world_from_body(),
             velocity_in_world: self.velocity_in_world.extend(0.0),
         };
-        let light = view.light_at(self.place.position_in_world());
-        draw_mesh(view, canvas, &self.body(), &placed, light, 0);
+        let occluders = self.occluders();
+        let shading =
+            Shading { occluders: &occluders, ..Shading::matt(view.light_at(self.place.position_in_world())) };
+        draw_mesh(view, canvas, &self.body(), &placed, &shading, 0);
     }
 
     fn occluders(&self) -> Vec<Sphere> {

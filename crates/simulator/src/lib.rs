@@ -12,7 +12,7 @@
 //! | [`Ball`], [`Humanoid`], [`Body`], [`PictureLayer`] | layers that are ready to use |
 //! | [`Mesh`], [`Placed`], [`draw_mesh`] | surfaces of triangles, and the rasteriser |
 //! | [`View`], [`Canvas`], [`Fragment`] | what a layer sees of the camera, and what it draws on |
-//! | [`Light`], [`light_left`] | the hall's light, and what is left of it beside a thing |
+//! | [`Light`], [`Shading`], [`light_left`] | the hall's light, how a body looks in it, and what is left of it beside a thing |
 //!
 //! Pictures are RGB, 8 bits per channel; units and frames are those of [`reality_sim_core::pose`].
 
@@ -38,6 +38,7 @@ mod pixel_box;
 mod raster;
 mod scene_light;
 mod seen_object;
+mod shading;
 mod shadow;
 mod view;
 
@@ -59,6 +60,7 @@ pub use self::{
     pixel_box::PixelBox,
     raster::{Placed, draw_mesh},
     seen_object::{NO_OBJECT, SeenObject},
+    shading::Shading,
     shadow::light_left,
     view::{Instant, SeenPoint, View},
 };

@@ -23,11 +23,6 @@ impl Light {
         0.5 * (1.0 + up) * self.sky + 0.5 * (1.0 - up) * self.ground
     }
 
-    /// Returns the light that a surface of this reflectance sends in place of a white one.
-    pub fn reflected_by(self, reflectance: Vec3) -> Self {
-        Self { sky: reflectance * self.sky, ground: reflectance * self.ground }
-    }
-
     pub(crate) fn scaled(self, factor: f32) -> Self {
         Self { sky: factor * self.sky, ground: factor * self.ground }
     }

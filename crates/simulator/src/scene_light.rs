@@ -10,8 +10,9 @@ use crate::{
     light_reference::{CLIPPED, LightReference, surface_at},
 };
 
-/// Distances from a foot at which the ground's light is read, metres: outside most feet, and within a step.
-const RING_RADII_M: [f64; 3] = [0.12, 0.2, 0.3];
+/// Distances from a foot at which the ground's light is read, metres: light changes over metres, carpet from one hand's breadth
+/// to the next.
+const RING_RADII_M: [f64; 3] = [0.25, 0.5, 1.0];
 /// Number of places on each ring.
 const RING_PLACES: u32 = 16;
 /// Least number of places that must be seen, of all 48: fewer may all lie on one worn line.
@@ -19,6 +20,10 @@ const LEAST_PLACES: usize = 8;
 /// Range of the local light against the usual one: halls have lamps and shadows, but not beyond this; what is more is another
 /// object that stands there.
 const PLAUSIBLE: [f32; 2] = [0.3, 2.0];
+
+/// Part of the difference, in logarithms, that is believed to be the light's: carpet rolls differ by ±10 % in reflectance, and the
+/// light of a hall by about as much from one place to another, so that half of what is seen is either's.
+const BELIEVED: f32 = 0.5;
 
 /// Light in the picture to which layers are added.
 #[derive(Debug, Clone, Copy)]
@@ -54,7 +59,7 @@ impl SceneLight<'_> {
         }
         let middle = ratios.len() / 2;
         let (_, median, _) = ratios.select_nth_unstable_by(middle, f32::total_cmp);
-        usual.scaled(median.clamp(PLAUSIBLE[0], PLAUSIBLE[1]))
+        usual.scaled(median.clamp(PLAUSIBLE[0], PLAUSIBLE[1]).powf(BELIEVED))
     }
 
     /// Returns how bright the picture shows a point of the ground, against its usual brightness.

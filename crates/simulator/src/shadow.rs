@@ -130,6 +130,9 @@ fn darken_block(
         return;
     }
     let seen = target.surfaces(row, block);
+    if !seen.surface.contains(&Surface::Ground) {
+        return;
+    }
     let mut left = [1.0_f32; LANES];
     for shadow in shadows.iter().filter(meets) {
         for (lane, left) in left.iter_mut().enumerate() {

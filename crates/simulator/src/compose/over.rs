@@ -24,6 +24,9 @@ const GOAL_SLACK_M: f32 = 0.02;
 /// it: the fragment lies in another part of the pixel.
 const GROUND_SLACK_PX: f32 = 1.5;
 
+/// Least number of rows that are worth a task of their own.
+const LEAST_ROWS: usize = 32;
+
 /// Scene before which layers are seen.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scene<'a> {
@@ -102,7 +105,8 @@ pub(crate) fn compose(
     let labelled = canvases.len() / 2;
     for (index, canvases) in canvases.iter().enumerate() {
         let layers = Layers { canvases, first_object, objects };
-        let rows: Vec<Row> = (0..height).into_par_iter().map(|row| layers.row(scene, area, row)).collect();
+        let rows = (0..height).into_par_iter().with_min_len(LEAST_ROWS);
+        let rows: Vec<Row> = rows.map(|row| layers.row(scene, area, row)).collect();
         for (row, Row { pixels, tallies }) in rows.iter().enumerate() {
             for (column, pixel) in pixels.iter().enumerate() {
                 let place = row * width + column;

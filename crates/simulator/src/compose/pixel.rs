@@ -42,9 +42,38 @@ impl Stack {
             return Pixel::EMPTY;
         }
         self.fragments.sort_unstable_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+        self.shares.clear();
+        let pixel = if self.fragments.iter().all(|fragment| fragment.alpha >= 1.0) {
+            self.opaque()
+        } else {
+            self.translucent()
+        };
+        self.labelled(pixel)
+    }
+
+    /// Puts fragments over each other that hide all behind them.
+    fn opaque(&mut self) -> Pixel {
+        let mut pixel = Pixel::EMPTY;
+        let mut left = Fragment::ALL;
+        for index in 0..self.fragments.len() {
+            let fragment = self.fragments[index];
+            let share = (left & fragment.parts).count_ones() as f32 / PARTS as f32;
+            if share > 0.0 {
+                left &= !fragment.parts;
+                pixel.color += share * fragment.color;
+                pixel.cover += share;
+                self.add_share(fragment.object, share, fragment.distance_m);
+            }
+            if left == 0 {
+                break;
+            }
+        }
+        pixel
+    }
+
+    fn translucent(&mut self) -> Pixel {
         self.groups.clear();
         self.groups.push((Fragment::ALL, 1.0));
-        self.shares.clear();
         let mut pixel = Pixel::EMPTY;
         for index in 0..self.fragments.len() {
             let fragment = self.fragments[index];
@@ -58,6 +87,11 @@ impl Stack {
                 break;
             }
         }
+        pixel
+    }
+
+    /// Adds to a pixel which object covers most of it.
+    fn labelled(&self, mut pixel: Pixel) -> Pixel {
         pixel.cover = pixel.cover.min(1.0);
         if pixel.cover >= 0.5
             && let Some((object, share, sum)) = self.shares.iter().max_by(|a, b| a.1.total_cmp(&b.1))

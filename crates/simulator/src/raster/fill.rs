@@ -36,6 +36,21 @@ impl Edge {
         }
     }
 
+    /// Cuts a span of a row's pixels, from the first to the one after the last, to those of which the edge may leave a part.
+    fn clipped(&self, (first, end): (f32, f32), row: f32) -> (f32, f32) {
+        let rest = self.at(0.0, row) + self.reach;
+        if self.across == 0.0 {
+            return if rest < 0.0 { (0.0, 0.0) } else { (first, end) };
+        }
+        let meets = -rest / self.across;
+        // A pixel more than the rounding of a pixel.
+        if self.across > 0.0 {
+            (first.max((meets - 1.0).floor()), end)
+        } else {
+            (first, end.min((meets + 2.0).ceil()))
+        }
+    }
+
     fn at(&self, u: f32, v: f32) -> f32 {
         self.at_origin + self.across * u + self.down * v
     }
@@ -61,11 +76,14 @@ pub(crate) fn fill(canvas: &mut Canvas, triangle: &ScreenTriangle, object: u16, 
         [Edge::new(c, b), Edge::new(a, c), Edge::new(b, a)]
     };
     for v in area.top..area.bottom {
-        for u in area.left..area.right {
-            let values = edges.map(|edge| edge.at((u - area.left) as f32, (v - area.top) as f32));
+        let row = (v - area.top) as f32;
+        let (first, end) =
+            edges.iter().fold((0.0, area.width() as f32), |span, edge| edge.clipped(span, row));
+        for column in first as u32..end as u32 {
+            let values = edges.map(|edge| edge.at(column as f32, row));
             let parts = allowed & covered(&edges, values);
             if parts != 0 {
-                canvas.put(u, v, fragment(triangle, values, object, parts));
+                canvas.put(area.left + column, v, fragment(triangle, values, object, parts));
             }
         }
     }

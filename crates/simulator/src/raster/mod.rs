@@ -11,7 +11,7 @@ use self::{
     fill::fill,
     screen::{Corner, ScreenTriangle},
 };
-use crate::{canvas::Canvas, light::Light, mesh::Mesh, pixel_box::PixelBox, view::View};
+use crate::{canvas::Canvas, mesh::Mesh, pixel_box::PixelBox, shading::Shading, view::View};
 
 /// Where a mesh is while a picture is taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,14 +29,14 @@ impl Placed {
     }
 }
 
-/// Draws a mesh in a light as an object of a layer. Parts that the lens does not see are left out, as is a mesh without
+/// Draws a mesh as an object of a layer. Parts that the lens does not see are left out, as is a mesh without
 /// triangles or at a place that is not finite.
 pub fn draw_mesh(
     view: &View<'_>,
     canvas: &mut Canvas,
     mesh: &Mesh,
     placed: &Placed,
-    light: Light,
+    shading: &Shading<'_>,
     object: u16,
 ) {
     let Some((middle, radius_m)) = mesh.bounds() else { return };
@@ -55,7 +55,7 @@ pub fn draw_mesh(
         canvas.add_extent(object, 0.0, 1.0);
         return;
     }
-    let world = World::new(mesh, placed, light);
+    let world = World::new(mesh, placed, shading, position);
     for instant in view.instants(placed.velocity_in_world, (distance_m - radius_m).max(0.1 * radius_m)) {
         let clipper = Clipper { view, instant, velocity: placed.velocity_in_world };
         let triangles = world.on_screen(&clipper, position);
@@ -85,7 +85,7 @@ struct World<'a> {
 }
 
 impl<'a> World<'a> {
-    fn new(mesh: &'a Mesh, placed: &Placed, light: Light) -> Self {
+    fn new(mesh: &'a Mesh, placed: &Placed, shading: &Shading<'_>, camera: DVec3) -> Self {
         let matrix = placed.world_from_mesh.matrix3;
         let turn: DMat3 =
             if matrix.determinant() == 0.0 { DMat3::ZERO } else { matrix.inverse().transpose() };
@@ -96,7 +96,7 @@ impl<'a> World<'a> {
             colors: mesh
                 .vertices
                 .iter()
-                .map(|vertex| vertex.reflectance * light.on(normal(vertex.normal)))
+                .map(|v| shading.color(place(v.place), normal(v.normal), v.reflectance, camera))
                 .collect(),
             triangles: &mesh.triangles,
             is_mirrored: matrix.determinant() < 0.0,
