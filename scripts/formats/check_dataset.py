@@ -4,7 +4,10 @@
     python3 -m venv venv && venv/bin/pip install pycocotools pillow numpy
     cargo build --release && venv/bin/python scripts/formats/check_dataset.py target/release/reality-sim assets/walk
 
-Give a folder as a third argument to see the first pictures there with their labels drawn over them.
+Give the name of a picture as a third argument to see pictures side by side there with their labels drawn over them; that of
+docs/dataset.md is made by
+
+    venv/bin/python scripts/formats/check_dataset.py target/release/reality-sim assets/walk docs/images/dataset.jpg
 """
 
 import contextlib
@@ -20,6 +23,7 @@ from PIL import Image, ImageDraw
 from pycocotools.coco import COCO
 
 COUNT = 6
+SHOWN = (2, 4, 5)
 FIELD = 100
 COLORS = {1: (60, 200, 90), 2: (255, 60, 160), 3: (255, 210, 0), 4: (255, 120, 0), 5: (40, 140, 255)}
 
@@ -102,29 +106,37 @@ def check_depth(coco, folder):
     check("depth", worst < 0.02, f"the ground on the optical axis, {100 * worst:.2f} % at worst")
 
 
+def drawn(coco, folder, image):
+    """Returns a picture with its labels drawn over it."""
+    picture = Image.open(folder / "images" / image["file_name"]).convert("RGB")
+    mask = np.array(Image.open(folder / "masks" / image["mask"]))
+    pixels = np.array(picture, dtype=float)
+    for number, color in COLORS.items():
+        pixels[mask == number] = 0.55 * pixels[mask == number] + 0.45 * np.array(color)
+    picture = Image.fromarray(pixels.round().astype(np.uint8))
+    pen = ImageDraw.Draw(picture)
+    for line in image["lines"]:
+        pen.line([tuple(pixel) for pixel in line["pixels"]], fill=(120, 0, 90))
+    for crossing in image["crossings"]:
+        u, v = crossing["pixel"]
+        pen.ellipse((u - 4, v - 4, u + 4, v + 4), outline=(255, 0, 0) if crossing["visible"] else (0, 0, 0), width=2)
+    for annotation in coco.imgToAnns[image["id"]]:
+        if "instance" in annotation:
+            left, top, width, height = annotation["bbox"]
+            pen.rectangle((left, top, left + width - 1, top + height - 1), outline=(255, 255, 255))
+            text = f"{annotation['name']} {100 * annotation['visibility']:.0f} %"
+            pen.text((left + 2, max(top - 12, 0)), text, fill=(255, 255, 255))
+    return picture
+
+
 def draw(coco, folder, out):
-    """Draws labels over pictures."""
-    out.mkdir(parents=True, exist_ok=True)
-    for image in list(coco.imgs.values())[:COUNT]:
-        picture = Image.open(folder / "images" / image["file_name"]).convert("RGB")
-        mask = np.array(Image.open(folder / "masks" / image["mask"]))
-        pixels = np.array(picture, dtype=float)
-        for number, color in COLORS.items():
-            pixels[mask == number] = 0.55 * pixels[mask == number] + 0.45 * np.array(color)
-        picture = Image.fromarray(pixels.round().astype(np.uint8))
-        pen = ImageDraw.Draw(picture)
-        for line in image["lines"]:
-            pen.line([tuple(pixel) for pixel in line["pixels"]], fill=(120, 0, 90))
-        for crossing in image["crossings"]:
-            u, v = crossing["pixel"]
-            pen.ellipse((u - 4, v - 4, u + 4, v + 4), outline=(255, 0, 0) if crossing["visible"] else (0, 0, 0), width=2)
-        for annotation in coco.imgToAnns[image["id"]]:
-            if "instance" in annotation:
-                left, top, width, height = annotation["bbox"]
-                pen.rectangle((left, top, left + width - 1, top + height - 1), outline=(255, 255, 255))
-                text = f"{annotation['name']} {100 * annotation['visibility']:.0f} %"
-                pen.text((left + 2, max(top - 12, 0)), text, fill=(255, 255, 255))
-        picture.save(out / f"{image['id']:06}.png")
+    """Draws some pictures with their labels side by side."""
+    pictures = [drawn(coco, folder, coco.imgs[number]) for number in SHOWN]
+    width, height = pictures[0].size
+    sheet = Image.new("RGB", (len(pictures) * width, height))
+    for place, picture in enumerate(pictures):
+        sheet.paste(picture, (place * width, 0))
+    sheet.save(out, quality=85)
 
 
 def main():

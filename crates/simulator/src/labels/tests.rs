@@ -9,12 +9,15 @@ use reality_sim_core::{
     field::FieldDimensions,
     pose::{CameraPose, Pose2},
     sequence::{CameraSetup, Sequence},
-    warp::{Hall, ProxyGeometry},
+    warp::{Hall, Origin, ProxyGeometry},
 };
 use reality_sim_sensor::{Renderer, SceneColors};
 
 use super::*;
-use crate::class::Class;
+use crate::{
+    class::Class,
+    seen_object::{NO_OBJECT, SeenObject},
+};
 
 /// Share of the pixels of one colour that must have its class. All 3.0 million of the pictures below do; the rest is room for what
 /// single precision makes of other processors' rays.
@@ -245,4 +248,49 @@ fn what_a_goal_hides_is_hidden_and_what_is_behind_the_camera_is_outside() {
     Labeler::new(&setup.camera, &field, &proxy).label(away, &[], Overlay::default(), &mut labels);
     assert_eq!(labels.things[0].truncation, 1.0);
     assert_eq!(labels.things[0].whole_pixels, 0);
+}
+
+#[test]
+fn objects_are_labelled_over_the_scene_and_hide_what_is_behind_them() {
+    let (setup, field) = (setup(), FieldDimensions::preset("humanoid-kidsize-2010").unwrap());
+    let pose = CameraPose::new(Pose2::new(1.0, 0.3, 0.1), 0.5, 0.2, 0.0);
+    let labeler = Labeler::new(&setup.camera, &field, &without_backs(&field));
+    let (mut empty, mut full) = (Labels::default(), Labels::default());
+    let trust = 7;
+    let origins = vec![Origin { source: 0, trust }; 640 * 480];
+    labeler.label(pose, &origins, Overlay::default(), &mut empty);
+    let goal = empty.things[1].visible.unwrap();
+    // An object before the left half of the goal, and one that is out of view.
+    let middle = u32::midpoint(goal.left, goal.right);
+    let is_hidden = |index: usize| goal.left <= index as u32 % 640 && (index as u32 % 640) < middle;
+    let object_of: Vec<u16> =
+        (0..640 * 480).map(|index| if is_hidden(index) { 1 } else { NO_OBJECT }).collect();
+    let object = SeenObject {
+        class: Class::Robot,
+        name: "robot".to_owned(),
+        visible: None,
+        whole: None,
+        visible_pixels: 0,
+        whole_pixels: 0,
+        truncation: 0.0,
+    };
+    let objects = [object.clone(), SeenObject { whole_pixels: 480 * (middle - goal.left), ..object }];
+    let distance_m = vec![1.5; 640 * 480];
+    let overlay = Overlay { objects: &objects, object_of: &object_of, distance_m: &distance_m };
+    labeler.label(pose, &origins, overlay, &mut full);
+    for index in 0..640 * 480 {
+        let labels = (full.classes[index], full.instances[index], full.distance_m[index], full.trust[index]);
+        let beside = (empty.classes[index], empty.instances[index], empty.distance_m[index], trust);
+        assert_eq!(labels, if is_hidden(index) { (Class::Robot, 4, 1.5, u8::MAX) } else { beside });
+    }
+    assert_eq!((full.things[2].visibility(), full.things[3].visibility()), (0.0, 1.0));
+    let visibility = full.things[1].visibility();
+    assert!(visibility > 0.2 && visibility < 0.8 && empty.things[1].visibility() == 1.0, "{visibility}");
+    for (seen, before) in full.crossings.iter().zip(&empty.crossings) {
+        let behind = seen
+            .pixel
+            .is_some_and(|pixel| is_hidden(pixel.y.round() as usize * 640 + pixel.x.round() as usize));
+        assert_eq!(seen.is_visible, before.is_visible && !behind);
+    }
+    assert!(full.crossings.iter().filter(|seen| seen.is_visible).count() < full.crossings.len());
 }
