@@ -5,7 +5,7 @@ use std::hint::black_box;
 use criterion::{Criterion, Throughput};
 use reality_sim::{
     CameraPose, Sequence,
-    simulator::labels::{Labeler, Labels},
+    simulator::labels::{Labeler, Labels, Overlay},
     warp::{Hall, ProxyGeometry},
 };
 
@@ -23,7 +23,8 @@ pub fn bench(criterion: &mut Criterion, scene: &Scene) {
     group.throughput(Throughput::Elements(1));
     group.bench_function("label", |bencher| {
         bencher.iter(|| {
-            labeler.label(black_box(turn.next().unwrap_or_default()), &[], &mut labels);
+            let pose = black_box(turn.next().unwrap_or_default());
+            labeler.label(pose, &[], Overlay::default(), &mut labels);
             labels.classes.len()
         });
     });

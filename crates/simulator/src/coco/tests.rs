@@ -50,14 +50,10 @@ proptest! {
 /// Strings that pycocotools 2.0.11 makes: `mask.encode(numpy.asfortranarray(mask))["counts"]`.
 #[test]
 fn run_lengths_are_those_of_pycocotools() {
-    let cases: [([u32; 2], fn(usize) -> bool, &str); 3] = [
-        ([4, 3], |_| false, "<"),
-        ([4, 3], |_| true, "0<"),
-        ([5, 4], |index| index % 3 == 0, "0120O030M010O01"),
-    ];
-    for (size, mask, counts) in cases {
-        assert_eq!(Rle::new(size, mask).counts, counts);
-    }
+    let counts = |size, mask: fn(usize) -> bool| Rle::new(size, mask).counts;
+    assert_eq!(counts([4, 3], |_| false), "<");
+    assert_eq!(counts([4, 3], |_| true), "0<");
+    assert_eq!(counts([5, 4], |index| index % 3 == 0), "0120O030M010O01");
 }
 
 #[test]

@@ -53,7 +53,6 @@ impl GoalView {
 
     /// Returns 1 for the rays that may meet the goal, else 0: all those that do, and few others. `inverse_x` is one over the
     /// directions' x.
-    #[expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
     #[inline(always)]
     pub(super) fn candidates(&self, direction: &[Lanes; 3], inverse_x: &Lanes) -> [u32; LANES] {
         let mut found = [0_u32; LANES];

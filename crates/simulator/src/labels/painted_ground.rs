@@ -1,7 +1,5 @@
 //! What is painted on the ground: exact for every point, and fast by a table of cells most of which hold one class only.
 
-#![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
-
 use glam::DVec2;
 use reality_sim_core::{
     camera::{LANES, Lanes},

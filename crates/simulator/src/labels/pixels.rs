@@ -1,8 +1,6 @@
 //! Class, distance and thing of every pixel: sixteen neighbouring pixels at a time, in plain arrays that the compiler turns into
 //! vector instructions.
 
-#![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
-
 use reality_sim_core::{
     camera::{LANES, Lanes},
     field::FieldDimensions,
