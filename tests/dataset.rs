@@ -45,7 +45,8 @@ fn made() -> &'static (TempDir, PathBuf, PathBuf) {
 }
 
 fn dataset<'a>(database: &'a Path, out: &'a Path, count: &'a str) -> Vec<&'a str> {
-    let options = ["--seed", "4", "--balls", "1..2", "--robots", "1", "--depth", "--backend", "cpu"];
+    let options =
+        ["--seed", "4", "--balls", "1..2", "--robots", "1", "--depth", "--trust", "--backend", "cpu"];
     [&["dataset", shown(database), "--out", shown(out), "--count", count], &options[..]].concat()
 }
 
@@ -107,6 +108,10 @@ fn annotations_are_whole_and_fit_their_pictures() {
             image::open(out.join("depth").join(image["depth"].as_str().unwrap())).unwrap().into_luma16();
         assert_eq!((picture.width(), picture.height()), (640, 480));
         assert_eq!((mask.dimensions(), depth.dimensions()), ((640, 480), (640, 480)));
+        let trust =
+            image::open(out.join("trust").join(image["trust"].as_str().unwrap())).unwrap().into_luma8();
+        let mean = trust.pixels().map(|pixel| f64::from(pixel.0[0])).sum::<f64>() / (255.0 * 640.0 * 480.0);
+        assert!((mean - image["trust_mean"].as_f64().unwrap()).abs() < 1e-3, "the lens lights every pixel");
         assert!(image["covered"].as_f64().unwrap() >= 0.4);
         assert!((0.0..=1.0).contains(&image["trust_mean"].as_f64().unwrap()));
         let height_m = image["pose"]["height_m"].as_f64().unwrap();

@@ -26,6 +26,7 @@ pub enum Part {
     Mask,
     Depth,
     Instances,
+    Trust,
     /// Records of the picture and of its annotations, a line each: written last, when the picture is done.
     Records,
 }
@@ -46,7 +47,8 @@ impl DatasetFolder {
     pub fn check(args: &DatasetArgs, inputs: &[PathBuf], manifest: &Manifest) -> anyhow::Result<Self> {
         let path = &args.out;
         OutputFolder::check(path, inputs)?;
-        let optional = [(args.depth, Part::Depth), (args.instances, Part::Instances)];
+        let optional =
+            [(args.depth, Part::Depth), (args.instances, Part::Instances), (args.trust, Part::Trust)];
         let optional = optional.into_iter().filter_map(|(is_wanted, part)| is_wanted.then_some(part));
         let parts = [Part::Image, Part::Mask].into_iter().chain(optional).chain([Part::Records]);
         let folder = Self {
@@ -118,7 +120,7 @@ impl DatasetFolder {
     pub fn name(&self, part: Part, picture: u32) -> String {
         let ending = match part {
             Part::Image => self.image_ending,
-            Part::Mask | Part::Depth | Part::Instances => "png",
+            Part::Mask | Part::Depth | Part::Instances | Part::Trust => "png",
             Part::Records => "jsonl",
         };
         format!("{picture:06}.{ending}")
@@ -142,6 +144,7 @@ impl Part {
             Self::Mask => "masks",
             Self::Depth => "depth",
             Self::Instances => "instances",
+            Self::Trust => "trust",
             Self::Records => "annotations",
         }
     }

@@ -37,6 +37,7 @@ pub struct Manifest {
     format: &'static str,
     depth: bool,
     instances: bool,
+    trust: bool,
 }
 
 impl Manifest {
@@ -68,6 +69,7 @@ impl Manifest {
             format: args.format.ending(),
             depth: args.depth,
             instances: args.instances,
+            trust: args.trust,
         })
     }
 

@@ -62,6 +62,9 @@ pub struct DatasetArgs {
     /// Write also which thing every pixel shows, as 16-bit pictures
     #[arg(long)]
     pub instances: bool,
+    /// Write also how far every pixel can be trusted, as 8-bit pictures
+    #[arg(long)]
+    pub trust: bool,
     #[command(flatten)]
     pub synthesis: SynthesisArgs,
     /// Print the report as one JSON object

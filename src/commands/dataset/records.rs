@@ -37,6 +37,8 @@ struct ImageRecord<'a> {
     depth: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     instances: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    trust: Option<String>,
     pose: CameraPose,
     camera: CameraRecord<'a>,
     database: String,
@@ -101,6 +103,7 @@ pub fn records(
         mask: folder.name(Part::Mask, picture),
         depth: if_wanted(Part::Depth),
         instances: if_wanted(Part::Instances),
+        trust: if_wanted(Part::Trust),
         pose: frame.pose,
         camera: CameraRecord::new(camera),
         database: name_of(args),

@@ -56,6 +56,9 @@ impl<'a> Worker<'a> {
         if folder.has(Part::Instances) {
             write_png(&folder.file(Part::Instances, picture), &frame.labels.instance_picture())?;
         }
+        if folder.has(Part::Trust) {
+            write_png(&folder.file(Part::Trust, picture), &frame.labels.trust_picture())?;
+        }
         let records = records(args, folder, picture, frame, lens)?;
         Ok(write_atomically(&folder.file(Part::Records, picture), records.as_bytes())?)
     }

@@ -1,6 +1,6 @@
 //! Labels against the renderer of the sensor, which draws outlines and shares no code with them, and against the lens.
 
-use std::path::Path;
+use std::{path::Path, sync::OnceLock};
 
 use glam::{DVec2, Vec3};
 use image::RgbImage;
@@ -61,14 +61,21 @@ fn without_backs(field: &FieldDimensions) -> ProxyGeometry {
     proxy
 }
 
-fn labels_at(setup: &CameraSetup, field: &FieldDimensions, pose: CameraPose) -> Labels {
+/// Returns the cameras, each on one of the fields, with their labelers, which the tests share.
+fn stages() -> &'static [(CameraSetup, FieldDimensions, Labeler)] {
+    static MADE: OnceLock<Vec<(CameraSetup, FieldDimensions, Labeler)>> = OnceLock::new();
+    MADE.get_or_init(|| {
+        let stage = |(setup, field): (CameraSetup, FieldDimensions)| {
+            let labeler = Labeler::new(&setup.camera, &field, &without_backs(&field));
+            (setup, field, labeler)
+        };
+        setups().into_iter().zip(fields()).map(stage).collect()
+    })
+}
+
+fn labels_at(labeler: &Labeler, pose: CameraPose) -> Labels {
     let mut labels = Labels::default();
-    Labeler::new(&setup.camera, field, &without_backs(field)).label(
-        pose,
-        &[],
-        Overlay::default(),
-        &mut labels,
-    );
+    labeler.label(pose, &[], Overlay::default(), &mut labels);
     labels
 }
 
@@ -99,9 +106,9 @@ fn class_of(color: [u8; 3]) -> Option<Class> {
 #[test]
 fn every_pixel_of_one_colour_has_the_class_that_the_renderer_draws_there() {
     let mut seen = [0_usize; 4];
-    for (setup, field) in setups().iter().zip(&fields()) {
+    for (setup, field, labeler) in stages() {
         for pose in poses(field) {
-            let (labels, picture) = (labels_at(setup, field, pose), drawn(setup, field, pose));
+            let (labels, picture) = (labels_at(labeler, pose), drawn(setup, field, pose));
             let (mut same, mut pure) = (0, 0);
             for (pixel, class) in picture.pixels().zip(&labels.classes) {
                 let Some(expected) = class_of(pixel.0) else { continue };
@@ -119,9 +126,9 @@ fn every_pixel_of_one_colour_has_the_class_that_the_renderer_draws_there() {
 
 #[test]
 fn distances_of_the_ground_are_those_of_the_rays() {
-    for (setup, field) in setups().iter().zip(&fields()) {
+    for (setup, field, labeler) in stages() {
         for pose in poses(field) {
-            let labels = labels_at(setup, field, pose);
+            let labels = labels_at(labeler, pose);
             let mut count = 0;
             for index in (0..labels.classes.len()).step_by(97) {
                 let pixel = DVec2::new((index % 640) as f64, (index / 640) as f64);
@@ -141,9 +148,9 @@ fn distances_of_the_ground_are_those_of_the_rays() {
 
 #[test]
 fn crossings_and_lines_lie_where_their_pixels_meet_the_ground() {
-    for (setup, field) in setups().iter().zip(&fields()) {
+    for (setup, field, labeler) in stages() {
         for pose in poses(field) {
-            let labels = labels_at(setup, field, pose);
+            let labels = labels_at(labeler, pose);
             assert_eq!(labels.crossings.len(), field.crossings().len());
             for seen in &labels.crossings {
                 let Some(pixel) = seen.pixel else { continue };
@@ -183,9 +190,9 @@ fn is_near_a_goal(labels: &Labels, index: usize) -> bool {
 
 #[test]
 fn lines_hold_all_that_is_in_view_and_nothing_else() {
-    for (setup, field) in setups().iter().zip(&fields()) {
+    for (setup, field, labeler) in stages() {
         for pose in poses(field) {
-            let labels = labels_at(setup, field, pose);
+            let labels = labels_at(labeler, pose);
             for (line, (_, curve)) in field.lines().iter().enumerate() {
                 for step in 0..400 {
                     let ground = curve.at((f64::from(step) + 0.3) / 400.0).0;
