@@ -35,6 +35,8 @@ mod raster;
 mod scene_light;
 mod shading;
 mod shadow;
+#[cfg(test)]
+mod test_view;
 mod view;
 
 pub use self::{
