@@ -120,6 +120,9 @@ impl Bench {
     }
 }
 
+/// Effects by their names, with their values.
+type Effects = &'static [(&'static str, &'static [f64])];
+
 /// Returns the trajectory of a camera that moves as a twist says, at a pose at time 0.
 fn trajectory(pose: CameraPose, twist: Twist) -> Trajectory {
     if twist == Twist::default() {
@@ -153,7 +156,7 @@ fn a_layer_goes_through_every_effect_of_the_camera_as_the_scene_does() {
         velocity_in_world: DVec3::new(0.3, 0.1, 0.0),
         angular_velocity_in_camera: DVec3::new(0.5, 0.6, 0.1),
     };
-    let effects: [(&[(&str, &[f64])], Twist); 17] = [
+    let effects: [(Effects, Twist); 17] = [
         (&[], still),
         (&[("vignetting", &[0.6])], still),
         (&[("chromatic_aberration", &[0.01, -0.01])], still),
