@@ -47,6 +47,7 @@ mod class;
 mod compose;
 mod drawing;
 mod error;
+mod field_surfaces;
 mod frame;
 mod humanoid;
 mod layer;

@@ -9,14 +9,16 @@ use reality_sim_core::{
 };
 use reality_sim_sensor::{Chain, Development, Twist};
 
-use crate::{light_reference::LightReference, scene_light::SceneLight, view::View};
+use crate::{
+    field_surfaces::FieldSurfaces, light_reference::LightReference, scene_light::SceneLight, view::View,
+};
 
 /// Everything that a view refers to.
 pub(crate) struct TestCamera {
     pub(crate) chain: Chain,
     development: Development,
     reference: LightReference,
-    field: FieldDimensions,
+    surfaces: FieldSurfaces,
 }
 
 impl TestCamera {
@@ -29,7 +31,7 @@ impl TestCamera {
             line_linear_rgb: Vec3::splat(0.4),
             carpet_linear_rgb: Vec3::new(0.04, 0.1, 0.05),
         };
-        Self { development: Development::new(&chain), chain, reference, field }
+        Self { development: Development::new(&chain), chain, reference, surfaces: FieldSurfaces::new(&field) }
     }
 
     /// Makes cameras of all lens models.
@@ -50,7 +52,7 @@ impl TestCamera {
             light: SceneLight {
                 reference: &self.reference,
                 development: &self.development,
-                field: &self.field,
+                surfaces: &self.surfaces,
                 picture: None,
                 pose,
                 gain: [1.0; 3],
