@@ -1,7 +1,7 @@
 //! How well a ball that is added to a picture looks like one that was there, and what each stage of its way into the picture
 //! is worth:
 //!
-//! `cargo run --release --example composed_ball -- DATABASE EMPTY_PROBES BALL_PROBES [model.toml]`
+//! `cargo run --release --example composed_ball -- DATABASE EMPTY_PROBES BALL_PROBES [model.toml [PICTURES_FOLDER]]`
 //!
 //! The two folders hold pictures at the same poses, without and with a ball whose place `balls.json` tells. The ball's
 //! colour, the blur and the noise are found on the probes with even numbers; the figures are those of the odd ones.
@@ -13,7 +13,12 @@ mod hard_edges;
 #[path = "composed_ball/probes.rs"]
 mod probes;
 
-use std::{io::Write, path::Path, sync::Arc, time::Instant};
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+    sync::Arc,
+    time::Instant,
+};
 
 use anyhow::{Context, bail};
 use glam::{DVec2, Vec3};
@@ -95,6 +100,8 @@ struct Developed {
 struct Study {
     synthesizer: Arc<Synthesizer>,
     probes: Vec<Probe>,
+    /// Folder into which composed pictures are written.
+    pictures: Option<PathBuf>,
 }
 
 impl Study {
@@ -142,11 +149,9 @@ impl Study {
                 camera.look(probe.pose, &[layer], &mut with)?;
                 (without.picture, with.picture)
             };
-            if let Ok(folder) = std::env::var("COMPOSED_BALL_PICTURES")
-                && stages == Stages::ALL
-            {
+            if let Some(folder) = self.pictures.as_ref().filter(|_| stages == Stages::ALL && first == 1) {
                 let name = format!("{:02}-{}.png", probe.number, if over_truth { "truth" } else { "blend" });
-                with.save(Path::new(&folder).join(name))?;
+                with.save(folder.join(name))?;
             }
             compared.extend(probe.compare(camera.chain().camera(), &without, &with));
         }
@@ -210,8 +215,8 @@ fn milliseconds(study: &Study, developed: &Developed) -> anyhow::Result<f64> {
         let start = Instant::now();
         let frame = camera.compose(probe.pose, &layers, picture);
         times.push(1e3 * start.elapsed().as_secs_f64());
-        if let Ok(folder) = std::env::var("COMPOSED_BALL_PICTURES") {
-            frame.picture.save(Path::new(&folder).join(format!("{:02}-robots.png", probe.number)))?;
+        if let Some(folder) = &study.pictures {
+            frame.picture.save(folder.join(format!("{:02}-robots.png", probe.number)))?;
         }
     }
     times.sort_by(f64::total_cmp);
@@ -220,15 +225,18 @@ fn milliseconds(study: &Study, developed: &Developed) -> anyhow::Result<f64> {
 
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let (database, empty, balls, model) = match arguments.as_slice() {
-        [database, empty, balls] => (database, empty, balls, Model::default()),
-        [database, empty, balls, model] => (database, empty, balls, Model::read(Path::new(model))?),
-        _ => bail!("give DATABASE EMPTY_PROBES BALL_PROBES [model.toml]"),
+    let [database, empty, balls, rest @ ..] = arguments.as_slice() else {
+        bail!("give DATABASE EMPTY_PROBES BALL_PROBES [model.toml [PICTURES_FOLDER]]");
     };
+    let model = rest.first().map_or(Ok(Model::default()), |file| Model::read(Path::new(file)))?;
+    let pictures = rest.get(1).map(PathBuf::from);
+    if let Some(folder) = &pictures {
+        std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    }
     let archive = Arc::new(Archive::open(Path::new(database), 512 << 20)?);
     let synthesizer = Arc::new(Synthesizer::new(archive));
     let probes = read_probes(Path::new(empty), Path::new(balls))?;
-    let study = Study { synthesizer, probes };
+    let study = Study { synthesizer, probes, pictures };
     let developed = study.develop(model.values("vignetting").map(<[f64]>::to_vec))?;
     let mut out = std::io::stdout();
     writeln!(

@@ -289,3 +289,111 @@ fn short(mut weights: Vec<f32>) -> Vec<f32> {
     }
     weights
 }
+
+#[cfg(test)]
+mod tests {
+    use reality_sim_core::{
+        camera::{Camera, Distortion},
+        field::FieldDimensions,
+        sequence::CameraSetup,
+    };
+
+    use super::*;
+    use crate::{Model, effect};
+
+    fn development(effects: &[(&str, &[f64])]) -> Development {
+        let camera = Camera::new([64, 48], [50.0, 50.0, 31.5, 23.5], Distortion::Pinhole).unwrap();
+        let setup = CameraSetup { camera, mount_height_m: 0.5, photometry: None };
+        let with =
+            |model: Model, (id, values): &(&str, &[f64])| model.with(effect(id).unwrap(), values.to_vec());
+        let model = effects.iter().fold(Model::default(), with);
+        Development::new(&Chain::new(&setup, &FieldDimensions::preset("spl").unwrap(), &model).unwrap())
+    }
+
+    fn gradient() -> RgbImage {
+        RgbImage::from_fn(64, 48, |u, v| image::Rgb([40 + 2 * u as u8, 90 + v as u8, 250]))
+    }
+
+    /// Returns a tile in the middle of the picture with a patch in it.
+    fn patch(light: f32, cover: f32) -> LightTile {
+        let mut tile = LightTile::empty([16, 12], [32, 24], false);
+        for (row, column) in (8..16).flat_map(|row| (10..22).map(move |column| (row, column))) {
+            tile.color.iter_mut().for_each(|plane| plane[row * 32 + column] = light);
+            tile.cover[0][row * 32 + column] = cover;
+        }
+        tile
+    }
+
+    fn composed(development: &Development, mut tile: LightTile, noise_seed: Option<u64>) -> Vec<[u8; 3]> {
+        let exposure = development.exposure(&gradient(), 1.0, noise_seed);
+        development.compose(&mut tile, &gradient(), &exposure)
+    }
+
+    #[test]
+    fn light_that_covers_nothing_leaves_every_camera_s_picture_as_it_is() {
+        let cameras: [&[(&str, &[f64])]; 4] = [
+            &[],
+            &[("defocus", &[1.5]), ("vignetting", &[0.5])],
+            &[("sensor_noise", &[0.01, 1e-4]), ("tone_curve", &[0.4])],
+            &[("sharpening", &[0.7]), ("veiling_glare", &[0.3]), ("black_level", &[0.05])],
+        ];
+        for effects in cameras {
+            let development = development(effects);
+            let tile = LightTile::empty([16, 12], [32, 24], false);
+            let pixels = composed(&development, tile.clone(), Some(3));
+            assert_eq!(pixels, recorded(&tile, &gradient()), "{effects:?}");
+        }
+    }
+
+    #[test]
+    fn opaque_light_is_recorded_as_the_camera_records_it_and_half_of_it_is_mixed_in_linear_light() {
+        let development = development(&[("tone_curve", &[0.3]), ("black_level", &[0.02])]);
+        let value = |linear: f64| {
+            let chain = development.chain();
+            (255.0 * chain.encode(chain.respond(linear))).round() as u8
+        };
+        let middle = 12 * 32 + 16;
+        assert!(
+            composed(&development, patch(0.3, 1.0), None)[middle].iter().all(|v| v.abs_diff(value(0.3)) <= 1)
+        );
+        let seen = gradient().get_pixel(32, 24).0;
+        let half = composed(&development, patch(0.15, 0.5), None)[middle];
+        for channel in 0..3 {
+            let mixed = 0.15 + 0.5 * f64::from(development.linear(seen[channel]));
+            assert!(half[channel].abs_diff(value(mixed)) <= 1, "{half:?}");
+        }
+    }
+
+    #[test]
+    fn a_blur_keeps_the_light_and_stays_within_the_reach() {
+        let development = development(&[("defocus", &[1.1])]);
+        let mut tile = patch(0.3, 1.0);
+        let sum = |tile: &LightTile| tile.color[1].iter().sum::<f32>();
+        let before = sum(&tile);
+        development.pass_lens(&mut tile);
+        assert!((sum(&tile) / before - 1.0).abs() < 1e-4);
+        let reach = development.reach_px();
+        assert!((4..8).contains(&reach), "{reach}");
+        let at = |row: usize, column: usize| tile.cover[0][row * 32 + column];
+        assert!(at(12, 9) > 0.2 && at(12, 9) < 0.4 && (at(12, 9) + at(12, 10) - 1.0).abs() < 5e-3);
+        assert_eq!(at(12, 10 - reach - 1), 0.0);
+    }
+
+    #[test]
+    fn values_are_encoded_to_a_hundredth_of_a_grey_level() {
+        let development = development(&[("tone_curve", &[0.4])]);
+        for step in 4..1000 {
+            let linear = (f64::from(step) / 1000.0).powi(2);
+            let exact = 255.0 * development.chain().encode(linear);
+            assert!((f64::from(development.encode(linear as f32)) - exact).abs() < 0.01, "{linear}");
+        }
+    }
+
+    #[test]
+    fn noise_is_that_of_its_seed_and_its_time() {
+        let development = development(&[("sensor_noise", &[0.01, 1e-4])]);
+        let with = |seed: u64| composed(&development, patch(0.3, 1.0), Some(seed));
+        assert_eq!(with(1), with(1));
+        assert_ne!(with(1), with(2));
+    }
+}

@@ -99,14 +99,19 @@ impl Canvas {
         if area.is_empty() || grown == self.area {
             return;
         }
+        if self.area.is_empty() {
+            // The memory of the frame before is used again.
+            self.newest.clear();
+            self.newest.resize(area.width() as usize * area.height() as usize, NONE);
+            self.area = area;
+            return;
+        }
         let mut newest = vec![NONE; grown.width() as usize * grown.height() as usize];
-        if !self.area.is_empty() {
-            let width = self.area.width() as usize;
-            for (row, old) in self.newest.chunks(width).enumerate() {
-                let v = self.area.top as usize + row - grown.top as usize;
-                let first = v * grown.width() as usize + (self.area.left - grown.left) as usize;
-                newest[first..first + width].copy_from_slice(old);
-            }
+        let width = self.area.width() as usize;
+        for (row, old) in self.newest.chunks(width).enumerate() {
+            let v = self.area.top as usize + row - grown.top as usize;
+            let first = v * grown.width() as usize + (self.area.left - grown.left) as usize;
+            newest[first..first + width].copy_from_slice(old);
         }
         (self.area, self.newest) = (grown, newest);
     }

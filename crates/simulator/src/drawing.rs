@@ -12,6 +12,7 @@ use reality_sim_synthesis::Archive;
 use crate::{
     canvas::Canvas,
     compose::{Composed, Scene, Tally, areas, compose},
+    field_surfaces::FieldSurfaces,
     frame::Frame,
     layer::Layer,
     layer_settings::LayerSettings,
@@ -35,6 +36,7 @@ pub(crate) struct Drawing {
     development: Development,
     rays: RayTable,
     reference: LightReference,
+    surfaces: FieldSurfaces,
 }
 
 impl Drawing {
@@ -43,6 +45,7 @@ impl Drawing {
             development: Development::new(chain),
             rays: RayTable::new(chain.camera()),
             reference: LightReference::new(archive, setup, chain),
+            surfaces: FieldSurfaces::new(archive.field()),
         }
     }
 
@@ -64,7 +67,7 @@ impl Drawing {
         let light = SceneLight {
             reference: &self.reference,
             development: &self.development,
-            field: archive.field(),
+            surfaces: &self.surfaces,
             picture: settings.matches_light.then_some(&frame.picture),
             pose,
             gain: exposure.gain,

@@ -1,11 +1,11 @@
 //! How bright lines and carpet usually are in a recording.
 
 use glam::{DVec2, Vec3};
-use reality_sim_core::{field::FieldDimensions, sequence::CameraSetup, statistics::median, warp::Picture};
+use reality_sim_core::{sequence::CameraSetup, statistics::median, warp::Picture};
 use reality_sim_sensor::{Chain, SceneColors, Surface};
 use reality_sim_synthesis::Archive;
 
-use crate::light::Light;
+use crate::{field_surfaces::FieldSurfaces, light::Light};
 
 /// Encoded value from which a pixel may be clipped.
 pub(crate) const CLIPPED: u8 = 250;
@@ -62,24 +62,6 @@ impl LightReference {
     }
 }
 
-/// Returns whether a point of the ground shows a line or carpet; `None` near a line's edge and beyond the carpet.
-pub(crate) fn surface_at(field: &FieldDimensions, point_in_world: DVec2) -> Option<Surface> {
-    if !point_in_world.abs().cmple(field.carpet_half_extent_m()).all() {
-        return None;
-    }
-    let distances = field.curves().into_iter().map(|curve| curve.distance_m(point_in_world));
-    let marks = field.marks().into_iter().map(|mark| mark.distance(point_in_world));
-    let half_width_m = 0.5 * field.line_width_m;
-    let to_mark = marks.fold(f64::INFINITY, f64::min);
-    let distance = distances.fold(to_mark, f64::min);
-    if distance < 0.5 * half_width_m && to_mark > field.line_width_m {
-        Some(Surface::Line)
-    } else {
-        // Marks are larger than lines are wide.
-        (distance > 3.0 * half_width_m && to_mark > 4.0 * half_width_m).then_some(Surface::Carpet)
-    }
-}
-
 /// Returns how bright lines and carpet are in the archive's pictures, where they show enough of them.
 fn shown(archive: &Archive, chain: &Chain) -> [Option<Vec3>; 2] {
     let images = archive.images().len();
@@ -101,6 +83,7 @@ fn read(archive: &Archive, image: u32, picture: &Picture, chain: &Chain, values:
     let camera = archive.camera_of(image);
     let pose = archive.images()[image as usize].pose;
     let half = archive.field().carpet_half_extent_m();
+    let surfaces = FieldSurfaces::new(archive.field());
     let steps = (half / SPACING_M).floor().as_ivec2();
     let middle = DVec2::new(camera.cx, camera.cy);
     let farthest_px = LARGEST_RADIUS * 0.5 * f64::from(camera.width).hypot(f64::from(camera.height));
@@ -108,7 +91,7 @@ fn read(archive: &Archive, image: u32, picture: &Picture, chain: &Chain, values:
         (0..=u8::MAX).map(|value| chain.linear_of(f64::from(value) / 255.0) as f32).collect();
     for (x, y) in (-steps.x..=steps.x).flat_map(|x| (-steps.y..=steps.y).map(move |y| (x, y))) {
         let point = SPACING_M * DVec2::new(x.into(), y.into());
-        let Some(surface) = surface_at(archive.field(), point) else { continue };
+        let Some(surface) = surfaces.at(point) else { continue };
         let Ok(pixel) = camera.project(pose.camera_from_world(point.extend(0.0))) else { continue };
         if pixel.distance(middle) > farthest_px {
             continue;

@@ -162,3 +162,75 @@ fn mean_outline_radius(places: &[Vec3], triangles: &[[u32; 3]]) -> f32 {
     });
     1.0 - 2.0 / 3.0 * inside.sum::<f32>() / (3 * triangles.len()).max(1) as f32
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat3;
+
+    use super::*;
+
+    /// Returns the volume inside a closed surface whose triangles face outwards, by the divergence theorem.
+    fn volume(mesh: &Mesh) -> f32 {
+        let place = |corner: u32| mesh.vertices[corner as usize].place;
+        mesh.triangles.iter().map(|[a, b, c]| place(*a).dot(place(*b).cross(place(*c))) / 6.0).sum()
+    }
+
+    /// Checks that normals point away from the side of the triangles that is inside.
+    fn check_normals(mesh: &Mesh) {
+        for triangle in &mesh.triangles {
+            let [a, b, c] = triangle.map(|corner| mesh.vertices[corner as usize]);
+            let out = (b.place - a.place).cross(c.place - a.place);
+            assert!([a, b, c].iter().all(|corner| corner.normal.dot(out) > 0.0));
+        }
+    }
+
+    #[test]
+    fn bodies_are_closed_face_outwards_and_have_their_volumes() {
+        let pi = std::f32::consts::PI;
+        let shapes = [
+            (Mesh::sphere(3, Vec3::ONE), 4.0 / 3.0 * pi, 0.01),
+            (Mesh::cuboid(Vec3::new(1.0, 2.0, 0.5), Vec3::ONE), 8.0, 1e-5),
+            // A cylinder of length 2 and two half spheres, of ten sides.
+            (
+                Mesh::rod(Vec3::new(0.5, 0.0, 1.0), Vec3::new(0.5, 2.0, 1.0), 0.4, Vec3::ONE),
+                2.0 * 0.16 * pi + 4.0 / 3.0 * pi * 0.064,
+                0.09,
+            ),
+        ];
+        for (mesh, expected, tolerance) in shapes {
+            let found = volume(&mesh);
+            assert!((found / expected - 1.0).abs() < tolerance, "{found} instead of {expected}");
+            check_normals(&mesh);
+        }
+    }
+
+    #[test]
+    fn spheres_have_the_outline_of_a_circle_in_the_mean() {
+        for cuts in 2..5 {
+            let mesh = Mesh::sphere(cuts, Vec3::ONE);
+            // By Cauchy's formula, the mean outline of a convex body has a quarter of its surface's area.
+            let place = |corner: u32| mesh.vertices[corner as usize].place;
+            let area =
+                |[a, b, c]: &[u32; 3]| 0.5 * (place(*b) - place(*a)).cross(place(*c) - place(*a)).length();
+            let outline = mesh.triangles.iter().map(area).sum::<f32>() / 4.0;
+            let off = outline / std::f32::consts::PI - 1.0;
+            assert!(off.abs() < 0.005, "{cuts}: {off}");
+        }
+    }
+
+    #[test]
+    fn a_mesh_that_is_added_is_moved_and_keeps_its_normals_upright() {
+        let squeezed = DAffine3::from_mat3_translation(
+            DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.2)),
+            DVec3::new(0.0, 0.0, 3.0),
+        );
+        let mut mesh = Mesh::default();
+        mesh.add(&Mesh::sphere(2, Vec3::ONE), squeezed);
+        mesh.add(&Mesh::cuboid(Vec3::ONE, Vec3::ONE), DAffine3::IDENTITY);
+        assert!((volume(&mesh) - 8.0 - 0.2 * 4.0 / 3.0 * std::f32::consts::PI).abs() < 0.05);
+        check_normals(&mesh);
+        let (middle, radius_m) = mesh.bounds().unwrap();
+        assert!(middle.z > 0.5 && radius_m > 1.5);
+        assert_eq!(Mesh::default().bounds(), None);
+    }
+}

@@ -2,12 +2,13 @@
 
 use glam::{DVec2, DVec3};
 use image::RgbImage;
-use reality_sim_core::{field::FieldDimensions, pose::CameraPose};
+use reality_sim_core::pose::CameraPose;
 use reality_sim_sensor::{Development, Surface};
 
 use crate::{
+    field_surfaces::FieldSurfaces,
     light::Light,
-    light_reference::{CLIPPED, LightReference, surface_at},
+    light_reference::{CLIPPED, LightReference},
 };
 
 /// Distances from a foot at which the ground's light is read, metres: light changes over metres, carpet from one hand's breadth
@@ -30,7 +31,7 @@ const BELIEVED: f32 = 0.5;
 pub(crate) struct SceneLight<'a> {
     pub(crate) reference: &'a LightReference,
     pub(crate) development: &'a Development,
-    pub(crate) field: &'a FieldDimensions,
+    pub(crate) surfaces: &'a FieldSurfaces,
     /// Recorded picture; `None` where the light is taken to be the same everywhere.
     pub(crate) picture: Option<&'a RgbImage>,
     pub(crate) pose: CameraPose,
@@ -64,7 +65,7 @@ impl SceneLight<'_> {
 
     /// Returns how bright the picture shows a point of the ground, against its usual brightness.
     fn ratio(&self, picture: &RgbImage, point_in_world: DVec2) -> Option<f32> {
-        let surface = surface_at(self.field, point_in_world)?;
+        let surface = self.surfaces.at(point_in_world)?;
         let chain = self.development.chain();
         let point: DVec3 = self.pose.camera_from_world(point_in_world.extend(0.0));
         let pixel = chain.project_from_camera(point)?.round();

@@ -145,3 +145,68 @@ fn darken_block(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+    use crate::test_view::{TestCamera, usual_pose};
+
+    /// Returns the share of an even sky's light that a sphere leaves, by summing over directions of the sky.
+    fn summed(sphere: Sphere, ground_point: DVec2) -> f64 {
+        let to_center = sphere.center_in_world - ground_point.extend(0.0);
+        let cos_cone = (1.0 - (sphere.radius_m / to_center.length()).powi(2)).max(0.0).sqrt();
+        let (steps, turns) = (300, 600);
+        let mut left = 0.0;
+        for (step, turn) in (0..steps).flat_map(|step| (0..turns).map(move |turn| (step, turn))) {
+            // Squares of the sine that are evenly spaced have the same share of the light each.
+            let sin = ((f64::from(step) + 0.5) / f64::from(steps)).sqrt();
+            let around = TAU * (f64::from(turn) + 0.5) / f64::from(turns);
+            let ray = DVec3::new(sin * around.cos(), sin * around.sin(), (1.0 - sin * sin).sqrt());
+            left += f64::from(u8::from(ray.dot(to_center) / to_center.length() < cos_cone));
+        }
+        left / f64::from(steps * turns)
+    }
+
+    #[test]
+    fn the_share_of_light_is_that_of_a_sum_over_the_sky() {
+        for (height_m, radius_m, beside_m) in
+            [(0.065, 0.065, 0.03), (0.065, 0.065, 0.1), (0.5, 0.2, 0.1), (0.5, 0.2, 0.6), (0.3, 0.1, 0.0)]
+        {
+            let sphere = Sphere { center_in_world: DVec3::new(1.0, 2.0, height_m), radius_m };
+            let point = DVec2::new(1.0, 2.0) + beside_m * DVec2::from_angle(0.7);
+            let (found, truth) = (light_left(sphere, point), summed(sphere, point));
+            assert!((found - truth).abs() < 0.004, "{height_m} {radius_m} {beside_m}: {found} {truth}");
+        }
+    }
+
+    #[test]
+    fn a_ball_takes_all_light_where_it_touches_the_ground_and_none_far_away_or_below_it() {
+        let sphere = Sphere { center_in_world: DVec3::new(0.0, 0.0, 0.1), radius_m: 0.1 };
+        assert_eq!(light_left(sphere, DVec2::ZERO), 0.0);
+        assert!(light_left(sphere, DVec2::new(3.0, 0.0)) > 0.9999);
+        let sunk = Sphere { center_in_world: DVec3::new(0.0, 0.0, -0.1), ..sphere };
+        assert_eq!(light_left(sunk, DVec2::ZERO), 1.0);
+    }
+
+    #[test]
+    fn the_part_of_the_picture_holds_all_that_is_darkened_by_a_hundredth() {
+        let camera = &TestCamera::of_all_lenses()[2];
+        let view = camera.view(usual_pose());
+        let sphere = Sphere { center_in_world: DVec3::new(1.2, 0.4, 0.1), radius_m: 0.1 };
+        let shadow = Shadow::new(sphere, &view).unwrap();
+        for (u, v) in (0..160_u32).flat_map(|u| (0..120_u32).map(move |v| (u, v))) {
+            let pixel = DVec2::new(u.into(), v.into());
+            let Ok(ground) = view.lens().unproject_to_ground(view.pose(), pixel) else { continue };
+            let left = light_left(sphere, ground);
+            assert!(left > 0.99 || shadow.area.contains(u, v), "{u} {v}: {left}");
+            let approximate = f64::from(shadow.left(ground.x as f32, ground.y as f32));
+            assert!((approximate - left).abs() < 0.0101, "{approximate} {left}");
+        }
+        for wrong in [DVec3::NAN, DVec3::new(0.0, 0.0, -1.0), DVec3::new(1e9, 0.0, 0.1)] {
+            let seen = Shadow::new(Sphere { center_in_world: wrong, ..sphere }, &view);
+            assert!(seen.is_none_or(|shadow| shadow.area.width() <= 160), "{wrong}");
+        }
+    }
+}

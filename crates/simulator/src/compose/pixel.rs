@@ -128,3 +128,64 @@ impl Stack {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn fragment(distance_m: f32, alpha: f32, parts: u16, object: u16) -> Fragment {
+        let shade = 0.1 * f32::from(object + 1);
+        Fragment { color: alpha * Vec3::new(shade, 0.5, 1.0 - shade), alpha, distance_m, object, parts }
+    }
+
+    fn composed(fragments: &[Fragment]) -> Pixel {
+        Stack { fragments: fragments.to_vec(), ..Stack::default() }.composed()
+    }
+
+    #[test]
+    fn the_nearest_hides_what_is_behind_part_by_part() {
+        let near = fragment(1.0, 1.0, 0x00ff, 0);
+        let far = fragment(2.0, 1.0, Fragment::ALL, 1);
+        let pixel = composed(&[far, near]);
+        assert!((pixel.color - 0.5 * (near.color + far.color)).length() < 1e-6);
+        assert_eq!(pixel.cover, 1.0);
+        let hidden = composed(&[fragment(0.5, 1.0, Fragment::ALL, 2), far, near]);
+        assert_eq!((hidden.object, hidden.distance_m), (Some(2), 0.5));
+    }
+
+    #[test]
+    fn light_through_a_pane_is_that_of_the_over_operator() {
+        let (pane, wall) = (fragment(1.0, 0.25, Fragment::ALL, 0), fragment(2.0, 1.0, Fragment::ALL, 1));
+        let pixel = composed(&[wall, pane]);
+        assert!((pixel.color - (pane.color + 0.75 * wall.color)).length() < 1e-6);
+        assert_eq!(pixel.object, Some(1));
+        assert!(
+            (composed(&[pane, fragment(3.0, 0.5, Fragment::ALL, 1)]).cover - (1.0 - 0.75 * 0.5)).abs() < 1e-6
+        );
+        assert_eq!(composed(&[]), Pixel::EMPTY);
+        assert_eq!(composed(&[fragment(1.0, 0.4, Fragment::ALL, 0)]).object, None);
+    }
+
+    proptest! {
+        #[test]
+        fn the_result_does_not_depend_on_the_order_and_opaque_fragments_are_the_limit_of_translucent_ones(
+            parts in prop::collection::vec(any::<u16>(), 1..6),
+        ) {
+            let fragments: Vec<Fragment> = parts
+                .iter()
+                .enumerate()
+                .map(|(index, parts)| fragment(index as f32 + 1.0, 1.0, *parts, index as u16))
+                .collect();
+            let pixel = composed(&fragments);
+            let reversed: Vec<Fragment> = fragments.iter().rev().copied().collect();
+            prop_assert_eq!(pixel, composed(&reversed));
+            let all = parts.iter().fold(0, |all, parts| all | parts);
+            prop_assert!((pixel.cover - all.count_ones() as f32 / 16.0).abs() < 1e-6);
+            let pane: Vec<Fragment> = fragments.iter().map(|f| Fragment { alpha: 0.9999, ..*f }).collect();
+            let through = composed(&pane);
+            prop_assert!((through.color - pixel.color).length() < 2e-3, "{:?} {:?}", through, pixel);
+        }
+    }
+}

@@ -154,3 +154,6 @@ fn tell_extent(triangles: &[ScreenTriangle], size: [u32; 2], canvas: &mut Canvas
     }
     canvas.add_extent(object, inside as f32, outside as f32);
 }
+
+#[cfg(test)]
+mod tests;
