@@ -10,6 +10,7 @@ mod gpu;
 mod image_at;
 mod import;
 mod kd_tree;
+mod labels;
 mod neighbours;
 mod poses;
 mod refinement;
@@ -37,7 +38,7 @@ fn main() {
         .measurement_time(Duration::from_secs(1))
         .without_plots()
         .configure_from_args();
-    let stages: [fn(&mut Criterion, &Scene); 15] = [
+    let stages: [fn(&mut Criterion, &Scene); 16] = [
         blur::bench,
         border::bench,
         white_lines::bench,
@@ -51,6 +52,7 @@ fn main() {
         neighbours::bench,
         database::bench,
         image_at::bench,
+        labels::bench,
         gap::bench,
         import::bench,
     ];

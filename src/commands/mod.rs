@@ -4,6 +4,7 @@ mod advice;
 mod build;
 mod calibrate;
 mod choice;
+mod dataset;
 mod device;
 #[cfg(feature = "gpu")]
 mod doctor;
@@ -45,6 +46,8 @@ pub enum Command {
     Import(Box<import::ImportArgs>),
     /// Make the picture at a pose, or the pictures along a path, from a database
     Render(Box<render::RenderArgs>),
+    /// Make pictures at random poses with labels, from a database
+    Dataset(Box<dataset::DatasetArgs>),
     /// Compare reconstructed pictures with true ones that are not in the database
     Evaluate(evaluate::EvaluateArgs),
     /// Summarise a database, and how much of the field it covers, or list the topics of a robot's log
@@ -74,6 +77,7 @@ impl Command {
             Self::Tag(args) => args.check_usage(),
             Self::Build(args) => args.check_usage(),
             Self::Render(args) => args.check_usage(),
+            Self::Dataset(args) => args.check_usage(),
             Self::Evaluate(args) => args.check_usage(),
             Self::Export(args) => args.check_usage(),
             Self::Calibrate(_)
@@ -98,6 +102,7 @@ impl Command {
             Self::Build(args) => build::run(args),
             Self::Import(args) => import::run(args),
             Self::Render(args) => render::run(args),
+            Self::Dataset(args) => dataset::run(args),
             Self::Evaluate(args) => evaluate::run(args),
             Self::Export(args) => export::run(args),
             Self::Info(args) => info::run(args),

@@ -25,6 +25,16 @@ pub struct SynthesisArgs {
 }
 
 impl SynthesisArgs {
+    /// Returns the number of pictures that `blend` mixes.
+    pub fn neighbours(&self) -> u8 {
+        self.neighbours
+    }
+
+    /// Returns whether a picture is made however far away the nearest recorded one is.
+    pub fn is_best_effort(&self) -> bool {
+        self.best_effort
+    }
+
     /// Opens a database, and evens out the light of its pictures by the model, if there is one.
     pub fn archive(&self, database: &Path, model: Option<&ModelFile>) -> anyhow::Result<Arc<Archive>> {
         let archive = Archive::open(database, (self.cache as usize) << 20)?;

@@ -50,6 +50,11 @@ fn blur_row(
     }
 }
 
+/// Returns the weights of a pixel and of its neighbours on one side for a blur of this variance, pixels² along an axis.
+pub(crate) fn weights(variance_px2: f64) -> Vec<f32> {
+    Kernel::new(variance_px2).weights
+}
+
 /// Weights of a pixel and of its neighbours on one side; the other side mirrors them.
 struct Kernel {
     variance_px2: f64,

@@ -8,6 +8,7 @@
 //! | [`Model`] | the effects present and their sizes, as in `model.toml` |
 //! | [`Chain`] | a camera with its model, for points, light and motions one by one |
 //! | [`Corrected`] | camera, field and recordings as a model corrects them |
+//! | [`Development`], [`LightTile`] | light of things that were not there, added to a recorded picture |
 //! | [`Shading`] | what lens and exposure do to the light of whole pictures, taken out and put in |
 //! | [`Trajectory`] | the camera's pose at any time, interpolated between stamped poses |
 //! | [`Frame`] | projection of points into one picture, row by row |
@@ -48,6 +49,7 @@ mod blur;
 mod chain;
 mod colors;
 mod corrected;
+mod development;
 mod effect;
 mod effect_index;
 mod effects;
@@ -55,6 +57,7 @@ mod encoding;
 mod frame;
 mod lens;
 mod light;
+mod light_tile;
 mod model;
 mod motion;
 mod noise;
@@ -75,10 +78,12 @@ pub use self::{
     chain::{Chain, sampled_variance_px2},
     colors::SceneColors,
     corrected::{Corrected, CorrectionError, sampled_sigma_px},
+    development::{Development, Exposure},
     effect::{About, Changes, Covariate, Effect, Estimates, Growth, Need, Opposite, Parameter, Role, Stage},
     effect_index::EffectIndex,
     effects::{effect, library},
     frame::Frame,
+    light_tile::LightTile,
     model::{Model, ModelError, ModelFault, Used},
     noise::Noise,
     reach::Reach,

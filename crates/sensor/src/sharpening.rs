@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::{blur::blurred, light::Light};
 
 /// Standard deviation of the mask's blur, pixels: about that of the 3 × 3 and 5 × 5 kernels of cameras.
-const RADIUS_PX: f64 = 1.0;
+pub(crate) const RADIUS_PX: f64 = 1.0;
 
 /// Returns a picture sharpened by this amount.
 pub(crate) fn sharpened(picture: &RgbImage, amount: f64) -> RgbImage {

@@ -1,10 +1,11 @@
 //! `reality-sim render`: makes the picture at a pose, or those along a path.
 
+mod balls;
 mod options;
 mod painter;
 mod report;
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use anyhow::Context;
 use image::DynamicImage;
@@ -19,6 +20,7 @@ use reality_sim::{
 
 pub use self::options::RenderArgs;
 use self::{
+    balls::BallComposer,
     options::PictureMethod,
     painter::{Painted, Painter, Work},
     report::{Report, used},
@@ -44,10 +46,14 @@ pub fn run(args: &RenderArgs) -> anyhow::Result<()> {
         setup.camera = other.camera;
         setup.photometry = other.photometry.or(setup.photometry);
     }
-    let synthesizer = args.synthesis.synthesizer(archive.clone(), setup.camera.clone())?;
+    let synthesizer = Arc::new(args.synthesis.synthesizer(archive.clone(), setup.camera.clone())?);
     let painter = match (&model, args.method) {
         (Some(model), PictureMethod::Simulated) => {
             Painter::with_model(model, &archive, trajectory(args, &poses)?, &setup)?
+        }
+        (model, PictureMethod::Recorded(method)) if !args.ball.is_empty() => {
+            let composer = BallComposer::new(&synthesizer, method, model.as_ref(), &args.ball)?;
+            Painter::Composed(&synthesizer, method, Box::new(composer))
         }
         (_, method) => Painter::new(method, &synthesizer, &setup),
     };

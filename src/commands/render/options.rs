@@ -10,6 +10,7 @@ use reality_sim::{
     synthesis::MethodKind,
 };
 
+use super::balls::{WantedBall, wanted_ball};
 use crate::commands::{
     choice::{described, one_of},
     output::{check_distinct, check_output_picture},
@@ -32,6 +33,10 @@ pub struct RenderArgs {
     /// Method by which the picture is made
     #[arg(long, value_parser = one_of::<PictureMethod>(methods()), default_value_t)]
     pub method: PictureMethod,
+    /// Add a ball at this place on the field, as often as wanted: metres, metres, metres, sRGB [default of the last two:
+    /// 0.065, FF8000]
+    #[arg(long, value_name = "X,Y[,RADIUS_M[,RRGGBB]]", value_parser = wanted_ball, allow_hyphen_values = true)]
+    pub ball: Vec<WantedBall>,
     /// Write the picture to this PNG or JPEG file; with --path, the pictures to this folder
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
@@ -130,6 +135,12 @@ impl RenderArgs {
         if self.method == PictureMethod::Simulated && wants_origins {
             return Err(
                 "--origins, --trust: a simulated picture is not made from recorded ones: leave them out"
+                    .to_owned(),
+            );
+        }
+        if self.method == PictureMethod::Simulated && !self.ball.is_empty() {
+            return Err(
+                "--ball: balls are added to recorded pictures: choose another --method than simulated"
                     .to_owned(),
             );
         }

@@ -11,7 +11,7 @@ use reality_sim::{
     synthesis::MethodKind,
 };
 
-use super::options::PictureMethod;
+use super::{balls::BallComposer, options::PictureMethod};
 use crate::commands::model_file::ModelFile;
 
 /// Pictures at different times have different noise.
@@ -20,6 +20,8 @@ const NOISE_SEED: u64 = 0;
 /// Source of the pictures.
 pub enum Painter<'a> {
     Recorded(&'a Synthesizer, MethodKind),
+    /// Recorded pictures to which balls are added.
+    Composed(&'a Synthesizer, MethodKind, Box<BallComposer>),
     Simulated(Box<Renderer>),
     /// Simulated camera with effects, moving along its trajectory.
     Modelled(Box<Renderer>, Trajectory),
@@ -88,7 +90,7 @@ impl<'a> Painter<'a> {
     /// Returns the name of the method.
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Recorded(_, method) => method.name(),
+            Self::Recorded(_, method) | Self::Composed(_, method, _) => method.name(),
             Self::Simulated(_) | Self::Modelled(..) => Renderer::NAME,
         }
     }
@@ -98,6 +100,11 @@ impl<'a> Painter<'a> {
         let start = Instant::now();
         let work = match self {
             Self::Recorded(synthesizer, method) => Work::Reconstructed(synthesizer.image_at(pose, method)?),
+            Self::Composed(synthesizer, method, balls) => {
+                let mut made = synthesizer.image_at(pose, method)?;
+                made.picture = balls.add(StampedPose { timestamp_s, pose }, made.picture);
+                Work::Reconstructed(made)
+            }
             Self::Simulated(renderer) => Work::Drawn(renderer.draw(pose)?),
             Self::Modelled(renderer, trajectory) => {
                 Work::Drawn(renderer.draw_at(trajectory, timestamp_s, Some(NOISE_SEED))?)

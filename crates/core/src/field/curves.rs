@@ -6,6 +6,40 @@ use glam::DVec2;
 
 use super::FieldDimensions;
 
+/// Half the side of the penalty and centre marks, metres: they are drawn as squares parallel to the lines.
+pub const MARK_HALF_SIDE_M: f64 = 0.05;
+
+/// Kind of a white line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum LineKind {
+    /// Line along a side of the field.
+    TouchLine,
+    /// Line across an end of the field.
+    GoalLine,
+    /// Line across the middle of the field.
+    HalfwayLine,
+    /// Line around a goal area.
+    GoalArea,
+    /// Line around a penalty area.
+    PenaltyArea,
+    /// Centre circle.
+    CenterCircle,
+}
+
+impl LineKind {
+    /// Returns the name of the kind in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TouchLine => "touch_line",
+            Self::GoalLine => "goal_line",
+            Self::HalfwayLine => "halfway_line",
+            Self::GoalArea => "goal_area",
+            Self::PenaltyArea => "penalty_area",
+            Self::CenterCircle => "center_circle",
+        }
+    }
+}
+
 /// Centre line of a white line on the ground, world axes, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Curve {
@@ -82,32 +116,41 @@ pub struct Goal {
 impl FieldDimensions {
     /// Returns the centre lines of all white lines.
     pub fn curves(&self) -> Vec<Curve> {
+        self.lines().into_iter().map(|(_, curve)| curve).collect()
+    }
+
+    /// Returns the centre lines of all white lines with their kinds, in the order of [`FieldDimensions::curves`].
+    pub fn lines(&self) -> Vec<(LineKind, Curve)> {
         let (half_length, half_width) = (self.length_m / 2.0, self.width_m / 2.0);
-        let segment = |x0, y0, x1, y1| Curve::Segment { from: DVec2::new(x0, y0), to: DVec2::new(x1, y1) };
-        let mut curves = vec![
-            segment(-half_length, -half_width, half_length, -half_width),
-            segment(-half_length, half_width, half_length, half_width),
-            segment(-half_length, -half_width, -half_length, half_width),
-            segment(half_length, -half_width, half_length, half_width),
-            segment(0.0, -half_width, 0.0, half_width),
+        let segment = |kind, x0, y0, x1, y1| {
+            (kind, Curve::Segment { from: DVec2::new(x0, y0), to: DVec2::new(x1, y1) })
+        };
+        let mut lines = vec![
+            segment(LineKind::TouchLine, -half_length, -half_width, half_length, -half_width),
+            segment(LineKind::TouchLine, -half_length, half_width, half_length, half_width),
+            segment(LineKind::GoalLine, -half_length, -half_width, -half_length, half_width),
+            segment(LineKind::GoalLine, half_length, -half_width, half_length, half_width),
+            segment(LineKind::HalfwayLine, 0.0, -half_width, 0.0, half_width),
         ];
-        let goal_area = Some((self.goal_area_length_m, self.goal_area_width_m));
+        let goal_area = (LineKind::GoalArea, self.goal_area_length_m, self.goal_area_width_m);
         let penalty_area = self.penalty_area_length_m.zip(self.penalty_area_width_m);
-        for (depth, width) in [goal_area, penalty_area].into_iter().flatten() {
+        let penalty_area = penalty_area.map(|(depth, width)| (LineKind::PenaltyArea, depth, width));
+        for (kind, depth, width) in [Some(goal_area), penalty_area].into_iter().flatten() {
             if depth <= 0.0 || width <= 0.0 {
                 continue;
             }
             for side in [-1.0, 1.0] {
                 let (goal_line, front) = (side * half_length, side * (half_length - depth));
-                curves.push(segment(front, -width / 2.0, front, width / 2.0));
-                curves.push(segment(goal_line, -width / 2.0, front, -width / 2.0));
-                curves.push(segment(goal_line, width / 2.0, front, width / 2.0));
+                lines.push(segment(kind, front, -width / 2.0, front, width / 2.0));
+                lines.push(segment(kind, goal_line, -width / 2.0, front, -width / 2.0));
+                lines.push(segment(kind, goal_line, width / 2.0, front, width / 2.0));
             }
         }
         if self.center_circle_diameter_m > 0.0 {
-            curves.push(Curve::Circle { center: DVec2::ZERO, radius_m: self.center_circle_diameter_m / 2.0 });
+            let circle = Curve::Circle { center: DVec2::ZERO, radius_m: self.center_circle_diameter_m / 2.0 };
+            lines.push((LineKind::CenterCircle, circle));
         }
-        curves
+        lines
     }
 
     /// Returns the centres of the penalty marks and of the centre mark.

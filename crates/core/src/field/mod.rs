@@ -1,5 +1,6 @@
 //! Soccer field: its dimensions, its lines as curves on the ground, and samples along them.
 
+mod crossings;
 mod curves;
 mod dimensions;
 mod presets;
@@ -7,7 +8,8 @@ mod projected;
 mod sampling;
 
 pub use self::{
-    curves::{Curve, Goal, GoalPost},
+    crossings::{Crossing, CrossingKind},
+    curves::{Curve, Goal, GoalPost, LineKind, MARK_HALF_SIDE_M},
     dimensions::{FieldDimensions, InvalidField},
     presets::preset_names,
     projected::{project_lines, project_polygon},

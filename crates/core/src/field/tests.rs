@@ -1,3 +1,4 @@
+mod crossings;
 mod presets;
 mod sampling;
 mod validation;

@@ -17,6 +17,8 @@ pub enum Purpose {
     Resample = 4,
     /// Noise of a simulated picture; the pixel's number takes the place of the particle's.
     Picture = 5,
+    /// Poses and objects of a data set; the picture's number takes the place of the frame's.
+    Dataset = 6,
 }
 
 /// Stream of random numbers for one seed, purpose, frame and iteration.

@@ -21,7 +21,15 @@ static WRITING: RwLock<()> = RwLock::new(());
 /// A symbolic link stays, and the file that it leads to is written. Pipes, devices and what lies under `/dev` or `/proc` are
 /// written into, since a rename would put a file in their place. Fails if the operating system does not allow it.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), SequenceError> {
-    try_write(path, bytes).map_err(|error| SequenceError::of_file(path, Fault::Unwritable(error)))
+    write_atomically_with(path, |file| file.write_all(bytes))
+}
+
+/// Works like [`write_atomically`] for a file that need not fit into memory: `write` writes it piece by piece.
+pub fn write_atomically_with(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), SequenceError> {
+    try_write(path, write).map_err(|error| SequenceError::of_file(path, Fault::Unwritable(error)))
 }
 
 /// Waits until the files that are being written have their names, and lets none be begun while the guard is held. A program that
@@ -31,14 +39,14 @@ pub fn hold_writing() -> RwLockWriteGuard<'static, ()> {
     WRITING.write().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn try_write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn try_write(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     match Target::of(path)? {
         Target::File(path) => {
             let _writing = WRITING.read().unwrap_or_else(PoisonError::into_inner);
-            replace(&path, bytes)
+            replace(&path, write)
         }
         // Behind what the stream holds: standard output may be a file that other programs write to.
-        Target::Stream => OpenOptions::new().append(true).open(path)?.write_all(bytes),
+        Target::Stream => write(&mut OpenOptions::new().append(true).open(path)?),
     }
 }
 
@@ -80,9 +88,9 @@ fn is_of_the_system(path: &Path) -> bool {
 }
 
 /// Puts a file in the place of another one, or of none.
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let mut file = builder().tempfile_in(parent(path))?;
-    file.write_all(bytes)?;
+    write(&mut file)?;
     file.as_file().sync_all()?;
     file.persist(path)?;
     Ok(())

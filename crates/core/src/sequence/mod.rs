@@ -32,7 +32,7 @@ use image::RgbImage;
 use rayon::prelude::*;
 
 pub use self::{
-    atomic::{hold_writing, write_atomically},
+    atomic::{hold_writing, write_atomically, write_atomically_with},
     calibration_file::{camera_with_uncertainty, read_calibration},
     camera_file::{CameraSetup, Photometry, Trust, read_camera, read_mounting},
     corrected_by::{camera_with_model, model_of_camera},

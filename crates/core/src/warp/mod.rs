@@ -16,6 +16,7 @@ mod proxy_geometry;
 mod rays;
 mod sampling;
 mod smooth;
+mod surfaces;
 
 pub use self::{
     blend::{
@@ -27,6 +28,7 @@ pub use self::{
     picture::Picture,
     proxy_geometry::{Billboard, Hall, ProxyGeometry},
     rays::RayTable,
+    surfaces::{Surface, SurfaceBlock},
 };
 use crate::backend_error::BackendError;
 

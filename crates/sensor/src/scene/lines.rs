@@ -1,12 +1,9 @@
 //! White lines and marks on the ground, without overlaps, so that the fractions of a pixel that they cover add up.
 
 use glam::{DVec2, DVec3};
-use reality_sim_core::field::{Curve, FieldDimensions};
+use reality_sim_core::field::{Curve, FieldDimensions, MARK_HALF_SIDE_M};
 
 use super::shape::Shape;
-
-/// Half the side of the penalty and centre marks, metres: they are squares parallel to the lines.
-const MARK_HALF_SIDE_M: f64 = 0.05;
 
 /// Rectangle along the world's axes, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
