@@ -44,7 +44,7 @@ const SIGMAS_PX: [f64; 9] = [0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4];
 const START: Vec3 = Vec3::new(0.6, 0.3, 0.05);
 const STEPS: usize = 4;
 /// Shares of mirrored light that are tried.
-const GLOSSES: [f32; 5] = [0.0, 0.1, 0.2, 0.3, 0.4];
+const GLOSSES: [f32; 6] = [0.0, 0.2, 0.3, 0.4, 0.5, 0.6];
 /// Shot noise that the search for the pictures' starts from.
 const START_SHOT: f64 = 0.0007;
 

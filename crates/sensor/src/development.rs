@@ -125,7 +125,7 @@ impl Development {
 
     /// Returns the colour of a pixel when it gets this share of its light.
     pub fn darkened(&self, color: [u8; 3], share: f32) -> [u8; 3] {
-        color.map(|value| self.encode(share * self.linear(value)).round() as u8)
+        color.map(|value| rounded(self.encode(share * self.linear(value))))
     }
 
     /// Develops the light of a tile and puts it over the recorded picture; returns the tile's pixels, row by row.
@@ -151,7 +151,6 @@ impl Development {
             self.sharpen(tile, &recorded, &mut values);
         }
         let pixels = values.iter().zip(&recorded).enumerate();
-        let rounded = |value: f32| value.round().clamp(0.0, 255.0) as u8;
         pixels
             .map(|(index, (value, color))| {
                 if self.mask.is_empty() && !tile.is_touched(index, LEAST_SHARE) {
@@ -252,6 +251,11 @@ impl Development {
             }
         }
     }
+}
+
+/// Rounds an encoded value. A cast is faster than `round`, which is a call on processors of the baseline.
+fn rounded(value: f32) -> u8 {
+    (value.clamp(0.0, 255.0) + 0.5) as u8
 }
 
 /// Returns the tile's pixels in the picture, row by row.

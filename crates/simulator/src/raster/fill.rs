@@ -43,12 +43,8 @@ impl Edge {
             return if rest < 0.0 { (0.0, 0.0) } else { (first, end) };
         }
         let meets = -rest / self.across;
-        // A pixel more than the rounding of a pixel.
-        if self.across > 0.0 {
-            (first.max((meets - 1.0).floor()), end)
-        } else {
-            (first, end.min((meets + 2.0).ceil()))
-        }
+        // A pixel more than the rounding of a pixel; the casts that follow round towards 0.
+        if self.across > 0.0 { (first.max(meets - 1.0), end) } else { (first, end.min(meets + 2.0)) }
     }
 
     fn at(&self, u: f32, v: f32) -> f32 {
