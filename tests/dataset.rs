@@ -6,7 +6,7 @@ mod common;
 
 use std::{
     collections::BTreeSet,
-    fs,
+    fs, io,
     path::{Path, PathBuf},
     process::{Command, Stdio},
     sync::OnceLock,
@@ -170,8 +170,12 @@ fn interrupted(database: &Path, out: &Path, signal: &str, done: usize) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_reality-sim"));
     command.args(dataset(database, out, "5")).stdout(Stdio::null()).stderr(Stdio::null());
     let mut running = command.spawn().unwrap();
-    let records = out.join("annotations");
-    while fs::read_dir(&records).map_or(0, Iterator::count) < done && running.try_wait().unwrap().is_none() {
+    // Files that are being written have other endings.
+    let is_record = |entry: &io::Result<fs::DirEntry>| {
+        entry.as_ref().is_ok_and(|entry| entry.path().extension().is_some_and(|ending| ending == "jsonl"))
+    };
+    let records = || fs::read_dir(out.join("annotations")).map_or(0, |found| found.filter(is_record).count());
+    while records() < done && running.try_wait().unwrap().is_none() {
         std::thread::yield_now();
     }
     // The run may have ended meanwhile.
