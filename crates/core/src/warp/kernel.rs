@@ -38,9 +38,11 @@ impl Placement {
 }
 
 /// Number of the ground among the surfaces: the lower end of the third axis.
-const GROUND: f32 = 2.0;
+pub(crate) const GROUND: f32 = 2.0;
+/// Number of the ceiling: the upper end of the third axis.
+pub(crate) const CEILING: f32 = 5.0;
 /// Number of the first billboard among the surfaces.
-const FIRST_BILLBOARD: usize = 6;
+pub(crate) const FIRST_BILLBOARD: usize = 6;
 
 /// Points of the proxy geometry that sixteen pixels see.
 #[derive(Clone, Copy)]

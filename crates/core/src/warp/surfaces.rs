@@ -1,14 +1,10 @@
 //! Which surface of the scene each pixel sees, and how far away it is.
 
 use super::{
-    Billboard, Target,
-    kernel::{ProxyPoints, proxy_points},
+    Target,
+    kernel::{CEILING, FIRST_BILLBOARD, GROUND, ProxyPoints, proxy_points},
 };
 use crate::camera::{LANES, Lanes};
-
-/// Distance from a plane of the proxy geometry within which a point computed in single precision lies in it, metres for each
-/// metre from the camera: forty times the rounding of a number.
-const ROUNDING: f32 = 5e-6;
 
 /// Surface of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -59,24 +55,20 @@ impl Target<'_> {
     }
 
     fn surface(&self, points: &ProxyPoints, lane: usize) -> Surface {
-        let [x, y, z] = points.place.map(|axis| axis[lane]);
+        let number = points.surface[lane];
         if points.direction[2][lane].is_nan() {
-            return Surface::Nothing;
-        }
-        if points.on_ground[lane] == 1.0 {
-            return Surface::Ground;
-        }
-        let rounding = ROUNDING * (1.0 + points.distance[lane]);
-        let is_on = |billboard: &&Billboard| {
-            (x - billboard.x_m as f32).abs() <= rounding
-                && y.abs() <= billboard.half_width_m as f32 + rounding
-                && z <= billboard.height_m as f32 + rounding
-        };
-        match self.proxy.billboards.iter().find(is_on) {
-            Some(billboard) if billboard.opening_half_width_m > 0.0 => Surface::GoalFrame,
-            Some(_) => Surface::GoalBack,
-            None if z >= self.proxy.max_in_world.z as f32 - rounding => Surface::Ceiling,
-            None => Surface::Wall,
+            Surface::Nothing
+        } else if number == GROUND {
+            Surface::Ground
+        } else if number == CEILING {
+            Surface::Ceiling
+        } else if number < FIRST_BILLBOARD as f32 {
+            Surface::Wall
+        } else {
+            match self.proxy.billboards.get(number as usize - FIRST_BILLBOARD) {
+                Some(billboard) if billboard.opening_half_width_m > 0.0 => Surface::GoalFrame,
+                _ => Surface::GoalBack,
+            }
         }
     }
 }
