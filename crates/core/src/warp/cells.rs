@@ -8,8 +8,8 @@
 use rayon::prelude::*;
 
 use super::{
-    MAX_SOURCES, Source, Target,
-    blend::{BlendWeights, complete, form, say, weigh},
+    BlendWeights, MAX_SOURCES, Source, Target,
+    blend::{complete, form, say, weigh},
     kernel::{ProxyPoints, proxy_points},
     mix::{Opinions, SETTLED},
     origin::Origin,

@@ -3,8 +3,9 @@
 #![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
 
 use super::{
-    BlendWeights, MAX_SOURCES, Origin,
+    Origin,
     lanes::{largest_of, least, most, rounded},
+    weights::{BlendWeights, MAX_SOURCES},
 };
 use crate::camera::{LANES, Lanes};
 

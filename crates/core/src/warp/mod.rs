@@ -17,11 +17,10 @@ mod rays;
 mod sampling;
 mod smooth;
 mod surfaces;
+mod weights;
 
 pub use self::{
-    blend::{
-        BlendWeights, MAX_SOURCES, Source, Target, Warped, blend, blend_into, complete, costs, glimpses,
-    },
+    blend::{Source, Target, Warped, blend, blend_into, complete, costs, glimpses},
     cells::blend_cells_into,
     kernel::Placement,
     origin::Origin,
@@ -29,6 +28,7 @@ pub use self::{
     proxy_geometry::{Billboard, Hall, ProxyGeometry},
     rays::RayTable,
     surfaces::{Surface, SurfaceBlock},
+    weights::{BlendWeights, MAX_SOURCES},
 };
 use crate::backend_error::BackendError;
 

@@ -3,8 +3,8 @@
 #![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
 
 use super::{
-    Source, Target,
-    blend::{BlendWeights, penalties},
+    BlendWeights, Source, Target,
+    blend::penalties,
     edges::{Edges, Meeting, post_margin},
     kernel::{ON_SCREEN, Placement, ProxyPoints, in_camera},
     lanes::largest_of,
