@@ -254,7 +254,11 @@ impl Chain {
     /// Returns the variance along each axis, in pixels², of the blur by lens and sensor at a pixel: the nominal variance
     /// plus the effects'. It excludes the pixel's own extent (1/12) and motion blur.
     pub fn psf_variance_px2(&self, pixel: DVec2) -> f64 {
-        let radius = self.radius(pixel);
+        self.psf_variance_at_radius_px2(self.radius(pixel))
+    }
+
+    /// Returns [`Chain::psf_variance_px2`] at a distance from the principal point, in halves of the picture's diagonal.
+    pub(crate) fn psf_variance_at_radius_px2(&self, radius: f64) -> f64 {
         let added = |used: &Used| used.effect.blur_variance_px2(&used.values, radius);
         self.psf_variance_px2 + self.lens.iter().map(added).sum::<f64>()
     }
@@ -327,6 +331,11 @@ impl Chain {
         next
     }
 
+    /// Returns [`Chain::linear_of`] for the 256 values of a picture's bytes.
+    pub fn linear_values(&self) -> Vec<f32> {
+        (0..=u8::MAX).map(|value| self.linear_of(f64::from(value) / 255.0) as f32).collect()
+    }
+
     /// Returns the delay in seconds of the odometry after the pictures.
     pub fn odometry_delay_s(&self) -> f64 {
         self.odometry.iter().map(|used| used.effect.odometry_delay_s(&used.values)).sum()
@@ -346,7 +355,7 @@ impl Chain {
     }
 
     /// Returns the distance from the principal point in units of half the picture's diagonal.
-    fn radius(&self, pixel: DVec2) -> f64 {
+    pub(crate) fn radius(&self, pixel: DVec2) -> f64 {
         let diagonal_px = f64::from(self.camera.width - 1).hypot(f64::from(self.camera.height - 1));
         2.0 * pixel.distance(DVec2::new(self.camera.cx, self.camera.cy)) / diagonal_px.max(1.0)
     }

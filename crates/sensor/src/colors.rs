@@ -62,7 +62,7 @@ impl SceneColors {
 }
 
 /// Converts an sRGB value to a linear one (IEC 61966-2-1).
-fn linear_from_srgb(value: u8) -> f32 {
+pub fn linear_from_srgb(value: u8) -> f32 {
     let value = f32::from(value) / 255.0;
     if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
 }

@@ -5,7 +5,7 @@ use glam::DVec2;
 use image::RgbImage;
 use reality_sim_core::filter::{Purpose, Stream};
 
-use crate::{blur::weights, chain::Chain, light_tile::LightTile, sharpening::RADIUS_PX};
+use crate::{blur::weights, chain::Chain, light_tile::LightTile, noise::noise_stream, sharpening::RADIUS_PX};
 
 /// Number of linear values that are encoded in advance; their square roots are evenly spaced, and values between them are
 /// interpolated to a hundredth of a grey level.
@@ -71,7 +71,7 @@ impl Development {
         let stream = Stream::new(0, Purpose::Picture, 0, 0);
         let normals = (0..NORMALS as u32 / 4).flat_map(|index| stream.normals(index).into_iter().take(4));
         Self {
-            linear: (0..=u8::MAX).map(|value| chain.linear_of(f64::from(value) / 255.0) as f32).collect(),
+            linear: chain.linear_values(),
             encoded: (0..LEVELS).map(|index| encode(level(index)) as f32).collect(),
             falloff: if falloff.iter().all(|share| *share == 1.0) { Vec::new() } else { falloff },
             reach_px: longest - 1 + mask.len().saturating_sub(1),
@@ -150,16 +150,7 @@ impl Development {
         if !self.mask.is_empty() {
             self.sharpen(tile, &recorded, &mut values);
         }
-        let pixels = values.iter().zip(&recorded).enumerate();
-        pixels
-            .map(|(index, (value, color))| {
-                if self.mask.is_empty() && !tile.is_touched(index, LEAST_SHARE) {
-                    *color
-                } else {
-                    value.map(rounded)
-                }
-            })
-            .collect()
+        values.into_iter().map(|value| value.map(rounded)).collect()
     }
 
     /// Darkens the light by the lens's falloff and blurs it.
@@ -185,10 +176,8 @@ impl Development {
     }
 
     fn blur_at(&self, pixel: DVec2) -> &[f32] {
-        let camera = self.chain.camera();
         let last = self.blurs.len() - 1;
-        let radius = pixel.distance(DVec2::new(camera.cx, camera.cy)) / half_diagonal_px(&self.chain);
-        let index = (radius / FARTHEST_RADIUS * last as f64).round() as usize;
+        let index = (self.chain.radius(pixel) / FARTHEST_RADIUS * last as f64).round() as usize;
         &self.blurs[index.min(last)]
     }
 
@@ -216,13 +205,12 @@ impl Development {
     /// Returns the standard deviation of the noise that a linear value lacks, of which a recorded one makes up this part.
     fn missing_noise(&self, linear: f32, recorded: f32, part: f32) -> f32 {
         let noise = self.chain.noise();
-        let variance = |value: f32| noise.shot as f32 * value.max(0.0) + noise.read_variance as f32;
+        let variance = |value: f32| noise.variance(f64::from(value)) as f32;
         (variance(linear) - part * part * variance(recorded)).max(0.0).sqrt()
     }
 
     fn noise_of_row(&self, seed: u64, time_s: f64, v: usize, left: usize) -> impl Iterator<Item = f32> {
-        let bits = time_s.to_bits();
-        let stream = Stream::new(seed, Purpose::Picture, (bits ^ (bits >> 32)) as u32, 1);
+        let stream = noise_stream(seed, time_s, 1);
         let first = stream.words(v as u32, 0)[0] as usize + 3 * left;
         (first..).map(|index| self.normals[index % NORMALS])
     }
@@ -266,18 +254,10 @@ fn recorded(tile: &LightTile, picture: &RgbImage) -> Vec<[u8; 3]> {
     rows.flat_map(|first| colors[first..first + tile.width].iter().copied()).collect()
 }
 
-fn half_diagonal_px(chain: &Chain) -> f64 {
-    let camera = chain.camera();
-    (0.5 * f64::from(camera.width - 1).hypot(f64::from(camera.height - 1))).max(0.5)
-}
-
 /// Returns the blur at distances from the principal point, from 0 to [`FARTHEST_RADIUS`].
 fn blurs(chain: &Chain) -> Vec<Vec<f32>> {
-    let camera = chain.camera();
-    let variance_px2 = |index: usize| {
-        let radius = FARTHEST_RADIUS * index as f64 / (RADII - 1) as f64;
-        chain.psf_variance_px2(DVec2::new(camera.cx + radius * half_diagonal_px(chain), camera.cy))
-    };
+    let variance_px2 =
+        |index: usize| chain.psf_variance_at_radius_px2(FARTHEST_RADIUS * index as f64 / (RADII - 1) as f64);
     let variances: Vec<f64> = (0..RADII).map(variance_px2).collect();
     let count = if variances.iter().all(|variance| *variance == variances[0]) { 1 } else { RADII };
     variances[..count].iter().map(|variance| short(weights(*variance))).collect()

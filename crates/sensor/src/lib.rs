@@ -76,7 +76,7 @@ mod trajectory;
 
 pub use self::{
     chain::{Chain, sampled_variance_px2},
-    colors::SceneColors,
+    colors::{SceneColors, linear_from_srgb},
     corrected::{Corrected, CorrectionError, sampled_sigma_px},
     development::{Development, Exposure},
     effect::{About, Changes, Covariate, Effect, Estimates, Growth, Need, Opposite, Parameter, Role, Stage},

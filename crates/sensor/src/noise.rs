@@ -1,5 +1,7 @@
 //! Noise of the sensor.
 
+use reality_sim_core::filter::{Purpose, Stream};
+
 /// Poisson–Gaussian noise of a linear value `v`: its variance is `shot · v + read_variance` (Foi et al., "Practical
 /// Poissonian-Gaussian noise modeling and fitting for single-image raw-data", TIP 2008).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -15,4 +17,11 @@ impl Noise {
     pub fn variance(self, linear: f64) -> f64 {
         self.shot * linear.max(0.0) + self.read_variance
     }
+}
+
+/// Returns the random numbers of the noise of the picture with this timestamp, seconds: pictures at different times have different
+/// noise. `kind` tells uses of one picture apart.
+pub(crate) fn noise_stream(seed: u64, time_s: f64, kind: u32) -> Stream {
+    let bits = time_s.to_bits();
+    Stream::new(seed, Purpose::Picture, (bits ^ (bits >> 32)) as u32, kind)
 }

@@ -4,12 +4,9 @@
 use glam::{DVec2, Vec3};
 use image::{Rgb, RgbImage};
 use rayon::prelude::*;
-use reality_sim_core::{
-    filter::{Purpose, Stream},
-    pose::CameraPose,
-};
+use reality_sim_core::pose::CameraPose;
 
-use crate::{Chain, blur::blurred, light::Light, sharpening::sharpened};
+use crate::{Chain, blur::blurred, light::Light, noise::noise_stream, sharpening::sharpened};
 
 /// Places at which two cameras are compared, as fractions of the picture's size.
 const COMPARED: [[f64; 2]; 4] = [[0.5, 0.5], [0.0, 0.0], [0.9, 0.1], [0.3, 0.8]];
@@ -59,8 +56,7 @@ impl Redevelopment<'_> {
         // The mean light has the first camera's share already.
         let [recorded_share, other_share] = [self.recorded, self.other].map(Chain::glare);
         let light = light.veiled(((other_share - recorded_share) / (1.0 + recorded_share)) as f32);
-        let bits = time_s.to_bits();
-        let stream = Stream::new(seed, Purpose::Picture, (bits ^ (bits >> 32)) as u32, 0);
+        let stream = noise_stream(seed, time_s, 0);
         let mut made = RgbImage::new(width, height);
         let rows: Vec<Vec<Rgb<u8>>> = light
             .rows()
@@ -85,8 +81,7 @@ impl Redevelopment<'_> {
 
     /// Returns the light of which the first camera recorded a picture.
     fn light_of(&self, picture: &RgbImage) -> Light {
-        let table: Vec<f32> =
-            (0..=u8::MAX).map(|value| self.recorded.linear_of(f64::from(value) / 255.0) as f32).collect();
+        let table = self.recorded.linear_values();
         let mut light = Light::dark([picture.width(), picture.height()]);
         light.rows_mut().enumerate().for_each(|(v, row)| {
             for (u, light) in row.iter_mut().enumerate() {

@@ -1,9 +1,9 @@
 //! Conversion from light to the sensor's linear output.
 
 use glam::Vec3;
-use reality_sim_core::filter::{Purpose, Stream};
+use reality_sim_core::filter::Stream;
 
-use crate::Chain;
+use crate::{Chain, noise::noise_stream};
 
 /// Sensor while one picture is taken.
 #[derive(Debug)]
@@ -18,9 +18,7 @@ impl<'a> Sensor<'a> {
     /// Prepares one picture; pictures of the same seed and different times have different noise.
     pub(crate) fn new(chain: &'a Chain, time_s: f64, noise_seed: Option<u64>) -> Self {
         let gain = Vec3::from_array(chain.gain(time_s).map(|gain| gain as f32));
-        let bits = time_s.to_bits();
-        let frame = (bits ^ (bits >> 32)) as u32;
-        let noise = noise_seed.map(|seed| Stream::new(seed, Purpose::Picture, frame, 0));
+        let noise = noise_seed.map(|seed| noise_stream(seed, time_s, 0));
         Self { chain, gain, noise }
     }
 

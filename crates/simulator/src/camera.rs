@@ -112,6 +112,7 @@ impl Camera {
         }
         let provenance = self.synthesizer.image_into(pose, &self.method, &mut frame.picture)?;
         frame.pose = pose;
+        frame.covered = provenance.covered();
         frame.used = provenance.used;
         frame.origins = provenance.origins;
         self.add(pose, layers, frame);

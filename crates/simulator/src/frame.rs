@@ -17,6 +17,8 @@ pub struct Frame {
     pub used: Vec<UsedImage>,
     /// Source in `used` and trust of every pixel of the scene, row by row.
     pub origins: Vec<Origin>,
+    /// Share of the pixels that some recorded image shows, see [`reality_sim_synthesis::Reconstruction::covered`].
+    pub covered: f64,
     /// Objects of all layers, in the order of the layers.
     pub objects: Vec<SeenObject>,
     /// What each pixel shows, row by row: a place in `objects`, or [`crate::NO_OBJECT`]. A pixel half of which or more is covered by

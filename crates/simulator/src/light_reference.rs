@@ -87,8 +87,7 @@ fn read(archive: &Archive, image: u32, picture: &Picture, chain: &Chain, values:
     let steps = (half / SPACING_M).floor().as_ivec2();
     let middle = DVec2::new(camera.cx, camera.cy);
     let farthest_px = LARGEST_RADIUS * 0.5 * f64::from(camera.width).hypot(f64::from(camera.height));
-    let table: Vec<f32> =
-        (0..=u8::MAX).map(|value| chain.linear_of(f64::from(value) / 255.0) as f32).collect();
+    let table = chain.linear_values();
     for (x, y) in (-steps.x..=steps.x).flat_map(|x| (-steps.y..=steps.y).map(move |y| (x, y))) {
         let point = SPACING_M * DVec2::new(x.into(), y.into());
         let Some(surface) = surfaces.at(point) else { continue };

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use image::RgbImage;
-use reality_sim_core::pose::CameraPose;
+use reality_sim_core::{pose::CameraPose, statistics::median};
 use reality_sim_sensor::{Development, Surface};
 
 use crate::{
@@ -54,13 +54,11 @@ impl SceneLight<'_> {
         let places =
             angles.flat_map(|angle_rad| RING_RADII_M.map(|radius| radius * DVec2::from_angle(angle_rad)));
         let ratios = places.filter_map(|offset| self.ratio(picture, point_in_world + offset));
-        let mut ratios: Vec<f32> = ratios.collect();
+        let ratios: Vec<f64> = ratios.map(f64::from).collect();
         if ratios.len() < LEAST_PLACES {
             return usual;
         }
-        let middle = ratios.len() / 2;
-        let (_, median, _) = ratios.select_nth_unstable_by(middle, f32::total_cmp);
-        usual.scaled(median.clamp(PLAUSIBLE[0], PLAUSIBLE[1]).powf(BELIEVED))
+        usual.scaled((median(ratios) as f32).clamp(PLAUSIBLE[0], PLAUSIBLE[1]).powf(BELIEVED))
     }
 
     /// Returns how bright the picture shows a point of the ground, against its usual brightness.

@@ -93,7 +93,6 @@ pub fn records(
     let if_wanted = |part| folder.has(part).then(|| folder.name(part, picture));
     let nearest_px = frame.used.iter().map(|used| used.distance_px).reduce(f64::min);
     let seen = frame.origins.iter().filter(|origin| origin.source != Origin::OUTSIDE).count().max(1);
-    let recorded = frame.origins.iter().filter(|origin| origin.is_recorded()).count();
     let trust: u64 = frame.labels.trust.iter().map(|trust| u64::from(*trust)).sum();
     let record = ImageRecord {
         id: picture,
@@ -109,7 +108,7 @@ pub fn records(
         database: name_of(args),
         seed: args.seed,
         method: args.method.name(),
-        covered: to_thousandths(recorded as f64 / seen as f64),
+        covered: to_thousandths(frame.covered),
         trust_mean: to_thousandths(trust as f64 / (f64::from(u8::MAX) * seen as f64)),
         nearest_px: nearest_px.map(to_thousandths),
         lines: lines(&frame.labels),

@@ -8,6 +8,7 @@ use image::RgbImage;
 use reality_sim::{
     StampedPose, Synthesizer,
     pose::FARTHEST_M,
+    sensor::linear_from_srgb,
     simulator::{Ball, Camera, Layer},
     synthesis::MethodKind,
 };
@@ -74,10 +75,7 @@ fn hexadecimal(text: &str) -> Option<u32> {
 /// Returns the reflectance of what has this colour, sRGB, in white light as bright as full white.
 fn reflectance(srgb: u32) -> Vec3 {
     let [_, red, green, blue] = srgb.to_be_bytes();
-    Vec3::from_array([red, green, blue].map(|value| {
-        let value = f32::from(value) / 255.0;
-        if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
-    }))
+    Vec3::from_array([red, green, blue].map(linear_from_srgb))
 }
 
 /// Adds balls to pictures.

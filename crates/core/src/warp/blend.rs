@@ -24,6 +24,9 @@ use super::{
 };
 use crate::camera::{KernelCamera, LANES, Lanes, Pixels};
 
+/// Rows of a picture that one task draws.
+const BAND_ROWS: usize = 8;
+
 /// A recorded picture with its camera and pose.
 #[derive(Debug, Clone, Copy)]
 pub struct Source<'a> {
@@ -85,14 +88,30 @@ pub fn blend_into(
     weights: &BlendWeights,
     colors: &mut [[u8; 3]],
 ) -> Vec<Origin> {
+    draw_bands(target, sources, colors, BAND_ROWS, |sources, top, colors, origins| {
+        let width = target.rays.width as usize;
+        let rows = colors.chunks_mut(width).zip(origins.chunks_mut(width)).enumerate();
+        for (row, (colors, origins)) in rows {
+            blend_row(target, sources, weights, target.rays.row(top + row), colors, origins);
+        }
+    })
+}
+
+/// Draws a picture by bands of this many rows, each of them by `draw` from at most [`MAX_SOURCES`] sources, given its first row;
+/// returns the origin of each pixel.
+pub(crate) fn draw_bands(
+    target: &Target,
+    sources: &[Source],
+    colors: &mut [[u8; 3]],
+    rows: usize,
+    draw: impl Fn(&[Source], usize, &mut [[u8; 3]], &mut [Origin]) + Sync,
+) -> Vec<Origin> {
     assert_eq!(colors.len(), target.rays.pixels(), "one colour for every pixel");
-    let width = target.rays.width as usize;
     let sources = &sources[..sources.len().min(MAX_SOURCES)];
     let mut origins = vec![Origin { source: Origin::NOWHERE, trust: 0 }; colors.len()];
-    let rows = colors.par_chunks_mut(width).zip(origins.par_chunks_mut(width)).enumerate();
-    rows.with_min_len(8).for_each(|(row, (colors, origins))| {
-        blend_row(target, sources, weights, target.rays.row(row), colors, origins);
-    });
+    let band = rows * target.rays.width as usize;
+    let bands = colors.par_chunks_mut(band).zip(origins.par_chunks_mut(band)).enumerate();
+    bands.for_each(|(number, (colors, origins))| draw(sources, number * rows, colors, origins));
     complete(target.rays, colors, &mut origins);
     origins
 }
@@ -131,12 +150,7 @@ pub(crate) fn form(
     points: &ProxyPoints,
 ) -> bool {
     let Some(pixels) = see(source.camera, &source.placement, points) else { return false };
-    let penalty = penalties(target, source, weights, points, &pixels.nearness);
-    let unhidden = unhidden(target.proxy, &source.placement, points);
-    let mut prior = weigh(source, weights, &pixels, &penalty);
-    for i in 0..LANES {
-        prior[i] *= unhidden[i];
-    }
+    let prior = view_weight(target, source, weights, points, &pixels);
     say(opinion, source, &sample(source.picture, &pixels), &prior);
     true
 }
@@ -151,7 +165,7 @@ pub(crate) fn say(opinion: &mut Opinion, source: &Source, samples: &Samples, pri
         }
     }
     for i in 0..LANES {
-        opinion.prior[i] = prior[i] * samples.shown[i];
+        opinion.prior[i] = if samples.shown[i] > 0.0 { prior[i] } else { 0.0 };
     }
 }
 
@@ -224,6 +238,7 @@ pub fn costs(target: &Target, source: &Source, weights: &BlendWeights) -> Vec<f3
 }
 
 /// Returns the weight of a source at points, 0 where a goal hides them.
+#[inline(always)]
 fn view_weight(
     target: &Target,
     source: &Source,
@@ -235,7 +250,7 @@ fn view_weight(
     let mut weight = weigh(source, weights, pixels, &penalty);
     let unhidden = unhidden(target.proxy, &source.placement, points);
     for i in 0..LANES {
-        weight[i] *= unhidden[i];
+        weight[i] = if unhidden[i] > 0.0 { weight[i] } else { 0.0 };
     }
     weight
 }

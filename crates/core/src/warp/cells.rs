@@ -5,11 +5,9 @@
 //! enough; where it is not, and wherever an edge may cross a cell, every pixel is computed as in [`super::blend`], of which
 //! this is a faster form.
 
-use rayon::prelude::*;
-
 use super::{
     BlendWeights, MAX_SOURCES, Source, Target,
-    blend::{complete, form, say, weigh},
+    blend::{draw_bands, form, say, weigh},
     kernel::{ProxyPoints, proxy_points},
     mix::{Opinions, SETTLED},
     origin::Origin,
@@ -36,21 +34,13 @@ pub fn blend_cells_into(
     weights: &BlendWeights,
     colors: &mut [[u8; 3]],
 ) -> Vec<Origin> {
-    assert_eq!(colors.len(), target.rays.pixels(), "one colour for every pixel");
-    let width = target.rays.width as usize;
-    let sources = &sources[..sources.len().min(MAX_SOURCES)];
-    let mut origins = vec![Origin { source: Origin::NOWHERE, trust: 0 }; colors.len()];
-    let band = CELL * width.max(1);
-    let bands = colors.par_chunks_mut(band).zip(origins.par_chunks_mut(band)).enumerate();
-    bands.with_max_len(1).for_each(|(band, (colors, origins))| {
-        blend_band(target, sources, weights, band * CELL, colors, origins);
-    });
-    complete(target.rays, colors, &mut origins);
-    origins
+    draw_bands(target, sources, colors, CELL, |sources, top, colors, origins| {
+        blend_band(target, sources, weights, top, colors, origins);
+    })
 }
 
 /// Draws a row of cells whose first row of pixels is `top`.
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2+fma"))]
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 fn blend_band(
     target: &Target,
     sources: &[Source],
