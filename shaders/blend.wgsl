@@ -57,6 +57,7 @@ struct Source {
 @group(0) @binding(4) var<storage, read_write> warped: array<vec2<u32>>;
 
 const NOWHERE: u32 = 255u;
+const OUTSIDE: u32 = 254u;
 const LANES: u32 = 16u;
 
 /// Colour and weight that a source gives to a pixel.
@@ -197,7 +198,7 @@ fn blend(
     }
     let in_camera = ray(index % drawing.width, index / drawing.width);
     if all(in_camera == vec3<f32>(0.0)) {
-        warped[index] = vec2<u32>(NOWHERE << 24u, 0u);
+        warped[index] = vec2<u32>(OUTSIDE << 24u, 0u);
         return;
     }
     warped[index] = mixed(proxy_point(drawing.eye, in_camera));

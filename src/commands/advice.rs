@@ -77,7 +77,9 @@ impl Remedied for SynthesisError {
         match self {
             Self::Database(error) => error.remedy(),
             Self::Backend(error) => error.remedy(),
-            Self::Empty { .. } => Some("`reality-sim build RECORDING --out DATABASE`"),
+            Self::Empty { .. } | Self::NoCleanStage { .. } => {
+                Some("`reality-sim build RECORDING --out DATABASE`")
+            }
             Self::NoNeighbours { reason: NoNeighbours::OutOfReach { .. }, .. }
             | Self::TooLittleSeen { .. } => Some("`--best-effort`"),
             Self::OtherSize { .. } | Self::TooFewPoints { .. } => {

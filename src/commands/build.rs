@@ -9,7 +9,7 @@ use serde::Serialize;
 use reality_sim::{
     Sequence,
     db::IngestReport,
-    pipeline::{Event, PipelineError, Plan, PoseChoice},
+    pipeline::{CleanStageSummary, Event, PipelineError, Plan, PoseChoice},
     sequence::counted,
     warp::Hall,
 };
@@ -53,6 +53,9 @@ pub struct BuildArgs {
     /// Do not measure the walls and the ceiling of the hall
     #[arg(long)]
     no_hall: bool,
+    /// Do not look for the people, robots and balls that stood on the carpet: pictures without them cannot be made
+    #[arg(long)]
+    no_clean: bool,
     /// Print the report as one JSON object
     #[arg(long)]
     json: bool,
@@ -67,6 +70,9 @@ struct Report {
     /// The hall, if it was measured in this run.
     #[serde(skip_serializing_if = "Option::is_none")]
     hall: Option<HallReport>,
+    /// The clean stage, if it was found in this run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clean: Option<CleanReport>,
     /// What of the model was used.
     #[serde(skip_serializing_if = "Option::is_none")]
     corrections: Option<String>,
@@ -81,6 +87,15 @@ struct HallReport {
     max_y_m: f64,
     ceiling_m: f64,
     goal_depth_m: f64,
+}
+
+/// What was found on the carpet.
+#[derive(Serialize)]
+struct CleanReport {
+    /// Number of images that show something on the carpet.
+    masked_images: usize,
+    /// Share of the carpet that no image shows empty.
+    unknown_share: f64,
 }
 
 #[derive(Serialize)]
@@ -138,6 +153,9 @@ pub fn run(args: &BuildArgs) -> anyhow::Result<()> {
                 report.sequences.push(SequenceReport::new(name, sources[recording], ingested, seconds));
             }
             Event::HallStarted => progress.finish(),
+            Event::CleanStageStarted { images } => progress.begin(images)?,
+            Event::Cleaned { done, .. } => progress.set(done),
+            Event::CleanStageFound(found) => report.clean = Some(CleanReport::new(found)),
             Event::Completed { images, hall } => {
                 (report.images, report.hall) = (images, hall.as_ref().map(HallReport::new));
             }
@@ -160,6 +178,7 @@ impl BuildArgs {
             .with_filter(filter)
             .with_database(&self.out)
             .with_hall(!self.no_hall)
+            .with_clean_stage(!self.no_clean)
     }
 }
 
@@ -196,6 +215,13 @@ impl HallReport {
     }
 }
 
+impl CleanReport {
+    fn new(found: CleanStageSummary) -> Self {
+        let CleanStageSummary { masked_images, unknown_share } = found;
+        Self { masked_images, unknown_share }
+    }
+}
+
 impl Report {
     fn text(&self) -> String {
         let mut lines = Vec::new();
@@ -227,6 +253,14 @@ impl Report {
             lines.push((
                 "hall",
                 format!("x {min_x_m:.1} to {max_x_m:.1} m, y {min_y_m:.1} to {max_y_m:.1} m, ceiling {ceiling_m:.1} m"),
+            ));
+        }
+        if let Some(CleanReport { masked_images, unknown_share }) = &self.clean {
+            let masked = counted(*masked_images, "picture");
+            let seen = 100.0 * (1.0 - unknown_share);
+            lines.push((
+                "clean",
+                format!("things on the carpet in {masked}; {seen:.0} % of the carpet were seen empty"),
             ));
         }
         lines.extend(self.corrections.iter().map(|corrections| ("camera", corrections.clone())));

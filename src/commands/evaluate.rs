@@ -52,6 +52,8 @@ struct Report {
     probes_in_database: usize,
     /// Number of images of the field that pictures are made from.
     images: usize,
+    /// Whether what stood there while the images were recorded was left out.
+    clean: bool,
     /// Results by method.
     methods: BTreeMap<&'static str, MethodReport>,
     /// What of the model was used.
@@ -192,6 +194,7 @@ impl Report {
                 .filter(|probe| probe.distance_px.is_some_and(|px| px < 1e-3))
                 .count(),
             images: archive.images().len(),
+            clean: args.synthesis.is_clean(),
             methods: names().map(|name| (name, MethodReport::new(name, results))).collect(),
             corrections: None,
         }

@@ -4,7 +4,9 @@ use std::{path::Path, sync::Arc};
 
 use clap::Args;
 
-use reality_sim::{Archive, Camera, Synthesizer, synthesis::SynthesisConfig, warp::MAX_SOURCES};
+use reality_sim::{
+    Archive, Camera, SynthesisError, Synthesizer, synthesis::SynthesisConfig, warp::MAX_SOURCES,
+};
 
 use super::{device::BackendArgs, model_file::ModelFile};
 
@@ -17,6 +19,9 @@ pub struct SynthesisArgs {
     /// Make a picture however far away the nearest recorded one is
     #[arg(long)]
     best_effort: bool,
+    /// Leave out the people, robots and balls that stood there while the pictures were recorded
+    #[arg(long)]
+    clean: bool,
     /// Memory for decoded pictures, MiB
     #[arg(long, default_value_t = 1024, value_name = "MIB")]
     cache: u32,
@@ -35,9 +40,17 @@ impl SynthesisArgs {
         self.best_effort
     }
 
+    /// Returns whether what stood there is left out.
+    pub fn is_clean(&self) -> bool {
+        self.clean
+    }
+
     /// Opens a database, and evens out the light of its pictures by the model, if there is one.
     pub fn archive(&self, database: &Path, model: Option<&ModelFile>) -> anyhow::Result<Arc<Archive>> {
         let archive = Archive::open(database, (self.cache as usize) << 20)?;
+        if self.clean && !archive.has_clean_stage() {
+            return Err(SynthesisError::NoCleanStage { database: database.display().to_string() }.into());
+        }
         Ok(Arc::new(match model {
             Some(model) => model.light(archive, database)?,
             None => archive,
@@ -52,6 +65,6 @@ impl SynthesisArgs {
             config = config.best_effort();
         }
         let warper = self.backend.device()?.backend.warper()?;
-        Ok(Synthesizer::with(archive, camera, warper, config))
+        Ok(Synthesizer::with(archive, camera, warper, config).with_clean(self.clean))
     }
 }

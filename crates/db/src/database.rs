@@ -192,7 +192,10 @@ impl Database {
     }
 
     /// Runs queries that all see the same state of the database.
-    fn read<T>(&self, work: impl FnOnce(&Transaction<'_>) -> Result<T, DbFault>) -> Result<T, DbError> {
+    pub(crate) fn read<T>(
+        &self,
+        work: impl FnOnce(&Transaction<'_>) -> Result<T, DbFault>,
+    ) -> Result<T, DbError> {
         let connection = self.connection.lock().unwrap_or_else(PoisonError::into_inner);
         self.work_limit.renew();
         let transaction =
@@ -220,7 +223,7 @@ impl Database {
     }
 
     /// Name of a part of the database in errors.
-    fn origin(&self, what: &str, id: i64) -> PathBuf {
+    pub(crate) fn origin(&self, what: &str, id: i64) -> PathBuf {
         let mut origin = self.path.clone().into_os_string();
         origin.push(format!(", {what} {id}"));
         origin.into()

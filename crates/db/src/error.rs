@@ -101,6 +101,12 @@ pub enum DbFault {
         /// What is wrong with it.
         problem: &'static str,
     },
+    /// A picture cannot be encoded.
+    #[error("a picture cannot be encoded ({}): report this fault", one_line(.source))]
+    Encoding {
+        /// Error of the encoder.
+        source: Box<dyn Error + Send + Sync>,
+    },
     /// Another program or thread holds a lock for too long.
     #[error("is locked by another program that writes or reads it: wait until that is done, then try again")]
     Locked,
@@ -219,6 +225,12 @@ impl From<rusqlite::Error> for DbFault {
             // The tables are this program's own: contents that do not fit them are damage.
             _ => Self::Damaged { source: error.into() },
         }
+    }
+}
+
+impl From<image::ImageError> for DbFault {
+    fn from(error: image::ImageError) -> Self {
+        Self::Encoding { source: error.into() }
     }
 }
 

@@ -9,6 +9,7 @@ use reality_sim_core::{
 use rusqlite::{OptionalExtension, Row, Transaction, params};
 
 use crate::{
+    clean_stage::forget_clean_stage,
     error::{DbError, DbFault},
     record::{covariance_bytes, pose_from_row},
     recording::{Insertion, NewImage, Recording},
@@ -133,7 +134,7 @@ fn replace(transaction: &Transaction<'_>, shared: &Shared, id: i64, bytes: &[u8]
     store_bytes(transaction, shared, id, bytes)
 }
 
-/// Stores the bytes of a picture. The hall around its field was measured without it, and is forgotten.
+/// Stores the bytes of a picture. Hall and clean stage of its field were found without it, and are forgotten.
 fn store_bytes(
     transaction: &Transaction<'_>,
     shared: &Shared,
@@ -144,6 +145,7 @@ fn store_bytes(
         "INSERT OR REPLACE INTO image_bytes (image_id, bytes) VALUES (?1, ?2)",
         params![id, bytes],
     )?;
+    forget_clean_stage(transaction, shared.field_id)?;
     transaction.execute("DELETE FROM halls WHERE field_id = ?1", [shared.field_id]).map(drop)
 }
 

@@ -6,6 +6,7 @@
 //! | [`Recording`], [`NewImage`] | an image to be stored, and what it shares with others |
 //! | [`ImageRecord`] | an image without its pixels: pose, covariance, time, camera, field |
 //! | [`PoseEstimate`], [`PoseSource`] | a pose to be stored, and where poses come from |
+//! | [`Ground`], [`ImageMask`] | the clean stage: the carpet without what stood on it, and where images show such things |
 //! | [`metric::PixelMetric`] | distance between two poses: how far the picture moves between them, pixels |
 //! | [`index::PoseIndex`] | images by pose: nearest and natural neighbours |
 //! | [`coverage::Coverage`] | which parts of the field were recorded, in which directions |
@@ -40,12 +41,16 @@
 //! # }
 //! ```
 
+mod clean_stage;
 pub mod coverage;
 mod database;
 mod error;
+mod ground;
+mod image_mask;
 pub mod index;
 mod ingest;
 mod insert;
+mod leb128;
 pub mod metric;
 mod record;
 mod recording;
@@ -56,6 +61,8 @@ mod work_limit;
 pub use self::{
     database::Database,
     error::{DbError, DbFault},
+    ground::Ground,
+    image_mask::ImageMask,
     ingest::IngestReport,
     record::{ImageRecord, PoseEstimate, PoseSource},
     recording::{Insertion, NewImage, Recording},

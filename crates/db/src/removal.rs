@@ -5,6 +5,7 @@ use std::ops::Range;
 use rusqlite::{Transaction, params};
 
 use crate::{
+    clean_stage::forget_clean_stage,
     database::Database,
     error::{DbError, DbFault},
 };
@@ -21,7 +22,7 @@ impl Database {
     /// Removes the images of the recordings of this name whose frames, counted from 0, are in the range, and returns their
     /// number. All are removed, or, after an error, none. Fails if no recording has this name.
     ///
-    /// The halls around their fields were measured with them, and are forgotten. The file keeps its length; what is added
+    /// Halls and clean stages of their fields were found with them, and are forgotten. The file keeps its length; what is added
     /// next uses the space.
     pub fn remove(&mut self, sequence: &str, frames: Range<usize>) -> Result<usize, DbError> {
         self.write(|transaction| remove(transaction, sequence, &frames))
@@ -39,6 +40,12 @@ fn remove(transaction: &Transaction<'_>, sequence: &str, frames: &Range<usize>) 
         WHERE sequences.name = ?1 AND frame_index >= ?2 AND frame_index < ?3";
     let bound = |frame: usize| i64::try_from(frame).unwrap_or(i64::MAX);
     let values = params![sequence, bound(frames.start), bound(frames.end)];
+    let fields = format!("SELECT DISTINCT field_id FROM images WHERE id IN ({chosen})");
+    let fields: Vec<i64> = transaction
+        .prepare(&fields)?
+        .query_map(values, |row| row.get(0))?
+        .collect::<rusqlite::Result<_>>()?;
+    fields.iter().try_for_each(|field_id| forget_clean_stage(transaction, *field_id))?;
     transaction.execute(
         &format!("DELETE FROM halls WHERE field_id IN (SELECT field_id FROM images WHERE id IN ({chosen}))"),
         values,

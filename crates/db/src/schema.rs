@@ -14,7 +14,13 @@ pub const SCHEMA_VERSION: i64 = STEPS.len() as i64;
 
 /// Migration steps: the statements at `STEPS[n]` turn a database of version n into one of version n + 1. A released step
 /// is never changed; another one is added.
-const STEPS: [&str; 1] = [VERSION_1];
+const STEPS: [&str; 2] = [VERSION_1, VERSION_2];
+
+/// Oldest version that can be read without bringing it to the newest one.
+const OLDEST_READ: i64 = 1;
+
+/// Version from which on there are tables of the clean stage.
+pub(crate) const CLEAN_STAGE_VERSION: i64 = 2;
 
 /// The bytes are in a separate table, so that reading all poses does not touch them.
 const VERSION_1: &str = "
@@ -66,7 +72,27 @@ const VERSION_1: &str = "
     ) STRICT;
 ";
 
-/// Refuses a file that is not a complete database of this version. Changes nothing.
+/// Ground of fields, and masks of images.
+const VERSION_2: &str = "
+    CREATE TABLE grounds (
+        field_id INTEGER PRIMARY KEY REFERENCES fields,
+        min_x_m REAL NOT NULL,
+        min_y_m REAL NOT NULL,
+        cell_m REAL NOT NULL,
+        width INTEGER NOT NULL,
+        height INTEGER NOT NULL,
+        colors BLOB NOT NULL,
+        views BLOB NOT NULL
+    ) STRICT;
+    CREATE TABLE image_masks (
+        image_id INTEGER PRIMARY KEY REFERENCES images,
+        width INTEGER NOT NULL,
+        height INTEGER NOT NULL,
+        runs BLOB NOT NULL
+    ) STRICT;
+";
+
+/// Refuses a file that is not a complete database of a version that can be read. Changes nothing.
 pub(crate) fn check(connection: &Connection, path: &Path) -> Result<(), DbFault> {
     let transaction = connection.unchecked_transaction()?;
     if is_empty(&transaction)? {
@@ -78,18 +104,18 @@ pub(crate) fn check(connection: &Connection, path: &Path) -> Result<(), DbFault>
     check_length(&transaction, path)?;
     let found = version(&transaction)?;
     check_known(found, SCHEMA_VERSION)?;
-    if found < SCHEMA_VERSION {
+    if found < OLDEST_READ {
         return Err(DbFault::Older { found, known: SCHEMA_VERSION });
     }
-    check_parts(&transaction)
+    check_parts(&transaction, &STEPS[..found as usize])
 }
 
-/// Refuses a database in which a table is not as this program makes it, or that has views or triggers: a view in place of a
+/// Refuses a database in which a table is not as these steps make it, or that has views or triggers: a view in place of a
 /// table could run for ever, a trigger could change what is written. Tables beside its own are of no interest, with
 /// their indices; one on its own tables could compute anything whenever something is stored.
-fn check_parts(connection: &Connection) -> Result<(), DbFault> {
+fn check_parts(connection: &Connection, steps: &[&str]) -> Result<(), DbFault> {
     let own = Connection::open_in_memory()?;
-    STEPS.iter().try_for_each(|step| own.execute_batch(step))?;
+    steps.iter().try_for_each(|step| own.execute_batch(step))?;
     let (expected, mut found) = (parts(&own)?, parts(connection)?);
     for part in &expected {
         match found.iter().position(|other| other == part) {
@@ -129,7 +155,7 @@ fn parts(connection: &Connection) -> rusqlite::Result<Vec<Part>> {
 /// Turns an empty file into a database, and migrates one of an older version.
 pub(crate) fn prepare(connection: &mut Connection, path: &Path) -> Result<(), DbFault> {
     migrate(connection, path, &STEPS)?;
-    check_parts(connection)
+    check_parts(connection, &STEPS)
 }
 
 /// Runs the steps that a database has not had yet, all or none of them.

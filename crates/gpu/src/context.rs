@@ -124,6 +124,12 @@ impl GpuContext {
         Ok(Self { device, queue, adapter: summary, errors })
     }
 
+    /// Makes a context of a device that belongs to somebody else, such as a simulator that draws with it. Its owner is told of
+    /// errors that the device reports aside from calls; here they are not seen.
+    pub fn shared(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        Self { device, queue, adapter: summary(adapter), errors: Arc::default() }
+    }
+
     /// Returns the adapter in use.
     pub fn adapter(&self) -> &AdapterSummary {
         &self.adapter

@@ -49,6 +49,18 @@ pub enum GpuError {
         /// Largest number of columns or rows that the device allows.
         limit: u32,
     },
+    /// A texture cannot be drawn into.
+    #[error(
+        "a picture of {width} x {height} pixels cannot be drawn into a texture of {found}: make it with GpuWarper::texture, or in that size and the format Rgba8Unorm for use as STORAGE_BINDING"
+    )]
+    OtherTexture {
+        /// Number of columns of the picture.
+        width: u32,
+        /// Number of rows of the picture.
+        height: u32,
+        /// Size and format of the texture.
+        found: String,
+    },
     /// A picture does not have one word for every pixel.
     #[error("a picture of {width} x {height} pixels has {words} words: give it one for every pixel")]
     NotAPicture {

@@ -189,6 +189,18 @@ pub(crate) struct SourceLayout {
     padding: u32,
 }
 
+/// `Levels` in `shaders/shared/levels.wgsl`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LevelsLayout {
+    pub fine: [u32; 2],
+    pub coarse: [u32; 2],
+    pub first_fine: u32,
+    pub first_coarse: u32,
+    padding_0: u32,
+    padding_1: u32,
+}
+
 /// All sources of one picture.
 pub(crate) type SourcesLayout = [SourceLayout; MAX_SOURCES];
 
@@ -340,6 +352,24 @@ impl SourceLayout {
     }
 }
 
+impl LevelsLayout {
+    /// Describes a picture of this size and the first level.
+    pub fn first(size: [u32; 2]) -> Self {
+        let coarse = size.map(|pixels| pixels.div_ceil(2));
+        Self { fine: size, coarse, first_fine: 0, first_coarse: 0, padding_0: 0, padding_1: 0 }
+    }
+
+    /// Describes the coarser level and the one after it.
+    pub fn next(self) -> Self {
+        let [width, height] = self.coarse;
+        Self {
+            first_fine: self.first_coarse,
+            first_coarse: self.first_coarse + width * height,
+            ..Self::first(self.coarse)
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::mem::{offset_of, size_of};
@@ -395,5 +425,7 @@ mod tests {
             padding_0 padding_1 padding_2);
         assert_same_layout!(SourceLayout in "blend.wgsl" as "Source":
             camera placement gain size layer padding);
+        assert_same_layout!(LevelsLayout in "halved.wgsl" as "Levels":
+            fine coarse first_fine first_coarse padding_0 padding_1);
     }
 }

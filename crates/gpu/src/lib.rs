@@ -8,7 +8,7 @@
 //! | [`GpuBackend`] | an open device as a [`reality_sim_core::backend::Backend`] |
 //! | [`GpuScorer`] | log-weights of poses, given a picture |
 //! | [`GpuFilter`] | the particle filter, one submission per frame |
-//! | [`GpuWarper`] | a picture drawn from others |
+//! | [`GpuWarper`] | a picture drawn from others, read back or left on the device |
 //! | [`compare_scores`], [`compare_filters`], [`compare_warps`] | whether a device computes the same as the CPU |
 //! | [`GpuError`] | what is missing or has failed, and the remedy |
 //!
@@ -41,6 +41,7 @@ mod buffers;
 mod context;
 mod error;
 mod filter;
+mod finishing;
 mod kernel;
 mod layers;
 mod layout;
@@ -53,6 +54,9 @@ mod timing;
 mod twins;
 mod warp;
 mod warp_twins;
+
+// The crate whose types appear in public signatures.
+pub use wgpu;
 
 pub use self::{
     backend::GpuBackend,

@@ -11,7 +11,8 @@ use reality_sim_core::{
 use crate::{
     GpuContext, GpuError,
     buffers::{readback, storage, storage_of, uniform, write},
-    kernel::{Kernel, groups, run_steps},
+    finishing::{self, Finisher},
+    kernel::{BoundKernel, Kernel, groups, run_steps},
     layers::Layers,
     layout::{DrawingLayout, SourceLayout, SourcesLayout},
     recent::Recent,
@@ -46,6 +47,8 @@ struct Kept {
     layers: Layers,
     rays: Recent<Rays, wgpu::Buffer>,
     outputs: Outputs,
+    /// Made for the first picture that stays on the device.
+    finisher: Option<Finisher>,
 }
 
 /// Buffers for the pixels on their way back.
@@ -66,6 +69,7 @@ impl GpuWarper {
             layers: Layers::new(&context, [0, 0])?,
             rays: Recent::new(RAY_TABLES),
             outputs: Outputs::new(&context, 0)?,
+            finisher: None,
         };
         let warper = Self {
             kernels: [Lenses::Perspective, Lenses::Radial, Lenses::Mixed].map(kernel),
@@ -104,9 +108,62 @@ impl GpuWarper {
     ) -> Result<Vec<WarpedWords>, GpuError> {
         let context = &*self.context;
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let (kernel, groups) = self.prepared(&mut kept, target, sources, weights)?;
+        let outputs = &kept.outputs;
+        let bytes = (target.rays.pixels() * size_of::<WarpedWords>()) as u64;
+        context.submit(|encoder| {
+            run_steps(encoder, [(&kernel, groups)]);
+            encoder.copy_buffer_to_buffer(&outputs.warped, 0, &outputs.readback, 0, bytes);
+        });
+        context.read(&outputs.readback, bytes)
+    }
+
+    /// Creates a texture for [`GpuWarper::draw_into_texture`], in the format Rgba8Unorm: pictures are encoded as the recorded
+    /// ones are, and a view of it in the format Rgba8UnormSrgb gives shaders linear light.
+    pub fn texture(&self, size: [u32; 2]) -> Result<wgpu::Texture, GpuError> {
+        finishing::texture(&self.context, size)
+    }
+
+    /// Draws the picture that [`Warper::blend`] draws into a texture of the context's device, for a simulator that goes on with
+    /// it there: nothing is read back, and the call returns before the device has drawn. What the queue is given afterwards
+    /// sees the picture.
+    pub fn draw_into_texture(
+        &self,
+        target: &Target,
+        sources: &[Source],
+        weights: &BlendWeights,
+        texture: &wgpu::Texture,
+    ) -> Result<(), GpuError> {
+        let context = &*self.context;
+        let size = [target.rays.width, target.rays.height];
+        finishing::check(texture, size)?;
+        let sources = &sources[..sources.len().min(MAX_SOURCES)];
+        let view = texture.create_view(&wgpu::TextureViewDescriptor {
+            usage: Some(wgpu::TextureUsages::STORAGE_BINDING),
+            ..Default::default()
+        });
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let warp = self.prepared(&mut kept, target, sources, weights)?;
+        let Kept { outputs, finisher, .. } = &mut *kept;
+        let finisher = finisher.get_or_insert_with(|| Finisher::new(context));
+        let finish = finisher.steps(context, size, &outputs.warped, &view)?;
+        let steps = std::iter::once(&warp).chain(&finish);
+        context.submit(|encoder| run_steps(encoder, steps.map(|(kernel, groups)| (kernel, *groups))));
+        context.check()
+    }
+
+    /// Uploads what a picture needs, and returns the kernel that draws it, with its number of workgroups.
+    fn prepared(
+        &self,
+        kept: &mut Kept,
+        target: &Target,
+        sources: &[Source],
+        weights: &BlendWeights,
+    ) -> Result<(BoundKernel, [u32; 2]), GpuError> {
+        let context = &*self.context;
         let pixels = target.rays.pixels();
         kept.make_room(context, pixels, sources)?;
-        let Kept { layers, rays, outputs } = &mut *kept;
+        let Kept { layers, rays, outputs, .. } = kept;
         let mut layouts: SourcesLayout = bytemuck::Zeroable::zeroed();
         for (layout, source) in layouts.iter_mut().zip(sources) {
             *layout = SourceLayout::new(source, layers.layer(context, source.picture)?);
@@ -122,13 +179,7 @@ impl GpuWarper {
             (&outputs.warped).into(),
         ];
         let kernel = self.kernels[lenses(sources) as usize].bind_all(context, &bindings);
-        let groups = groups(context, (pixels as u32).div_ceil(THREADS));
-        let bytes = (pixels * size_of::<WarpedWords>()) as u64;
-        context.submit(|encoder| {
-            run_steps(encoder, [(&kernel, groups)]);
-            encoder.copy_buffer_to_buffer(&outputs.warped, 0, &outputs.readback, 0, bytes);
-        });
-        context.read(&outputs.readback, bytes)
+        Ok((kernel, groups(context, (pixels as u32).div_ceil(THREADS))))
     }
 }
 

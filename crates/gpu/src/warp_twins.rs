@@ -15,7 +15,7 @@ use reality_sim_core::{
     },
 };
 
-use crate::{GpuContext, GpuWarper};
+use crate::{GpuContext, GpuError, GpuWarper};
 
 /// Fraction of the pixels that may differ by more than one grey level, come from another source, or differ in trust by
 /// more than two. Rounding decides at the edges of goals, of the proxy geometry and of what a source sees, and between two
@@ -35,13 +35,17 @@ pub struct WarpComparison {
     pub other_source: usize,
     /// Number of pixels whose trust differs by more than two.
     pub other_trust: usize,
+    /// Number of pixels with a channel that differs by more than one grey level in the picture that stays on the device.
+    pub other_texel: usize,
 }
 
 impl WarpComparison {
     /// Whether both draw the same.
     pub fn agrees(&self) -> bool {
         let most = (WARP_TOLERANCE * self.pixels as f64) as usize;
-        let is_same = [self.other_color, self.other_source, self.other_trust].iter().all(|&off| off <= most);
+        let is_same = [self.other_color, self.other_source, self.other_trust, self.other_texel]
+            .iter()
+            .all(|&off| off <= most);
         is_same && 2 * self.seen > self.pixels
     }
 }
@@ -68,12 +72,27 @@ pub fn compare_warps(context: &Arc<GpuContext>, scenes: u64) -> Result<WarpCompa
         for (a, b) in found.colors.iter().zip(&expected.colors) {
             comparison.other_color += usize::from((0..3).any(|channel| a[channel].abs_diff(b[channel]) > 1));
         }
+        for (a, b) in texels(context, &warper, &target, &sources)?.iter().zip(&expected.colors) {
+            comparison.other_texel += usize::from((0..3).any(|channel| a[channel].abs_diff(b[channel]) > 1));
+        }
         for (a, b) in found.origins.iter().zip(&expected.origins) {
             comparison.other_source += usize::from(a.source != b.source);
             comparison.other_trust += usize::from(a.trust.abs_diff(b.trust) > 2);
         }
     }
     Ok(comparison)
+}
+
+/// Draws into a texture, and reads it back.
+fn texels(
+    context: &GpuContext,
+    warper: &GpuWarper,
+    target: &Target,
+    sources: &[Source],
+) -> Result<Vec<[u8; 4]>, GpuError> {
+    let texture = warper.texture([target.rays.width, target.rays.height])?;
+    warper.draw_into_texture(target, sources, &BlendWeights::default(), &texture)?;
+    context.read_texture(&texture)
 }
 
 /// Returns small cameras: one of every model, and one with an image circle.

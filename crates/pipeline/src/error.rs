@@ -26,7 +26,7 @@ pub enum PipelineError {
     /// The database cannot be written.
     #[error(transparent)]
     Database(#[from] DbError),
-    /// The hall cannot be measured.
+    /// The hall cannot be measured, or the clean stage not be found.
     #[error(transparent)]
     Hall(#[from] SynthesisError),
     /// A file of poses has none at the times of the pictures.

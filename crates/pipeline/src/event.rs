@@ -68,6 +68,20 @@ pub enum Event {
     },
     /// The hall is being measured.
     HallStarted,
+    /// The clean stage is being found in this many images.
+    CleanStageStarted {
+        /// Number of images.
+        images: usize,
+    },
+    /// Images have been searched for things that stood on the carpet.
+    Cleaned {
+        /// Number of images so far.
+        done: usize,
+        /// Number of images.
+        of: usize,
+    },
+    /// The clean stage is in the database.
+    CleanStageFound(CleanStageSummary),
     /// Everything is in the database.
     Completed {
         /// Number of images that the database now holds.
@@ -75,6 +89,15 @@ pub enum Event {
         /// The hall, if it was measured in this run.
         hall: Option<Hall>,
     },
+}
+
+/// Figures of a clean stage.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CleanStageSummary {
+    /// Number of images that show something on the carpet.
+    pub masked_images: usize,
+    /// Share of the carpet that no image shows empty.
+    pub unknown_share: f64,
 }
 
 /// Poses of a recording, and their source.

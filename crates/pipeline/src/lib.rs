@@ -1,4 +1,4 @@
-//! From recordings to a database: poses, smoothing, storage and the hall around the field, as one stream of events.
+//! From recordings to a database: poses, smoothing, storage, the hall around the field and the clean stage, as one stream of events.
 //!
 //! | type | purpose |
 //! |---|---|
@@ -38,7 +38,7 @@ mod storage;
 
 pub use self::{
     error::PipelineError,
-    event::{Event, FoundPoses},
+    event::{CleanStageSummary, Event, FoundPoses},
     pipeline::Pipeline,
     plan::{Device, FilterPlan, HoldBack, OpenDevice, Plan, PoseChoice},
 };

@@ -10,7 +10,7 @@ use crate::{
     outbox::{Outbox, Stop},
     plan::Plan,
     poses::PoseFinder,
-    storage::{store, store_hall},
+    storage::{store, store_clean_stage, store_hall},
 };
 
 /// Largest number of events that wait for the listener.
@@ -73,6 +73,10 @@ fn store_all(plan: &Plan, path: &Path, poses: &[FoundPoses], outbox: &Outbox) ->
     for field_id in fields {
         outbox.send(Event::HallStarted)?;
         hall = store_hall(path, &mut database, field_id)?.or(hall);
+    }
+    let fields = if plan.finds_clean_stage { database.fields_without_ground()? } else { Vec::new() };
+    for field_id in fields {
+        store_clean_stage(path, &mut database, field_id, outbox)?;
     }
     drop(database);
     outbox.send(Event::Completed { images, hall })

@@ -27,6 +27,8 @@ pub struct Plan {
     pub database: Option<PathBuf>,
     /// Whether the hall around the field is measured and stored.
     pub measures_hall: bool,
+    /// Whether the clean stage is found and stored: the carpet without the things that stood on it, and where pictures show these.
+    pub finds_clean_stage: bool,
     /// Frames that are not stored but kept for comparison.
     pub hold_back: Option<HoldBack>,
 }
@@ -84,7 +86,15 @@ impl Plan {
     pub fn new(recordings: impl IntoIterator<Item = Arc<Sequence>>, poses: PoseChoice) -> Self {
         let recordings = recordings.into_iter().collect();
         let filter = FilterPlan::default();
-        Self { recordings, poses, filter, database: None, measures_hall: true, hold_back: None }
+        Self {
+            recordings,
+            poses,
+            filter,
+            database: None,
+            measures_hall: true,
+            finds_clean_stage: true,
+            hold_back: None,
+        }
     }
 
     /// Sets the configuration of the filter.
@@ -100,6 +110,11 @@ impl Plan {
     /// Sets whether the hall is measured.
     pub fn with_hall(self, measures_hall: bool) -> Self {
         Self { measures_hall, ..self }
+    }
+
+    /// Sets whether the clean stage is found.
+    pub fn with_clean_stage(self, finds_clean_stage: bool) -> Self {
+        Self { finds_clean_stage, ..self }
     }
 
     /// Sets the rule for held-back frames.

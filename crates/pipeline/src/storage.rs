@@ -1,14 +1,18 @@
-//! Storage of recordings with their poses, and of the hall around them.
+//! Storage of recordings with their poses, of the hall around them and of the clean stage.
 
-use std::{path::Path, time::Instant};
+use std::{
+    path::Path,
+    sync::atomic::{AtomicBool, Ordering},
+    time::Instant,
+};
 
 use reality_sim_core::{sequence::Sequence, warp::Hall};
 use reality_sim_db::{Database, IngestReport};
-use reality_sim_synthesis::{Archive, measure_hall};
+use reality_sim_synthesis::{Archive, find_clean_stage, measure_hall};
 
 use crate::{
     error::PipelineError,
-    event::{Event, FoundPoses},
+    event::{CleanStageSummary, Event, FoundPoses},
     outbox::{Outbox, Stop},
 };
 
@@ -45,4 +49,31 @@ pub(crate) fn store_hall(
     let Some(hall) = measure_hall(&archive)? else { return Ok(None) };
     database.set_hall(field_id, &hall)?;
     Ok(Some(hall))
+}
+
+/// Finds and stores the clean stage of a field, if the images show it.
+pub(crate) fn store_clean_stage(
+    path: &Path,
+    database: &mut Database,
+    field_id: i64,
+    outbox: &Outbox,
+) -> Result<(), Stop> {
+    let archive = Archive::open_field(path, field_id, 0)?;
+    outbox.send(Event::CleanStageStarted { images: archive.images().len() })?;
+    let is_cancelled = AtomicBool::new(false);
+    let goes_on = |done: usize, of: usize| {
+        let is_wanted = outbox.send(Event::Cleaned { done, of }).is_ok();
+        is_cancelled.fetch_or(!is_wanted, Ordering::Relaxed);
+        is_wanted
+    };
+    let found = find_clean_stage(&archive, &goes_on)?;
+    if is_cancelled.into_inner() {
+        return Err(Stop::Cancelled);
+    }
+    let Some(found) = found else { return Ok(()) };
+    database.set_clean_stage(field_id, &found.ground, &found.masks)?;
+    outbox.send(Event::CleanStageFound(CleanStageSummary {
+        masked_images: found.masks.len(),
+        unknown_share: found.ground.unknown_share(),
+    }))
 }

@@ -15,11 +15,13 @@ use crate::{
     labels::{Labeler, Labels, Overlay},
     layer::Layer,
     layer_settings::LayerSettings,
+    path::Path,
     seen_object::NO_OBJECT,
 };
 
-/// Camera that a simulator moves over a recorded field. Clones share everything but their memory for drawing: give each thread
-/// one.
+/// Camera that a simulator moves over a recorded field. Where it moves smoothly, a picture costs less: the neighbours of the
+/// last one are kept for some pixels of motion, and those of the next ones are decoded ahead. Clones share everything but their
+/// path and their memory for drawing: give each thread one, or use a [`crate::CameraPool`].
 #[derive(Debug, Clone)]
 pub struct Camera {
     synthesizer: Arc<Synthesizer>,
@@ -30,6 +32,7 @@ pub struct Camera {
     drawing: Arc<OnceLock<Drawing>>,
     moment: Moment,
     canvases: Vec<Vec<Canvas>>,
+    path: Path,
     labeler: Option<Arc<Labeler>>,
 }
 
@@ -50,6 +53,7 @@ impl Camera {
             drawing: Arc::default(),
             moment: Moment::default(),
             canvases: Vec::new(),
+            path: Path::new(true),
             labeler: None,
         }
     }
@@ -60,6 +64,12 @@ impl Camera {
         let archive = self.synthesizer.archive();
         let chain = Chain::new(&setup(&self.synthesizer), archive.field(), &archive.missing_of(model))?;
         Ok(Self { chain, drawing: Arc::default(), ..self })
+    }
+
+    /// Sets whether a thread decodes the pictures that the camera is about to need; it does by default. Pictures are the same
+    /// without it.
+    pub fn with_decoding_ahead(self, is_wanted: bool) -> Self {
+        Self { path: Path::new(is_wanted), ..self }
     }
 
     /// Sets what is done to layers on their way into the picture.
@@ -99,7 +109,13 @@ impl Camera {
         self.moment.twist = twist;
     }
 
-    /// Draws what the camera sees at a pose into a frame: the recorded scene with the layers before it.
+    /// Forgets the path so far: the next picture is drawn from neighbours of its own pose, whatever came before.
+    pub fn forget_path(&mut self) {
+        self.path.forget();
+    }
+
+    /// Draws what the camera sees at a pose into a frame: the recorded scene with the layers before it. Fails where nothing was
+    /// recorded near the pose, see [`LookError`]; the frame may then hold anything.
     pub fn look(
         &mut self,
         pose: CameraPose,
@@ -110,7 +126,9 @@ impl Camera {
         if frame.picture.dimensions() != (lens.width, lens.height) {
             frame.picture = RgbImage::new(lens.width, lens.height);
         }
-        let provenance = self.synthesizer.image_into(pose, &self.method, &mut frame.picture)?;
+        let memory = &mut self.path.memory;
+        let provenance = self.synthesizer.image_along(pose, &self.method, memory, &mut frame.picture)?;
+        self.path.go_on(&self.synthesizer);
         frame.pose = pose;
         frame.covered = provenance.covered();
         frame.used = provenance.used;

@@ -4,6 +4,7 @@
 //! | type | purpose |
 //! |---|---|
 //! | [`Camera`] | a picture at a pose, drawn into a frame |
+//! | [`CameraPool`], [`Request`] | cameras for threads, and many pictures at once |
 //! | [`Frame`], [`SeenObject`], [`PixelBox`] | the picture, and what is known of its pixels |
 //! | [`Class`] | what a pixel shows |
 //! | [`labels`] | what all pixels show, lines and crossings in pixels, boxes |
@@ -59,8 +60,10 @@ mod layer_settings;
 mod light;
 mod light_reference;
 mod mesh;
+mod path;
 mod picture_layer;
 mod pixel_box;
+mod pool;
 mod raster;
 mod scene_light;
 mod seen_object;
@@ -86,6 +89,7 @@ pub use self::{
     mesh::{Mesh, Vertex},
     picture_layer::{LayerPixel, PictureLayer},
     pixel_box::PixelBox,
+    pool::{CameraPool, Request},
     raster::{Placed, draw_mesh},
     seen_object::{NO_OBJECT, SeenObject},
     shading::Shading,

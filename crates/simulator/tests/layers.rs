@@ -2,40 +2,16 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
 
-use std::{
-    path::{Path, PathBuf},
-    sync::{Arc, LazyLock},
-};
+mod common;
 
 use glam::{DVec2, DVec3, Vec3};
 use image::RgbImage;
-use reality_sim_core::{
-    pose::{CameraPose, Pose2},
-    sequence::Sequence,
-};
-use reality_sim_db::{Database, PoseEstimate, PoseSource};
+use reality_sim_core::pose::{CameraPose, Pose2};
 use reality_sim_simulator::{
     Ball, Camera, Class, Frame, Humanoid, Layer, LayerPixel, LayerSettings, NO_OBJECT, PictureLayer,
 };
-use reality_sim_synthesis::Archive;
 
-/// Database of the demonstration walk, made once.
-static WALK: LazyLock<(tempfile::TempDir, PathBuf)> = LazyLock::new(|| {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("walk.db");
-    let walk = Sequence::open(Path::new("../../assets/walk")).unwrap();
-    let poses: Vec<_> = walk.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
-    Database::create_or_open(&file).unwrap().ingest(&walk, &poses, &PoseSource::GroundTruth).unwrap();
-    (folder, file)
-});
-
-fn camera() -> Camera {
-    Camera::new(Arc::new(Archive::open(&WALK.1, 64 << 20).unwrap()))
-}
-
-fn usual_pose(camera: &Camera) -> CameraPose {
-    camera.synthesizer().archive().usual_pose().with_planar(Pose2::new(-2.3, 0.2, 1.2))
-}
+use self::common::{camera, usual_pose};
 
 #[test]
 fn a_picture_without_layers_is_the_recorded_one_and_layers_change_it_only_around_them() {

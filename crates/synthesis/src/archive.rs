@@ -1,7 +1,12 @@
 //! Database opened for pictures at any pose: records, index by pose, and the pictures decoded last.
 
-use std::{collections::BTreeMap, path::Path, sync::Arc};
+use std::{
+    collections::BTreeMap,
+    path::Path,
+    sync::{Arc, OnceLock},
+};
 
+use image::RgbImage;
 use rayon::prelude::*;
 use reality_sim_core::{
     camera::{Camera, KernelCamera},
@@ -19,7 +24,11 @@ use reality_sim_db::{
 
 use reality_sim_sensor::{Model, ModelError, Shading};
 
-use crate::{SynthesisError, cache::PictureCache};
+use crate::{
+    SynthesisError,
+    cache::{PictureCache, PictureKey},
+    clean_view::CleanView,
+};
 
 /// Recorded images, indexed by pose. Threads share one archive.
 #[derive(Debug)]
@@ -34,6 +43,9 @@ pub struct Archive {
     cache: PictureCache,
     shading: Option<Shading>,
     corrected_by: Option<String>,
+    has_clean_stage: bool,
+    /// Clean stage, once it was needed.
+    clean_view: OnceLock<CleanView>,
 }
 
 impl Archive {
@@ -77,8 +89,22 @@ impl Archive {
         let proxy = poses.iter().fold(proxy, |proxy, pose| proxy.holding(*pose));
         let index = PoseIndex::new(metric, poses);
         let cache = PictureCache::new(cache_bytes);
-        let shading = None;
-        Ok(Self { database, images, cameras, setup, field, proxy, index, cache, shading, corrected_by })
+        let (shading, clean_view) = (None, OnceLock::new());
+        let has_clean_stage = database.has_ground(field_id)?;
+        Ok(Self {
+            database,
+            images,
+            cameras,
+            setup,
+            field,
+            proxy,
+            index,
+            cache,
+            shading,
+            corrected_by,
+            has_clean_stage,
+            clean_view,
+        })
     }
 
     /// Takes what a model says of the lens's falloff and of gains out of the recorded pictures, so that neighbours meet
@@ -149,27 +175,64 @@ impl Archive {
         usual_pose(self.index.poses())
     }
 
+    /// Returns whether the database holds what pictures without people, robots and balls need, see
+    /// [`crate::Synthesizer::with_clean`].
+    pub fn has_clean_stage(&self) -> bool {
+        self.has_clean_stage
+    }
+
+    /// Returns the clean stage, and reads it if necessary.
+    pub(crate) fn clean_view(&self) -> Result<&CleanView, SynthesisError> {
+        if let Some(view) = self.clean_view.get() {
+            return Ok(view);
+        }
+        let none = || SynthesisError::NoCleanStage { database: self.database.path().display().to_string() };
+        let field_id = self.images.first().map(|image| image.field_id).ok_or_else(none)?;
+        let view = CleanView::read(&self.database, field_id, &self.images)?.ok_or_else(none)?;
+        Ok(self.clean_view.get_or_init(|| view))
+    }
+
     /// Returns a picture, decoding it if necessary.
     ///
     /// # Panics
     ///
     /// Panics if there is no such image: indices come from [`Archive::index`].
     pub fn picture(&self, image: ImageIndex) -> Result<Arc<Picture>, SynthesisError> {
-        let record = &self.images[image as usize];
+        let decode = || Ok(Picture::from(&self.decoded(image)?));
+        self.cache.get(PictureKey { image, is_masked: false }, decode)
+    }
+
+    /// Returns a picture in which the things that it shows are hidden, decoding it if necessary.
+    pub(crate) fn masked_picture(&self, image: ImageIndex) -> Result<Arc<Picture>, SynthesisError> {
+        let Some(mask) = self.clean_view()?.mask(image) else { return self.picture(image) };
         let decode = || {
-            let mut picture = self.database.picture(record.id)?;
-            if let Some(shading) = self.shading_of(self.camera_of(image)) {
-                let (colors, _) = picture.as_chunks_mut();
-                shading.take_out(colors, record.timestamp_s);
-            }
-            Ok(Picture::from(&picture))
+            let mut picture = Picture::from(&self.decoded(image)?);
+            let size = [picture.width, picture.height];
+            picture.hide(|pixel| mask.hides([pixel as u32 % size[0], pixel as u32 / size[0]], size));
+            Ok(picture)
         };
-        self.cache.get(image, decode)
+        self.cache.get(PictureKey { image, is_masked: true }, decode)
+    }
+
+    /// Decodes a picture. It does not stay in the cache.
+    pub(crate) fn decoded(&self, image: ImageIndex) -> Result<RgbImage, SynthesisError> {
+        let record = &self.images[image as usize];
+        let mut picture = self.database.picture(record.id)?;
+        if let Some(shading) = self.shading_of(self.camera_of(image)) {
+            let (colors, _) = picture.as_chunks_mut();
+            shading.take_out(colors, record.timestamp_s);
+        }
+        Ok(picture)
     }
 
     /// Returns several pictures; those that are not held are decoded in parallel.
     pub fn pictures(&self, images: &[ImageIndex]) -> Result<Vec<Arc<Picture>>, SynthesisError> {
         images.par_iter().with_max_len(1).map(|&image| self.picture(image)).collect()
+    }
+
+    /// Works like [`Archive::pictures`], with the things that the pictures show hidden.
+    pub(crate) fn masked_pictures(&self, images: &[ImageIndex]) -> Result<Vec<Arc<Picture>>, SynthesisError> {
+        images.par_iter().with_max_len(1).map(|&image| self.masked_picture(image)).collect()
     }
 
     /// Returns the camera that took an image.

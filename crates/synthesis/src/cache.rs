@@ -8,6 +8,15 @@ use std::{
 use reality_sim_core::warp::Picture;
 use reality_sim_db::index::ImageIndex;
 
+/// Decoded picture of an image.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct PictureKey {
+    /// The image.
+    pub image: ImageIndex,
+    /// Whether the things that it shows are hidden.
+    pub is_masked: bool,
+}
+
 /// Cache of decoded pictures. Threads share one.
 #[derive(Debug)]
 pub(crate) struct PictureCache {
@@ -20,9 +29,9 @@ struct Held {
     bytes: usize,
     /// Number of uses so far.
     clock: u64,
-    pictures: HashMap<ImageIndex, (Arc<Picture>, u64)>,
+    pictures: HashMap<PictureKey, (Arc<Picture>, u64)>,
     /// Pictures by the time of their last use.
-    order: BTreeMap<u64, ImageIndex>,
+    order: BTreeMap<u64, PictureKey>,
 }
 
 impl PictureCache {
@@ -39,14 +48,14 @@ impl PictureCache {
     /// the two results is kept.
     pub(crate) fn get<E>(
         &self,
-        image: ImageIndex,
+        key: PictureKey,
         decode: impl FnOnce() -> Result<Picture, E>,
     ) -> Result<Arc<Picture>, E> {
-        if let Some(picture) = self.lock().used(image) {
+        if let Some(picture) = self.lock().used(key) {
             return Ok(picture);
         }
         let picture = Arc::new(decode()?);
-        self.lock().insert(image, picture.clone(), self.limit_bytes);
+        self.lock().insert(key, picture.clone(), self.limit_bytes);
         Ok(picture)
     }
 
@@ -62,20 +71,20 @@ impl PictureCache {
 }
 
 impl Held {
-    fn used(&mut self, image: ImageIndex) -> Option<Arc<Picture>> {
+    fn used(&mut self, key: PictureKey) -> Option<Arc<Picture>> {
         self.clock += 1;
-        let (picture, last) = self.pictures.get_mut(&image)?;
+        let (picture, last) = self.pictures.get_mut(&key)?;
         self.order.remove(last);
-        self.order.insert(self.clock, image);
+        self.order.insert(self.clock, key);
         *last = self.clock;
         Some(picture.clone())
     }
 
-    fn insert(&mut self, image: ImageIndex, picture: Arc<Picture>, limit_bytes: usize) {
+    fn insert(&mut self, key: PictureKey, picture: Arc<Picture>, limit_bytes: usize) {
         self.clock += 1;
         self.bytes += picture.bytes();
-        self.order.insert(self.clock, image);
-        if let Some((other, last)) = self.pictures.insert(image, (picture, self.clock)) {
+        self.order.insert(self.clock, key);
+        if let Some((other, last)) = self.pictures.insert(key, (picture, self.clock)) {
             self.bytes -= other.bytes();
             self.order.remove(&last);
         }
@@ -97,7 +106,7 @@ mod tests {
 
     fn get(cache: &PictureCache, image: ImageIndex, decoded: &mut usize) {
         cache
-            .get(image, || {
+            .get(PictureKey { image, is_masked: false }, || {
                 *decoded += 1;
                 Ok::<_, ()>(picture())
             })

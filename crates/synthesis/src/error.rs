@@ -19,6 +19,14 @@ pub enum SynthesisError {
         /// Path of its file.
         database: String,
     },
+    /// The database holds no clean stage.
+    #[error(
+        "{database}: holds no clean stage, which pictures without people, robots and balls need: build it again, from pictures that show the field's carpet"
+    )]
+    NoCleanStage {
+        /// Path of its file.
+        database: String,
+    },
     /// The camera that took most images sees too little of the field for distances between poses.
     #[error(
         "{database}: the camera sees too little of the field for distances between poses: give another camera to the recording, and build the database anew"

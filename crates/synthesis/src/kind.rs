@@ -7,7 +7,9 @@ use reality_sim_core::{
     pose::CameraPose,
 };
 
-use crate::{Auto, Blend, Method, Nearest, Plane, Provenance, Quadratic, SynthesisError, Synthesizer};
+use crate::{
+    Auto, Blend, Memory, Method, Nearest, Plane, Provenance, Quadratic, SynthesisError, Synthesizer,
+};
 
 /// Method of this package, to choose by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
@@ -68,9 +70,10 @@ impl Method for MethodKind {
         &self,
         from: &Synthesizer,
         pose: CameraPose,
+        memory: &mut Memory,
         colors: &mut [[u8; 3]],
     ) -> Result<Provenance, SynthesisError> {
-        self.method().draw(from, pose, colors)
+        self.method().draw(from, pose, memory, colors)
     }
 }
 

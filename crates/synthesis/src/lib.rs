@@ -4,10 +4,12 @@
 //! |---|---|
 //! | [`Archive`] | a database opened for pictures: index by pose, pictures decoded last |
 //! | [`Synthesizer`] | the picture at a pose; threads share one |
+//! | [`Memory`] | what one picture of a moving camera tells of the next |
 //! | [`SynthesisConfig`] | how many neighbours, their weights, and when a picture is refused |
 //! | [`Reconstruction`], [`Provenance`] | a picture, the images it was made from, and how far each pixel can be trusted |
 //! | [`SynthesisError`] | why there is no picture |
 //! | [`measure_hall`] | where the walls around the field are |
+//! | [`find_clean_stage`] | the carpet without what stood on it, and where pictures show such things |
 //!
 //! A picture is made by one of these methods:
 //!
@@ -57,13 +59,17 @@
 //! # }
 //! ```
 
+mod ahead;
 mod archive;
 mod auto;
 mod cache;
+mod clean_stage;
+mod clean_view;
 mod error;
 mod gain;
 mod hall;
 mod kind;
+mod memory;
 mod method;
 mod nearest;
 mod plane;
@@ -71,14 +77,18 @@ mod quadratic;
 pub mod quality;
 mod reconstruction;
 mod select;
+mod smaller_camera;
 mod synthesizer;
 
 pub use self::{
+    ahead::Ahead,
     archive::Archive,
     auto::Auto,
+    clean_stage::{FoundCleanStage, find_clean_stage},
     error::SynthesisError,
     hall::measure_hall,
     kind::MethodKind,
+    memory::Memory,
     method::Method,
     nearest::Nearest,
     plane::{Blend, Plane},

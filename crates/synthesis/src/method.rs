@@ -3,7 +3,7 @@
 use image::RgbImage;
 use reality_sim_core::pose::CameraPose;
 
-use crate::{Provenance, Reconstruction, SynthesisError, Synthesizer};
+use crate::{Memory, Provenance, Reconstruction, SynthesisError, Synthesizer};
 
 /// Method that makes the picture at a pose from those recorded at others.
 pub trait Method: Send + Sync {
@@ -12,11 +12,12 @@ pub trait Method: Send + Sync {
 
     /// Draws the picture at a pose that has been checked, see [`Synthesizer::image_into`], and returns where its pixels come
     /// from. `colors` has one element for every pixel of [`Synthesizer::camera`], row by row from the top left; after an
-    /// error it may hold anything.
+    /// error it may hold anything. `memory` tells of the picture before, if there was one.
     fn draw(
         &self,
         from: &Synthesizer,
         pose: CameraPose,
+        memory: &mut Memory,
         colors: &mut [[u8; 3]],
     ) -> Result<Provenance, SynthesisError>;
 }
@@ -37,20 +38,38 @@ impl Synthesizer {
         method: &dyn Method,
         buffer: &mut [u8],
     ) -> Result<Provenance, SynthesisError> {
+        self.image_along(pose, method, &mut Memory::default(), buffer)
+    }
+
+    /// Works like [`Synthesizer::image_into`], for one picture after the other of a camera that moves: what the last one was
+    /// made from is kept while it does. Each camera needs a memory of its own.
+    pub fn image_along(
+        &self,
+        pose: CameraPose,
+        method: &dyn Method,
+        memory: &mut Memory,
+        buffer: &mut [u8],
+    ) -> Result<Provenance, SynthesisError> {
         let expected = 3 * self.rays().pixels();
         if buffer.len() != expected {
             return Err(SynthesisError::BufferLength { found: buffer.len(), expected });
         }
+        self.check(pose)?;
+        let (colors, _) = buffer.as_chunks_mut();
+        let provenance = method.draw(self, pose, memory, colors)?;
+        if let Some(shading) = self.archive().shading_of(self.camera()) {
+            shading.put_in(colors);
+        }
+        Ok(provenance)
+    }
+
+    /// Checks that a camera can be at a pose, and that something was recorded near it.
+    pub(crate) fn check(&self, pose: CameraPose) -> Result<(), SynthesisError> {
         if pose.is_finite() && !pose.is_possible() {
             return Err(SynthesisError::ImpossiblePose { pose });
         }
         let near = self.archive().index().check_reach(pose, self.config().reach_px);
         near.map_err(|reason| SynthesisError::NoNeighbours { pose, reason })?;
-        let (colors, _) = buffer.as_chunks_mut();
-        let provenance = method.draw(self, pose, colors)?;
-        if let Some(shading) = self.archive().shading_of(self.camera()) {
-            shading.put_in(colors);
-        }
-        Ok(provenance)
+        Ok(())
     }
 }

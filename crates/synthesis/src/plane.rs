@@ -2,7 +2,7 @@
 
 use reality_sim_core::pose::CameraPose;
 
-use crate::{Method, Provenance, SynthesisError, Synthesizer};
+use crate::{Memory, Method, Provenance, SynthesisError, Synthesizer};
 
 /// Method that maps exactly from the neighbour that shows most of the target best.
 #[derive(Debug, Clone, Copy)]
@@ -17,9 +17,10 @@ impl Method for Plane {
         &self,
         from: &Synthesizer,
         pose: CameraPose,
+        memory: &mut Memory,
         colors: &mut [[u8; 3]],
     ) -> Result<Provenance, SynthesisError> {
-        from.warped(self.name(), pose, 1, colors)
+        from.warped(self.name(), pose, 1, memory, colors)
     }
 }
 
@@ -37,8 +38,9 @@ impl Method for Blend {
         &self,
         from: &Synthesizer,
         pose: CameraPose,
+        memory: &mut Memory,
         colors: &mut [[u8; 3]],
     ) -> Result<Provenance, SynthesisError> {
-        from.warped(self.name(), pose, from.config().sources, colors)
+        from.warped(self.name(), pose, from.config().sources, memory, colors)
     }
 }

@@ -13,7 +13,7 @@ use reality_sim_core::{
     warp::{Origin, Picture},
 };
 
-use crate::{Method, Provenance, SynthesisError, Synthesizer};
+use crate::{Memory, Method, Provenance, SynthesisError, Synthesizer};
 
 /// Distance between the points of the grid, metres.
 const GRID_M: f64 = 0.25;
@@ -34,12 +34,13 @@ impl Method for Quadratic {
         &self,
         from: &Synthesizer,
         pose: CameraPose,
+        _memory: &mut Memory,
         colors: &mut [[u8; 3]],
     ) -> Result<Provenance, SynthesisError> {
         let archive = from.archive();
         let nearest = from.nearest_of_size(pose)?;
         let record = &archive.images()[nearest.image as usize];
-        let picture = archive.picture(nearest.image)?;
+        let picture = from.picture(nearest.image)?;
         let pairs = ground_pairs(
             (archive.camera_of(nearest.image), record.pose),
             (from.camera(), pose),
@@ -50,7 +51,8 @@ impl Method for Quadratic {
             return Err(SynthesisError::TooFewPoints { pose });
         };
         let cameras = [archive.camera_of(nearest.image), from.camera()];
-        let origins = draw_moved(&picture, cameras, [&forward, &reverse], colors);
+        let mut origins = draw_moved(&picture, cameras, [&forward, &reverse], colors);
+        from.fill_hidden(pose, colors, &mut origins)?;
         Ok(Provenance::new(
             self.name(),
             std::iter::once((nearest.image, nearest.distance_px)),
@@ -135,8 +137,8 @@ fn draw_moved(
     colors.fill([0; 3]);
     let mut origins = vec![Origin { source: Origin::NOWHERE, trust: 0 }; count];
     let color = |u: u32, v: u32| {
-        let [red, green, blue, _] = picture.pixels[(v * picture.width + u) as usize].to_le_bytes();
-        [red, green, blue]
+        let [red, green, blue, mask] = picture.pixels[(v * picture.width + u) as usize].to_le_bytes();
+        (mask == Picture::SHOWN).then_some([red, green, blue])
     };
     for v in 0..picture.height {
         for u in 0..picture.width {
@@ -145,17 +147,21 @@ fn draw_moved(
                 continue;
             }
             let target = forward.at(pixel);
-            if let Some((column, row)) = pixel_at(target, camera) {
+            if let Some((column, row)) = pixel_at(target, camera)
+                && let Some(color) = color(u, v)
+            {
                 let index = (row * width + column) as usize;
-                (colors[index], origins[index]) = (color(u, v), FORWARD);
+                (colors[index], origins[index]) = (color, FORWARD);
             }
         }
     }
     for index in (0..count).filter(|&index| origins[index].source == Origin::NOWHERE).collect::<Vec<_>>() {
         let (u, v) = (index as u32 % width, index as u32 / width);
         let place = reverse.at(DVec2::new(f64::from(u), f64::from(v)));
-        if let Some((column, row)) = pixel_at(place, source) {
-            (colors[index], origins[index]) = (color(column, row), REVERSE);
+        if let Some((column, row)) = pixel_at(place, source)
+            && let Some(color) = color(column, row)
+        {
+            (colors[index], origins[index]) = (color, REVERSE);
         }
     }
     origins

@@ -29,6 +29,11 @@ impl Mask {
         Self { width: camera.width, chosen: rows.collect() }
     }
 
+    /// Returns whether a pixel, counted row by row from the top, is one of them.
+    pub fn holds(&self, pixel: usize) -> bool {
+        self.chosen.get(pixel) == Some(&true)
+    }
+
     /// Number of pixels.
     pub fn count(&self) -> usize {
         self.chosen.iter().filter(|chosen| **chosen).count()
@@ -43,7 +48,7 @@ pub fn psnr_db(picture: &RgbImage, truth: &RgbImage, mask: Option<&Mask>) -> Opt
     }
     let (mut sum, mut count) = (0.0, 0_u64);
     for (index, (a, b)) in picture.pixels().zip(truth.pixels()).enumerate() {
-        if mask.is_none_or(|mask| mask.chosen.get(index) == Some(&true)) {
+        if mask.is_none_or(|mask| mask.holds(index)) {
             let squares = a.0.iter().zip(b.0).map(|(&a, b)| (f64::from(a) - f64::from(b)).powi(2));
             sum += squares.sum::<f64>();
             count += 3;

@@ -18,6 +18,9 @@ pub const ORIGIN_HUES: [[u8; 3]; MAX_SOURCES] = [
     [160, 160, 160],
 ];
 
+/// Hue of ground as many pictures together saw it, see [`Origin::GROUND`].
+const GROUND_HUE: [u8; 3] = [255, 255, 255];
+
 /// Recorded image that a reconstruction was made from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UsedImage {
@@ -127,10 +130,14 @@ impl Reconstruction {
         self.drawn(|origin| Luma([origin.trust]))
     }
 
-    /// Draws which image each pixel came from: one hue per image, brighter where it can be trusted more; black where there
-    /// is none.
+    /// Draws which image each pixel came from: one hue per image, brighter where it can be trusted more; white for ground as many
+    /// images together saw it, black where there is none.
     pub fn origin_picture(&self) -> RgbImage {
-        self.drawn(|origin| match ORIGIN_HUES.get(usize::from(origin.source)) {
+        let hue = |source: u8| match source {
+            Origin::GROUND => Some(&GROUND_HUE),
+            source => ORIGIN_HUES.get(usize::from(source)),
+        };
+        self.drawn(|origin| match hue(origin.source) {
             Some(hue) => {
                 Rgb(hue.map(|value| (u16::from(value) * (64 + u16::from(origin.trust) * 3 / 4) / 255) as u8))
             }

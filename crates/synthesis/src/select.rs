@@ -12,15 +12,31 @@ const CANDIDATES_A_TASK: usize = 16;
 
 /// Returns the indices of the candidates to use, at most `count`, the best first.
 pub fn select(target: &Target, candidates: &[Source], weights: &BlendWeights, count: usize) -> Vec<usize> {
-    let costs: Vec<Vec<f32>> = candidates
-        .par_iter()
-        .with_min_len(CANDIDATES_A_TASK)
-        .map(|candidate| costs(target, candidate, weights))
-        .collect();
+    least_costly(&all_costs(target, candidates, weights, |_, _| {}), count)
+}
+
+/// Returns how badly each candidate shows each of the target's pixels, see [`costs`]. `change` may raise the costs of a candidate,
+/// which it gets with its index.
+pub fn all_costs(
+    target: &Target,
+    candidates: &[Source],
+    weights: &BlendWeights,
+    change: impl Fn(usize, &mut [f32]) + Sync,
+) -> Vec<Vec<f32>> {
+    let costs_of = |(index, candidate): (usize, &Source)| {
+        let mut costs = costs(target, candidate, weights);
+        change(index, &mut costs);
+        costs
+    };
+    candidates.par_iter().enumerate().with_min_len(CANDIDATES_A_TASK).map(costs_of).collect()
+}
+
+/// Returns the indices of the candidates, at most `count`, that together have the least costs; the best first.
+pub fn least_costly(costs: &[Vec<f32>], count: usize) -> Vec<usize> {
     let Some(pixels) = costs.first().map(Vec::len) else { return Vec::new() };
     let mut least = vec![f32::INFINITY; pixels];
     let mut chosen: Vec<usize> = Vec::new();
-    while chosen.len() < count.min(candidates.len()) {
+    while chosen.len() < count.min(costs.len()) {
         let total = |index: usize| -> f32 { costs[index].iter().zip(&least).map(|(a, b)| a.min(*b)).sum() };
         let rest = (0..costs.len()).filter(|index| !chosen.contains(index));
         let Some((best, _)) = rest.map(|index| (index, total(index))).min_by(|a, b| a.1.total_cmp(&b.1))

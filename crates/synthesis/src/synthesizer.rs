@@ -6,12 +6,19 @@ use reality_sim_core::{
     camera::Camera,
     pose::CameraPose,
     warp::{
-        BlendWeights, CpuWarper, MAX_SOURCES, Placement, ProxyGeometry, RayTable, Source, Target, Warper,
+        BlendWeights, CpuWarper, MAX_SOURCES, Origin, Picture, Placement, ProxyGeometry, RayTable, Source,
+        Target, Warper, complete,
     },
 };
 use reality_sim_db::index::{ImageIndex, Neighbour};
 
-use crate::{Archive, Provenance, SynthesisError, gain::gains, select::select};
+use crate::{
+    Archive, Provenance, SynthesisError,
+    clean_view::CleanView,
+    gain::gains,
+    memory::{Choice, Memory},
+    select::{all_costs, least_costly},
+};
 
 /// Settings of the synthesis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,6 +81,7 @@ pub struct Synthesizer {
     rays: RayTable,
     warper: Arc<dyn Warper>,
     config: SynthesisConfig,
+    is_clean: bool,
 }
 
 impl fmt::Debug for Synthesizer {
@@ -81,6 +89,7 @@ impl fmt::Debug for Synthesizer {
         f.debug_struct("Synthesizer")
             .field("camera", &self.camera)
             .field("config", &self.config)
+            .field("is_clean", &self.is_clean)
             .finish_non_exhaustive()
     }
 }
@@ -101,7 +110,48 @@ impl Synthesizer {
         config: SynthesisConfig,
     ) -> Self {
         let rays = RayTable::new(&camera);
-        Self { archive, camera, rays, warper, config }
+        Self { archive, camera, rays, warper, config, is_clean: false }
+    }
+
+    /// Sets whether pictures are made without the people, robots and balls that stood there while the archive was recorded. Pictures
+    /// then fail with [`SynthesisError::NoCleanStage`] where [`Archive::has_clean_stage`] returns false. Ground that no picture of the
+    /// archive shows empty is filled from around it, without trust.
+    pub fn with_clean(self, is_clean: bool) -> Self {
+        Self { is_clean, ..self }
+    }
+
+    /// Returns whether pictures are made without what stood there.
+    pub fn is_clean(&self) -> bool {
+        self.is_clean
+    }
+
+    /// Returns the clean stage, if pictures are made with it.
+    pub(crate) fn clean_view(&self) -> Result<Option<&CleanView>, SynthesisError> {
+        self.is_clean.then(|| self.archive.clean_view()).transpose()
+    }
+
+    /// Returns a picture to draw from.
+    pub(crate) fn picture(&self, image: ImageIndex) -> Result<Arc<Picture>, SynthesisError> {
+        if self.is_clean { self.archive.masked_picture(image) } else { self.archive.picture(image) }
+    }
+
+    /// Fills what a picture seen from this pose does not show because something stood in front of it.
+    pub(crate) fn fill_hidden(
+        &self,
+        pose: CameraPose,
+        colors: &mut [[u8; 3]],
+        origins: &mut [Origin],
+    ) -> Result<(), SynthesisError> {
+        let Some(view) = self.clean_view()? else { return Ok(()) };
+        complete(&self.rays, colors, origins);
+        let proxy = self.archive.proxy_geometry().holding(pose);
+        view.fill(&self.target(pose, &proxy), colors, origins);
+        Ok(())
+    }
+
+    /// Returns pictures to draw from.
+    fn pictures(&self, images: &[ImageIndex]) -> Result<Vec<Arc<Picture>>, SynthesisError> {
+        if self.is_clean { self.archive.masked_pictures(images) } else { self.archive.pictures(images) }
     }
 
     /// Returns the archive.
@@ -127,12 +177,11 @@ impl Synthesizer {
     /// Decodes the pictures that any method needs at this pose, so that a later call draws without delay.
     pub fn prepare(&self, pose: CameraPose) -> Result<(), SynthesisError> {
         let proxy = self.archive.proxy_geometry().holding(pose);
-        let images = self.chosen(&self.target(pose, &proxy), pose, self.config.sources)?;
-        let mut images: Vec<ImageIndex> = images.iter().map(|neighbour| neighbour.image).collect();
+        let mut images = self.chosen(&self.target(pose, &proxy), pose, self.config.sources)?;
         images.extend(self.nearest_of_size(pose).ok().map(|nearest| nearest.image));
         images.sort_unstable();
         images.dedup();
-        self.archive.pictures(&images).map(drop)
+        self.pictures(&images).map(drop)
     }
 
     /// Returns the nearest images.
@@ -157,34 +206,96 @@ impl Synthesizer {
         method: &'static str,
         pose: CameraPose,
         count: usize,
+        memory: &mut Memory,
         colors: &mut [[u8; 3]],
     ) -> Result<Provenance, SynthesisError> {
         let proxy = self.archive.proxy_geometry().holding(pose);
         let target = self.target(pose, &proxy);
-        let chosen = self.chosen(&target, pose, count)?;
-        let images: Vec<ImageIndex> = chosen.iter().map(|neighbour| neighbour.image).collect();
-        let pictures = self.archive.pictures(&images)?;
-        let mut sources: Vec<Source> = images
-            .iter()
-            .zip(&pictures)
-            .map(|(&image, picture)| self.archive.source(image, picture))
-            .collect();
-        if sources.len() > 1 {
-            let gains = gains(&target, &sources);
-            sources.iter_mut().zip(gains).for_each(|(source, gain)| source.gain = gain);
+        let metric = self.archive.index().metric();
+        let is_kept = memory.kept(metric, pose, count).is_some();
+        let Choice { images, gains, .. } = self.choice(&target, pose, count, memory)?;
+        let pictures = self.pictures(&images)?;
+        let sources = self.sources(&images, &pictures, &gains);
+        let mut origins = self.warper.blend_into(&target, &sources, &self.config.weights, colors)?;
+        if let Some(view) = self.clean_view()? {
+            view.fill(&target, colors, &mut origins);
         }
-        let origins = self.warper.blend_into(&target, &sources, &self.config.weights, colors)?;
-        let images = chosen.iter().map(|neighbour| (neighbour.image, neighbour.distance_px));
-        let provenance = Provenance::new(method, images, origins, &self.rays);
+        let distance_px =
+            |image: ImageIndex| metric.distance_px(self.archive.images()[image as usize].pose, pose);
+        let used = images.iter().map(|&image| (image, distance_px(image)));
+        let provenance = Provenance::new(method, used, origins, &self.rays);
         let (covered, needed) = (provenance.covered(), self.config.least_covered);
-        if covered < needed {
-            return Err(SynthesisError::TooLittleSeen { pose, covered, needed });
+        if covered >= needed {
+            return Ok(provenance);
         }
-        Ok(provenance)
+        if is_kept {
+            // Others may show more.
+            memory.forget();
+            return self.warped(method, pose, count, memory, colors);
+        }
+        Err(SynthesisError::TooLittleSeen { pose, covered, needed })
+    }
+
+    /// Hands what a blended picture at a pose is made from to a device of one's own: the camera, the neighbours with their gains,
+    /// and their weights. For pictures that stay on a graphics device; whether enough of the picture was recorded is not checked,
+    /// and of a clean stage the masks are used, not the ground.
+    pub fn draw_with<T>(
+        &self,
+        pose: CameraPose,
+        memory: &mut Memory,
+        draw: impl FnOnce(&Target, &[Source], &BlendWeights) -> T,
+    ) -> Result<T, SynthesisError> {
+        self.check(pose)?;
+        let proxy = self.archive.proxy_geometry().holding(pose);
+        let target = self.target(pose, &proxy);
+        let Choice { images, gains, .. } = self.choice(&target, pose, self.config.sources, memory)?;
+        let pictures = self.pictures(&images)?;
+        Ok(draw(&target, &self.sources(&images, &pictures, &gains), &self.config.weights))
+    }
+
+    /// Returns the neighbours that a memory keeps for a pose, or chooses others.
+    fn choice(
+        &self,
+        target: &Target,
+        pose: CameraPose,
+        count: usize,
+        memory: &mut Memory,
+    ) -> Result<Choice, SynthesisError> {
+        if let Some(kept) = memory.kept(self.archive.index().metric(), pose, count) {
+            return Ok(kept.clone());
+        }
+        let choice = self.choose(target, pose, count)?;
+        memory.keep(choice.clone());
+        Ok(choice)
+    }
+
+    fn sources<'a>(
+        &'a self,
+        images: &[ImageIndex],
+        pictures: &'a [Arc<Picture>],
+        gains: &[[f32; 3]],
+    ) -> Vec<Source<'a>> {
+        let parts = images.iter().zip(pictures).zip(gains);
+        parts
+            .map(|((&image, picture), &gain)| Source { gain, ..self.archive.source(image, picture) })
+            .collect()
     }
 
     fn target<'a>(&'a self, pose: CameraPose, proxy: &'a ProxyGeometry) -> Target<'a> {
         Target { rays: &self.rays, placement: Placement::new(pose), proxy }
+    }
+
+    /// Chooses the neighbours to draw from, and measures how bright they are.
+    fn choose(&self, target: &Target, pose: CameraPose, count: usize) -> Result<Choice, SynthesisError> {
+        let images = self.chosen(target, pose, count)?;
+        let pictures = self.pictures(&images)?;
+        let sources: Vec<Source> = images
+            .iter()
+            .zip(&pictures)
+            .map(|(&image, picture)| self.archive.source(image, picture))
+            .collect();
+        let gains = if sources.len() > 1 { gains(target, &sources) } else { vec![[1.0; 3]; sources.len()] };
+        Ok(Choice { pose, count, images, gains })
     }
 
     /// Chooses the neighbours to draw from: those of the nearest and the natural ones that together show most.
@@ -193,7 +304,7 @@ impl Synthesizer {
         target: &Target,
         pose: CameraPose,
         count: usize,
-    ) -> Result<Vec<Neighbour>, SynthesisError> {
+    ) -> Result<Vec<ImageIndex>, SynthesisError> {
         let mut candidates = self.nearest(pose, self.config.candidates)?;
         let natural = self.archive.index().natural(pose);
         for natural in natural.map_err(|reason| SynthesisError::NoNeighbours { pose, reason })? {
@@ -201,11 +312,17 @@ impl Synthesizer {
                 candidates.push(natural);
             }
         }
-        // The choice depends on where an image was taken, not on what it shows.
+        // The choice depends on where an image was taken and on its mask, not on what it shows.
         let nothing = Archive::no_picture();
         let sources: Vec<Source> =
             candidates.iter().map(|candidate| self.archive.source(candidate.image, &nothing)).collect();
-        let chosen = select(target, &sources, &self.config.weights, count.clamp(1, MAX_SOURCES));
-        Ok(chosen.into_iter().map(|index| candidates[index]).collect())
+        let view = self.clean_view()?;
+        let costs = all_costs(target, &sources, &self.config.weights, |index, costs| {
+            if let Some(view) = view {
+                view.raise_costs(target, &sources[index], candidates[index].image, costs);
+            }
+        });
+        let chosen = least_costly(&costs, count.clamp(1, MAX_SOURCES));
+        Ok(chosen.into_iter().map(|index| candidates[index].image).collect())
     }
 }

@@ -4,7 +4,7 @@ use image::{Rgb, RgbImage};
 use reality_sim_core::{
     pose::{CameraPose, Pose2},
     sequence::{FrameRecord, Sequence, save_image},
-    warp::{Hall, MAX_SOURCES, ProxyGeometry},
+    warp::{CpuWarper, Hall, MAX_SOURCES, ProxyGeometry, Warper},
 };
 use reality_sim_db::{Database, PoseEstimate, PoseSource, index::NoNeighbours};
 use tempfile::TempDir;
@@ -86,7 +86,7 @@ fn the_recorded_picture_is_given_where_there_is_one_and_a_reconstruction_elsewhe
     let mut camera = synthesizer.camera().clone();
     camera.fx = 200.0;
     let config = SynthesisConfig::new(&archive);
-    let other = Synthesizer::with(archive, camera, Arc::new(reality_sim_core::warp::CpuWarper), config);
+    let other = Synthesizer::with(archive, camera, Arc::new(CpuWarper), config);
     assert_eq!(other.image_at(pose, &Auto).unwrap().method, "blend");
 }
 
@@ -170,12 +170,7 @@ fn what_cannot_be_answered_is_refused_and_the_best_effort_is_not() {
     assert!(error.is_refusal(), "{error}");
     let archive = synthesizer.archive().clone();
     let config = SynthesisConfig::new(&archive).best_effort();
-    let eager = Synthesizer::with(
-        archive,
-        synthesizer.camera().clone(),
-        Arc::new(reality_sim_core::warp::CpuWarper),
-        config,
-    );
+    let eager = Synthesizer::with(archive, synthesizer.camera().clone(), Arc::new(CpuWarper), config);
     for method in [&Nearest as &dyn Method, &Plane, &Blend] {
         assert_eq!(eager.image_at(outside, method).unwrap().picture.dimensions(), (640, 480));
     }
@@ -221,6 +216,95 @@ fn what_was_prepared_needs_no_more_decoding() {
     assert!((1..=synthesizer.config().sources + 1).contains(&(held / picture_bytes)), "{held}");
     synthesizer.image_at(pose, &Blend).unwrap();
     assert_eq!(synthesizer.archive().cached_bytes(), held);
+}
+
+/// Returns a pose that the picture moves away from by about this much.
+fn moved_px(synthesizer: &Synthesizer, pose: CameraPose, distance_px: f64) -> CameraPose {
+    let turned = |turn_rad: f64| CameraPose { yaw_rad: pose.yaw_rad + turn_rad, ..pose };
+    let per_rad = synthesizer.archive().index().metric().distance_px(pose, turned(0.01)) / 0.01;
+    turned(distance_px / per_rad)
+}
+
+#[test]
+fn a_camera_that_moves_keeps_its_neighbours_for_some_pixels() {
+    let (_folder, synthesizer) = without_some_frames();
+    let (pose, _) = truth(&walk(), 25);
+    let mut memory = Memory::default();
+    let mut buffer = vec![0; 3 * 640 * 480];
+    let mut along = |pose: CameraPose, memory: &mut Memory| {
+        let provenance = synthesizer.image_along(pose, &Blend, memory, &mut buffer).unwrap();
+        (buffer.clone(), provenance.used)
+    };
+    let images = |used: &[UsedImage]| used.iter().map(|used| used.image).collect::<Vec<_>>();
+    let (first, used) = along(pose, &mut memory);
+    assert_eq!(first, synthesizer.image_at(pose, &Blend).unwrap().picture.into_raw());
+    let near = moved_px(&synthesizer, pose, 6.0);
+    let (_, near_used) = along(near, &mut memory);
+    assert_eq!(images(&near_used), images(&used));
+    assert_eq!(memory.chosen_at(), Some(pose));
+    assert_ne!(near_used[0].distance_px, used[0].distance_px, "distances are those of the new pose");
+    // Farther away, and after forgetting, nothing is left of what was before.
+    let far = moved_px(&synthesizer, pose, 30.0);
+    assert_eq!(along(far, &mut memory).0, synthesizer.image_at(far, &Blend).unwrap().picture.into_raw());
+    assert_eq!(memory.chosen_at(), Some(far));
+    let (_, _) = along(moved_px(&synthesizer, far, 6.0), &mut memory);
+    memory.forget();
+    assert_eq!(along(near, &mut memory).0, synthesizer.image_at(near, &Blend).unwrap().picture.into_raw());
+}
+
+#[test]
+fn neighbours_that_were_kept_show_what_new_ones_would() {
+    let walk = walk();
+    let (_folder, synthesizer) = without_some_frames();
+    let mut buffer = RgbImage::new(640, 480);
+    let mut lost_db = 0.0;
+    for frame in LEFT_OUT {
+        let (pose, truth) = truth(&walk, frame);
+        let mask = Mask::carpet(synthesizer.camera(), pose, &walk.field);
+        let psnr_db = |picture: &RgbImage| psnr_db(picture, &truth, Some(&mask)).unwrap();
+        let side = if frame % 2 == 0 { 7.5 } else { -7.5 };
+        let mut memory = Memory::default();
+        for pose in [moved_px(&synthesizer, pose, side), pose] {
+            synthesizer.image_along(pose, &Blend, &mut memory, &mut buffer).unwrap();
+        }
+        assert_ne!(memory.chosen_at(), Some(pose));
+        lost_db += psnr_db(&synthesizer.image_at(pose, &Blend).unwrap().picture) - psnr_db(&buffer);
+    }
+    assert!(lost_db / (LEFT_OUT.len() as f64) < 0.2, "{lost_db}");
+}
+
+#[test]
+fn a_device_of_ones_own_gets_what_a_blended_picture_is_made_from() {
+    let (_folder, synthesizer) = without_some_frames();
+    let (pose, _) = truth(&walk(), 25);
+    let blended = synthesizer.image_at(pose, &Blend).unwrap();
+    let mut memory = Memory::default();
+    let warped = synthesizer
+        .draw_with(pose, &mut memory, |target, sources, weights| {
+            CpuWarper.blend(target, sources, weights).unwrap()
+        })
+        .unwrap();
+    assert_eq!(warped.colors.as_flattened(), blended.picture.as_raw().as_slice());
+    let nowhere = CameraPose { x_m: f64::NAN, ..pose };
+    assert!(synthesizer.draw_with(nowhere, &mut memory, |_, _, _| ()).is_err());
+}
+
+#[test]
+fn what_is_expected_is_decoded_in_the_background() {
+    let (_folder, synthesizer) = without_some_frames();
+    let synthesizer = Arc::new(synthesizer);
+    let (pose, _) = truth(&walk(), 25);
+    let ahead = Ahead::new(synthesizer.clone());
+    ahead.expect(CameraPose { x_m: f64::NAN, ..pose });
+    ahead.expect(pose);
+    let at_least = (synthesizer.config().sources * 3 / 4 * 640 * 480 * 4, 60_000);
+    for _ in 0..at_least.1 {
+        if synthesizer.archive().cached_bytes() >= at_least.0 {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    panic!("nothing was decoded");
 }
 
 /// Jumps of the exposure would show at the borders between pictures if the gains did not match.
@@ -333,7 +417,7 @@ fn more_sources_than_can_be_mixed_are_cut_off() {
     let archive = Arc::new(archive);
     let config = SynthesisConfig::new(&archive).with_sources(3 * MAX_SOURCES);
     let camera = archive.setup().camera.clone();
-    let synthesizer = Synthesizer::with(archive, camera, Arc::new(reality_sim_core::warp::CpuWarper), config);
+    let synthesizer = Synthesizer::with(archive, camera, Arc::new(CpuWarper), config);
     let (pose, _) = truth(&walk(), 25);
     assert!(synthesizer.image_at(pose, &Blend).unwrap().used.len() <= MAX_SOURCES);
 }

@@ -56,14 +56,15 @@ fn walk_and_drive(walk: &Path, images: &Path) -> Result<(), Box<dyn Error>> {
 
     window.key_press_modifiers(Modifiers::COMMAND, Key::Num2);
     until(&mut window, "the database", |window| window.query_by_label_contains("auto at x").is_some());
-    for label in ["Wipe", "neighbours", "triangulation"] {
+    for label in ["Wipe", "Labels", "Add robot"] {
         window.get_by_label(label).click();
         window.run_steps(2);
     }
-    let seconds_pressed = 3.0;
+    let seconds_pressed = 0.5;
     window.key_down(Key::W);
     window.run_steps((seconds_pressed / window.input().predicted_dt) as usize);
     window.key_up(Key::W);
+    window.key_press(Key::B);
     for _ in 0..60 {
         window.step();
         thread::sleep(PAUSE);

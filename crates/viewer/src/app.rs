@@ -138,7 +138,7 @@ impl ViewerApp {
         match opened {
             Opened::Recording(sequence) => {
                 self.leave_drive();
-                self.drive = Some(DrivePanel::of_recording(sequence.clone()));
+                self.drive = Some(DrivePanel::of_recording(sequence.clone(), self.model.clone()));
                 let walk = WalkPanel::new(ctx, sequence, &self.devices, &self.settings.walk, beginning);
                 self.walk = Some(walk);
                 (self.shown_path, self.shown) = (shown_path, PanelKind::Walk);
@@ -147,7 +147,7 @@ impl ViewerApp {
                 self.leave_drive();
                 // Walk shows a different recording, which is closed.
                 self.walk = None;
-                self.drive = Some(DrivePanel::of_database(archive));
+                self.drive = Some(DrivePanel::of_database(archive, self.model.clone()));
                 (self.shown_path, self.shown) = (shown_path, PanelKind::Drive);
             }
             Opened::Report(mut loaded) => {

@@ -76,9 +76,8 @@ impl PictureCanvas {
         self.painter.image(texture, self.rect, WHOLE, tint);
     }
 
-    /// Draws one texture left of a line, another right of it, with a handle to drag the line: `share` is 0 at the left edge,
-    /// 1 at the right one.
-    pub fn draw_wipe(&self, ui: &Ui, left: TextureId, right: TextureId, share: &mut f32) {
+    /// Lets the user drag the line of a wipe: `share` is 0 at the left edge, 1 at the right one.
+    pub fn drag_wipe(&self, ui: &Ui, share: &mut f32) {
         if let Some(pointer) = self
             .response
             .interact_pointer_pos()
@@ -89,9 +88,13 @@ impl PictureCanvas {
         if self.response.hovered() {
             ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
         }
-        let x = self.rect.left() + *share * self.rect.width();
-        let sides =
-            [(left, self.rect.left()..=x, 0.0..=*share), (right, x..=self.rect.right(), *share..=1.0)];
+    }
+
+    /// Draws one texture left of a line, another right of it, with a handle to drag the line by: `share` is 0 at the left
+    /// edge, 1 at the right one.
+    pub fn draw_wipe(&self, left: TextureId, right: TextureId, share: f32) {
+        let x = self.rect.left() + share * self.rect.width();
+        let sides = [(left, self.rect.left()..=x, 0.0..=share), (right, x..=self.rect.right(), share..=1.0)];
         for (texture, screen, texels) in sides {
             let rect = Rect::from_x_y_ranges(screen, self.rect.y_range());
             self.painter.image(texture, rect, Rect::from_x_y_ranges(texels, 0.0..=1.0), Color32::WHITE);
@@ -117,6 +120,12 @@ impl PictureCanvas {
     /// Returns the screen position of a position in the picture. A pixel's centre has integer coordinates.
     pub fn at(&self, pixel: DVec2) -> Pos2 {
         self.rect.min + self.scale * (vec2(pixel.x as f32, pixel.y as f32) + Vec2::splat(0.5))
+    }
+
+    /// Returns the position in the picture of a screen position.
+    pub fn pixel_at(&self, position: Pos2) -> DVec2 {
+        let offset = (position - self.rect.min) / self.scale - Vec2::splat(0.5);
+        DVec2::new(f64::from(offset.x), f64::from(offset.y))
     }
 
     /// Draws polylines given in pixels, with a dark rim.

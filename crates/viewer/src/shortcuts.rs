@@ -24,6 +24,10 @@ pub enum Action {
     Right,
     TurnLeft,
     TurnRight,
+    PutBall,
+    AddRobot,
+    RemoveThing,
+    Labels,
     OtherModel,
     Difference,
     ChannelBefore,
@@ -72,6 +76,10 @@ const TABLE: &[(Place, KeyboardShortcut, Action, &str)] = &[
     (Place::Drive, plain(Key::Q), Action::TurnLeft, "turn to the left"),
     (Place::Drive, plain(Key::E), Action::TurnRight, "turn to the right"),
     (Place::Drive, plain(Key::Space), Action::PlayPause, "follow the drawn path, or stop"),
+    (Place::Drive, plain(Key::B), Action::PutBall, "put the ball before the camera"),
+    (Place::Drive, plain(Key::R), Action::AddRobot, "add a robot before the camera"),
+    (Place::Drive, plain(Key::Delete), Action::RemoveThing, "remove the ball or robot touched last"),
+    (Place::Drive, plain(Key::L), Action::Labels, "labels over the pictures, or none"),
     (Place::Gap, plain(Key::Space), Action::OtherModel, "without or with what was found"),
     (Place::Gap, plain(Key::D), Action::Difference, "wipe or difference"),
     (Place::Gap, plain(Key::ArrowLeft), Action::ChannelBefore, "the channel before"),
@@ -171,6 +179,10 @@ pub fn window(ui: &Ui, is_open: &mut bool) {
             ui.strong("On the field");
             ui.label("wheel: zoom · secondary button: move the view · double click: all of it");
             ui.label("drag the arrow's tail: move the robot · drag its tip: turn it");
+            ui.label("drag the ball or another robot: move it · drag the end of a robot's line: turn it");
+            ui.add_space(6.0);
+            ui.strong("In the camera's picture");
+            ui.label("drag the ball or a robot: move it · wheel over a robot: turn it");
         },
     );
 }

@@ -144,6 +144,9 @@ impl RenderArgs {
                     .to_owned(),
             );
         }
+        if self.method == PictureMethod::Simulated && self.synthesis.is_clean() {
+            return Err("--clean: in a simulated picture stands nobody: leave it out".to_owned());
+        }
         self.synthesis.backend.check_usage()
     }
 

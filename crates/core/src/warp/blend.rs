@@ -219,8 +219,8 @@ pub(crate) fn weigh(source: &Source, weights: &BlendWeights, pixels: &Pixels, pe
 /// Number of rows of pixels that [`costs`] and [`glimpses`] examine, with sixteen pixels each.
 const LOOK_ROWS: usize = 12;
 
-/// Cost of a pixel that a source does not see.
-const UNSEEN: f32 = 4.0;
+/// Cost of a pixel that a source does not see, the largest of [`costs`].
+pub const UNSEEN_COST: f32 = 4.0;
 
 /// Returns how badly a source shows each of a few hundred evenly spread pixels of the target: 0 for a perfect view.
 pub fn costs(target: &Target, source: &Source, weights: &BlendWeights) -> Vec<f32> {
@@ -231,7 +231,7 @@ pub fn costs(target: &Target, source: &Source, weights: &BlendWeights) -> Vec<f3
             pixels.map_or([0.0; LANES], |pixels| view_weight(target, source, weights, &points, &pixels));
         costs.extend((0..LANES).map(|i| {
             let has_ray = !points.distance[i].is_nan();
-            if has_ray { (1.0 / weight[i].max(1e-6).sqrt()).min(UNSEEN) } else { 0.0 }
+            if has_ray { (1.0 / weight[i].max(1e-6).sqrt()).min(UNSEEN_COST) } else { 0.0 }
         }));
     }
     costs
@@ -271,6 +271,23 @@ pub fn glimpses(target: &Target, source: &Source) -> Vec<Option<[f32; 3]>> {
         }));
     }
     glimpses
+}
+
+/// Returns the places, in pixels of a source's camera, at which it would show the pixels of [`costs`]; `None` where it does not see
+/// them.
+pub fn glimpse_places(target: &Target, source: &Source) -> Vec<Option<[f32; 2]>> {
+    let mut places = Vec::with_capacity(LOOK_ROWS * LANES);
+    for points in spread_points(target) {
+        let unhidden = unhidden(target.proxy, &source.placement, &points);
+        let pixels = see(source.camera, &source.placement, &points);
+        let pixels = pixels.as_ref();
+        places.extend((0..LANES).map(|i| {
+            pixels
+                .filter(|pixels| pixels.seen[i] * unhidden[i] > 0.0)
+                .map(|pixels| [pixels.u[i], pixels.v[i]])
+        }));
+    }
+    places
 }
 
 fn spread_points(target: &Target) -> impl Iterator<Item = ProxyPoints> {

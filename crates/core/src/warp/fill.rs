@@ -18,8 +18,8 @@ struct Level {
     pixels: Vec<[f32; 4]>,
 }
 
-/// Fills the pixels whose source is [`Origin::NOWHERE`]. Does nothing if no pixel was recorded at all.
-pub(crate) fn fill(colors: &mut [[u8; 3]], origins: &[Origin], width: usize) {
+/// Fills the pixels whose source is [`Origin::NOWHERE`], in rows of this width. Does nothing if no pixel was recorded at all.
+pub fn fill(colors: &mut [[u8; 3]], origins: &[Origin], width: usize) {
     let has =
         |is_it: fn(&Origin) -> bool| origins.par_chunks(PIXELS_A_TASK).any(|part| part.iter().any(is_it));
     if !has(is_unknown) || !has(|origin| origin.is_recorded()) {

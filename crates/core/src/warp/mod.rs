@@ -7,6 +7,7 @@ mod blend;
 mod cells;
 mod edges;
 mod fill;
+mod ground;
 mod kernel;
 mod lanes;
 mod mix;
@@ -20,8 +21,12 @@ mod surfaces;
 mod weights;
 
 pub use self::{
-    blend::{Source, Target, Warped, blend, blend_into, complete, costs, glimpses},
+    blend::{
+        Source, Target, UNSEEN_COST, Warped, blend, blend_into, complete, costs, glimpse_places, glimpses,
+    },
     cells::blend_cells_into,
+    fill::fill,
+    ground::{GroundColors, ground_colors},
     kernel::Placement,
     origin::Origin,
     picture::Picture,

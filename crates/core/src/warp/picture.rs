@@ -29,6 +29,11 @@ impl Picture {
         }
     }
 
+    /// Returns whether the pixels show the scene, row by row from the top.
+    pub fn shown(&self) -> impl Iterator<Item = bool> {
+        self.pixels.iter().map(|word| word.to_le_bytes()[3] == Self::SHOWN)
+    }
+
     /// Returns the number of bytes in memory.
     pub fn bytes(&self) -> usize {
         self.pixels.len() * size_of::<u32>()

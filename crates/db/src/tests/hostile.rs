@@ -15,6 +15,12 @@ fn read_all(path: &Path) -> Result<(), DbError> {
     database.fields()?;
     database.halls()?;
     database.pose_sources()?;
+    for field_id in database.fields()?.into_keys() {
+        database.has_ground(field_id)?;
+        database.ground(field_id)?;
+        database.image_masks(field_id)?;
+    }
+    database.fields_without_ground()?;
     for image in database.images()? {
         database.picture(image.id)?;
     }
@@ -32,13 +38,7 @@ fn assert_read_or_refused(path: &Path) {
 fn small() -> Vec<u8> {
     static MADE: std::sync::OnceLock<Vec<u8>> = std::sync::OnceLock::new();
     let make = || {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.db");
-        let walk = short_walk(2);
-        let poses: Vec<_> = walk.reference_poses().map(|pose| pose.map(PoseEstimate::from)).collect();
-        let mut database = Database::create_or_open(&path).unwrap();
-        database.ingest(&walk, &poses, &PoseSource::GroundTruth).unwrap();
-        drop(database);
+        let (_folder, path) = cleaning::with_clean_stage();
         fs::read(path).unwrap()
     };
     MADE.get_or_init(make).clone()

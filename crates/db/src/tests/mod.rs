@@ -1,5 +1,6 @@
 //! Round trips of the demonstration walk through the database, and the faults that can occur.
 
+mod cleaning;
 mod hostile;
 mod ingesting;
 mod inserting;
@@ -88,6 +89,10 @@ fn read_all(path: &Path) -> Result<usize, DbError> {
     database.cameras()?;
     database.fields()?;
     database.pose_sources()?;
+    for field_id in database.fields()?.into_keys() {
+        database.ground(field_id)?;
+        database.image_masks(field_id)?;
+    }
     let images = database.images()?;
     for image in &images {
         assert_eq!(database.image_bytes(image.id)?.len() as u64, image.byte_length);

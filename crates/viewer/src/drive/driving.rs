@@ -11,15 +11,19 @@ use reality_sim_core::{
 };
 
 use super::{
+    answer::{Answer, Around, Painted},
     kind::{Pane, PictureKind},
     layout::Layout,
     map::{Map, MapContent},
-    painter::{Answer, Around, Painted, Painter, Wish},
-    pictures::{Gallery, Pictures},
+    painter::Painter,
+    pictures::{Asked, Gallery, Pictures},
     robot::Robot,
     settings::DriveSettings,
     source::{Probes, Source},
+    things::{Eye, Things},
+    things_ui::things_ui,
     widgets::{counted, device_ui},
+    wish::Wish,
 };
 use crate::{
     device::{Device, by_name},
@@ -30,7 +34,7 @@ use crate::{
 /// Longest time step of the robot, seconds, when a frame took longer.
 const LONGEST_STEP_S: f64 = 0.1;
 /// Height of the controls below the field, points.
-const CONTROLS: f32 = 250.0;
+const CONTROLS: f32 = 306.0;
 
 /// State of the panel once there is a database.
 pub struct Driving {
@@ -38,6 +42,7 @@ pub struct Driving {
     probes: Option<Probes>,
     painter: Option<Painter>,
     robot: Robot,
+    things: Things,
     map: Map,
     pictures: Pictures,
     around: Option<Around>,
@@ -49,16 +54,18 @@ pub struct Driving {
 }
 
 impl Driving {
-    /// Places the robot at the pose of the first picture.
+    /// Places the robot at the pose of the first picture, a ball and another robot before its camera.
     pub fn new(source: Source) -> Self {
         let archive = &source.archive;
         let first = archive.images().first().map(|image| image.pose.planar()).unwrap_or_default();
         let robot = Robot::new(archive.usual_pose().with_planar(first), archive.field());
+        let things = Things::before(Self::eye(&source, robot.pose()), archive.field());
         Self {
             probes: source.probes.clone(),
             source: Arc::new(source),
             painter: None,
             robot,
+            things,
             map: Map::default(),
             pictures: Pictures::default(),
             around: None,
@@ -96,17 +103,19 @@ impl Driving {
         problems: &mut Problems,
     ) -> bool {
         self.listen(problems);
-        self.move_robot(ui);
+        self.act_on_keys(ui, settings);
         self.map.poll(ui, &self.source, &mut settings.layers, problems);
         let is_asked = self.map_panel(ui, settings, devices);
         egui::CentralPanel::default().show(ui, |ui| {
-            Pictures::choice_ui(ui, settings);
+            Pictures::choice_ui(ui, settings, self.source.archive.has_clean_stage());
             ui.separator();
             let probe = self.around.as_ref().and_then(|around| around.probe);
             let (archive, painted) = (&*self.source.archive, &self.painted);
-            let gallery = Gallery { archive, painted, probe, pose: self.robot.pose() };
-            if let Some(there) = self.pictures.ui(ui, settings, &gallery) {
-                self.robot.take(there);
+            let gallery = Gallery { archive, painted, probe, pose: self.robot.pose(), things: &self.things };
+            match self.pictures.ui(ui, settings, &gallery) {
+                Some(Asked::Pose(there)) => self.robot.take(there),
+                Some(Asked::Change(gesture)) => self.things.obey(gesture),
+                None => {}
             }
         });
         self.wish(ui, settings, devices);
@@ -132,16 +141,32 @@ impl Driving {
             pose: self.robot.pose(),
             panes: settings.panes(),
             is_best_effort: settings.is_best_effort,
+            is_clean: settings.is_clean && self.source.archive.has_clean_stage(),
+            things: self.things.shown().to_vec(),
+            is_labelled: settings.is_labelled,
             edges_in: settings.layers.triangulation.then(|| self.map.seen()),
             probes: self.probes.clone(),
             device: by_name(devices, &settings.device).cloned(),
         });
     }
 
-    /// Moves the robot by keys or along its path.
-    fn move_robot(&mut self, ui: &Ui) {
-        if shortcuts::pressed(ui, Place::Drive).contains(&Action::PlayPause) {
-            self.map.follow_or_stop(&mut self.robot);
+    /// Returns the camera where it stands.
+    fn eye(source: &Source, pose: CameraPose) -> Eye<'_> {
+        Eye { camera: &source.archive.setup().camera, pose }
+    }
+
+    /// Does what keys ask for, and moves the robot along its path.
+    fn act_on_keys(&mut self, ui: &Ui, settings: &mut DriveSettings) {
+        for action in shortcuts::pressed(ui, Place::Drive) {
+            let eye = Self::eye(&self.source, self.robot.pose());
+            match action {
+                Action::PlayPause => self.map.follow_or_stop(&mut self.robot),
+                Action::PutBall => self.things.put_ball(eye),
+                Action::AddRobot => self.things.add_robot(eye),
+                Action::RemoveThing => self.things.remove_chosen(),
+                Action::Labels => settings.is_labelled = !settings.is_labelled,
+                _ => {}
+            }
         }
         let seconds = f64::from(ui.input(|input| input.stable_dt)).min(LONGEST_STEP_S);
         let walks = self.robot.walk(&shortcuts::held(ui, Place::Drive), seconds);
@@ -189,10 +214,12 @@ impl Driving {
             probes: self.probes.as_ref(),
         };
         let room = vec2(ui.available_width(), (ui.available_height() - CONTROLS).max(160.0));
-        self.map.ui(ui, room, &content, &mut self.robot);
+        self.map.ui(ui, room, &content, &mut self.robot, &mut self.things);
         egui::ScrollArea::vertical()
             .show(ui, |ui| {
                 self.map.path_ui(ui, &mut self.robot);
+                ui.separator();
+                things_ui(ui, &mut self.things, Self::eye(&self.source, self.robot.pose()));
                 ui.separator();
                 self.map.layers_ui(ui, &content, &mut settings.layers);
                 ui.separator();

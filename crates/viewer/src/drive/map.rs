@@ -1,8 +1,9 @@
-//! The field from above: the robot to drag, the path to draw, and layers with the data around the robot.
+//! The field from above: the robot and the things to drag, the path to draw, and layers with the data around the robot.
 
 mod coverage;
 mod drawing;
 mod layers;
+mod things;
 
 use std::sync::Arc;
 
@@ -15,12 +16,14 @@ use self::{
     coverage::CoverageMap,
     drawing::{MOST_MARKS, draw_known, draw_path, write_pointer},
     layers::{CoverageLayer, EDGES, IMAGES},
+    things::{draw_things, handle},
 };
 use super::{
+    answer::Around,
     edges::Region,
-    painter::Around,
-    robot::Robot,
+    robot::{MARGIN_M, Robot},
     source::Source,
+    things::{Gesture, PlacedThing, Thing, Things},
     widgets::{hue, swatch},
 };
 use crate::{
@@ -30,10 +33,10 @@ use crate::{
     problems::Problems,
 };
 
-/// Margin shown around the field, metres: the robot may go there.
-const MARGIN_M: f64 = 1.0;
 /// Distance from the arrow's ends within which they can be grabbed, points.
 const CATCH: f32 = 14.0;
+/// Least distance from what is turned at which the pointer has a direction, metres.
+const LEAST_ARM_M: f64 = 1e-3;
 /// Explanation of the neighbours' layer.
 const NEIGHBOURS_MEAN: &str = "The natural neighbours with their weights by where pictures were taken (Sibson, 1981). How many pixels a picture gave in the end is another number: it is below the picture, after “made of”.";
 
@@ -46,6 +49,10 @@ enum Grip {
     Turn,
     /// The path.
     Draw,
+    /// A thing, at this offset from the pointer, metres.
+    MoveThing(Thing, DVec2),
+    /// The end of a robot's line.
+    TurnThing(Thing),
 }
 
 /// The field from above.
@@ -72,13 +79,20 @@ impl Default for Map {
 }
 
 impl Map {
-    /// Shows the field as large as fits into the room, and lets the user drag the robot.
-    pub fn ui(&mut self, ui: &mut Ui, room: Vec2, content: &MapContent, robot: &mut Robot) {
+    /// Shows the field as large as fits into the room, and lets the user drag the robot and the things.
+    pub fn ui(
+        &mut self,
+        ui: &mut Ui,
+        room: Vec2,
+        content: &MapContent,
+        robot: &mut Robot,
+        things: &mut Things,
+    ) {
         let field = content.source.archive.field();
         let extent = 2.0 * (field.carpet_half_extent_m() + MARGIN_M);
         let height = (room.x * (extent.y / extent.x) as f32).min(room.y).max(80.0);
         let canvas = self.view.show(ui, field, vec2(room.x, height), "the field from above");
-        self.drag(ui, &canvas, robot);
+        self.drag(ui, &canvas, robot, things);
         self.seen = region(&canvas);
         self.coverage.draw(&canvas, content.layers.coverage);
         if content.layers.footprint {
@@ -86,6 +100,7 @@ impl Map {
         }
         draw_known(&canvas, content, robot.pose());
         draw_path(&canvas, robot.path());
+        draw_things(&canvas, things.shown(), things.chosen().map(|chosen| chosen.thing));
         canvas.arrow(robot.pose().planar(), colors::POSE);
         write_pointer(&canvas);
     }
@@ -191,58 +206,85 @@ impl Map {
         });
     }
 
-    fn drag(&mut self, ui: &Ui, canvas: &FieldCanvas, robot: &mut Robot) {
-        let pose = robot.pose();
-        let caught = |at: Pos2| self.caught(canvas, pose.planar(), at);
-        if let Some(grip) = canvas.response.hover_pos().and_then(caught) {
+    fn drag(&mut self, ui: &Ui, canvas: &FieldCanvas, robot: &mut Robot, things: &mut Things) {
+        let response = &canvas.response;
+        let caught = |at: Pos2| self.caught(canvas, robot.pose().planar(), things, at);
+        if let Some(grip) = response.hover_pos().and_then(caught) {
             ui.set_cursor_icon(match grip {
                 Grip::Draw => CursorIcon::Crosshair,
-                Grip::Move(_) => CursorIcon::Grab,
-                Grip::Turn => CursorIcon::Alias,
+                Grip::Move(_) | Grip::MoveThing(..) => CursorIcon::Grab,
+                Grip::Turn | Grip::TurnThing(_) => CursorIcon::Alias,
             });
         }
-        if canvas.response.drag_started_by(PointerButton::Primary) {
-            self.grip = ui.input(|input| input.pointer.press_origin()).and_then(caught);
-            if self.grip == Some(Grip::Draw) {
+        let is_clicked = response.clicked_by(PointerButton::Primary);
+        let clicked = response.interact_pointer_pos().filter(|_| is_clicked).and_then(caught);
+        let begins = response.drag_started_by(PointerButton::Primary);
+        let begun = begins.then(|| ui.input(|input| input.pointer.press_origin()).and_then(caught));
+        if let Some(Grip::MoveThing(thing, _) | Grip::TurnThing(thing)) = clicked {
+            things.obey(Gesture::Choose(thing));
+        }
+        if let Some(grip) = begun {
+            self.grip = grip;
+            if grip == Some(Grip::Draw) {
                 robot.clear_path();
             }
         }
-        let pointer = canvas.response.interact_pointer_pos();
         if let (Some(grip), Some(at), true) =
-            (self.grip, pointer, canvas.response.dragged_by(PointerButton::Primary))
+            (self.grip, response.interact_pointer_pos(), response.dragged_by(PointerButton::Primary))
         {
-            let place = canvas.in_world(at);
-            match grip {
-                Grip::Move(offset) => {
-                    let place = place + offset;
-                    robot.take(pose.with_planar(Pose2::new(place.x, place.y, pose.yaw_rad)));
-                }
-                Grip::Turn => {
-                    let aside = place - pose.planar().position_in_world();
-                    if aside.length() > 1e-3 {
-                        robot.take(CameraPose { yaw_rad: aside.to_angle(), ..pose });
-                    }
-                }
-                Grip::Draw => robot.draw_to(place),
-            }
+            pull(grip, canvas.in_world(at), robot, things);
         }
         // A drag may also end while the field is not shown.
-        if !canvas.response.dragged() {
+        if !response.dragged() {
             self.grip = None;
         }
     }
 
-    /// Returns the object that can be grabbed at a position.
-    fn caught(&self, canvas: &FieldCanvas, planar: Pose2, at: Pos2) -> Option<Grip> {
+    /// Returns the object that can be grabbed at a position: the nearest within reach.
+    fn caught(&self, canvas: &FieldCanvas, planar: Pose2, things: &Things, at: Pos2) -> Option<Grip> {
         if self.is_drawing {
             return Some(Grip::Draw);
         }
+        let pointer_in_world = canvas.in_world(at);
         let tail = planar.position_in_world();
-        let (to_tail, to_tip) = (canvas.at(tail).distance(at), canvas.arrow_tip(planar).distance(at));
-        match () {
-            () if to_tail.min(to_tip) > CATCH => None,
-            () if to_tail <= to_tip => Some(Grip::Move(tail - canvas.in_world(at))),
-            () => Some(Grip::Turn),
+        let robot =
+            [(canvas.at(tail), Grip::Move(tail - pointer_in_world)), (canvas.arrow_tip(planar), Grip::Turn)];
+        let of_thing = |placed: &PlacedThing| {
+            let middle = placed.place.position_in_world();
+            let grip = Grip::MoveThing(placed.thing, middle - pointer_in_world);
+            let turn = (handle(canvas, placed.place), Grip::TurnThing(placed.thing));
+            let is_robot = placed.thing != Thing::Ball;
+            [Some((canvas.at(middle), grip)), is_robot.then_some(turn)].into_iter().flatten()
+        };
+        let grips = robot.into_iter().chain(things.shown().iter().flat_map(of_thing));
+        let near = grips.map(|(place, grip)| (place.distance(at), grip));
+        let near = near.filter(|(distance, _)| *distance <= CATCH);
+        near.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, grip)| grip)
+    }
+}
+
+/// Pulls what is grabbed to a place in the world, metres.
+fn pull(grip: Grip, place: DVec2, robot: &mut Robot, things: &mut Things) {
+    let pose = robot.pose();
+    match grip {
+        Grip::Move(offset) => {
+            let place = place + offset;
+            robot.take(pose.with_planar(Pose2::new(place.x, place.y, pose.yaw_rad)));
+        }
+        Grip::Turn => {
+            let aside = place - pose.planar().position_in_world();
+            if aside.length() > LEAST_ARM_M {
+                robot.take(CameraPose { yaw_rad: aside.to_angle(), ..pose });
+            }
+        }
+        Grip::Draw => robot.draw_to(place),
+        Grip::MoveThing(thing, offset) => things.obey(Gesture::MoveTo(thing, place + offset)),
+        Grip::TurnThing(thing) => {
+            let middle = things.shown().iter().find(|placed| placed.thing == thing);
+            let aside = middle.map(|placed| place - placed.place.position_in_world());
+            if let Some(aside) = aside.filter(|aside| aside.length() > LEAST_ARM_M) {
+                things.obey(Gesture::TurnTo(thing, aside.to_angle()));
+            }
         }
     }
 }

@@ -10,14 +10,19 @@ use reality_sim_core::pose::CameraPose;
 use reality_sim_synthesis::Archive;
 
 use super::{
+    answer::{Drawn, Facts, Painted},
+    hand::{Hand, Touched},
     kind::{Aspect, Pane, PictureKind},
     layout::Layout,
-    painter::{Facts, Painted},
+    legend,
     settings::DriveSettings,
     source::NearProbe,
-    widgets::{hue, swatch},
+    things::{Gesture, Things},
 };
-use crate::picture_view::{PictureCanvas, Uploaded};
+use crate::{
+    picture_view::{PictureCanvas, Uploaded},
+    shortcuts::{self, Action},
+};
 
 /// Height of the text line above a picture, points.
 const HEAD: f32 = 22.0;
@@ -25,16 +30,24 @@ const HEAD: f32 = 22.0;
 const ROOM_FOR_FACTS: f32 = 200.0;
 /// Explanation of the numbers above a picture.
 const FACTS_MEAN: &str = "px away: by how many pixels the picture moves from there to here, root mean square\nPSNR: likeness to the true picture at this very pose, over the carpet; higher is better\nrecorded: the share of the pixels that recorded pictures show; the others are filled in\nms: the time that it took";
-/// Least fraction that is listed.
-const LEAST_SHARE: f64 = 0.005;
 
 /// Data to show.
 pub struct Gallery<'a> {
     pub archive: &'a Archive,
     pub painted: &'a BTreeMap<Pane, Painted>,
     pub probe: Option<NearProbe>,
-    /// Pose of the robot: pictures may still belong to an earlier pose.
+    /// Pose of the robot and the things: pictures may still belong to earlier ones.
     pub pose: CameraPose,
+    pub things: &'a Things,
+}
+
+/// What the user asks for in the pictures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Asked {
+    /// Goes to another pose.
+    Pose(CameraPose),
+    /// Changes a thing.
+    Change(Gesture),
 }
 
 /// Pictures on the screen.
@@ -42,11 +55,12 @@ pub struct Gallery<'a> {
 pub struct Pictures {
     uploaded: BTreeMap<Pane, Uploaded>,
     black: Uploaded,
+    hand: Hand,
 }
 
 impl Pictures {
     /// Shows the choice of pictures and their arrangement.
-    pub fn choice_ui(ui: &mut Ui, settings: &mut DriveSettings) {
+    pub fn choice_ui(ui: &mut Ui, settings: &mut DriveSettings, has_clean_stage: bool) {
         ui.horizontal_wrapped(|ui| {
             for (layout, name, meaning) in Layout::ALL {
                 ui.selectable_value(&mut settings.layout, layout, name).on_hover_text(meaning);
@@ -71,28 +85,33 @@ impl Pictures {
             ui.checkbox(&mut settings.is_best_effort, "Best effort").on_hover_text(
                 "A picture also where little was recorded: what no recorded picture shows is filled in smoothly",
             );
+            clean_box(ui, settings, has_clean_stage);
+            let key = shortcuts::name(ui, Action::Labels);
+            ui.checkbox(&mut settings.is_labelled, "Labels").on_hover_text(format!(
+                "Draw what is known of every pixel over the pictures: classes, things, lines and crossings ({key})"
+            ));
         });
     }
 
-    /// Shows the pictures; returns the pose to go to if the user asks for one.
-    pub fn ui(&mut self, ui: &mut Ui, settings: &mut DriveSettings, gallery: &Gallery) -> Option<CameraPose> {
+    /// Shows the pictures; returns what the user asks for in them.
+    pub fn ui(&mut self, ui: &mut Ui, settings: &mut DriveSettings, gallery: &Gallery) -> Option<Asked> {
         let panes = settings.panes();
-        let legend = if settings.layout == Layout::All { 0.0 } else { 44.0 };
+        self.hand.rest(ui);
+        let legend = legend::height(settings);
         let room = (ui.available_size() - vec2(0.0, legend)).max(Vec2::splat(60.0));
-        let there = match (settings.layout, &panes[..]) {
+        let asked = match (settings.layout, &panes[..]) {
             (Layout::Wipe, &[left, right]) => {
                 self.wipe(ui, [left, right], room, &mut settings.wipe_share, gallery)
             }
             _ => self.grid(ui, &panes, room, gallery),
         };
-        if settings.layout != Layout::All {
-            legend_ui(ui, panes[0], gallery);
-        }
-        there
+        let drawn = gallery.painted.get(&panes[0]).and_then(|painted| painted.result.as_ref().ok());
+        legend::ui(ui, settings, drawn, gallery.archive);
+        asked
     }
 
     /// Shows all panes, in the number of columns that makes them largest.
-    fn grid(&mut self, ui: &mut Ui, panes: &[Pane], room: Vec2, gallery: &Gallery) -> Option<CameraPose> {
+    fn grid(&mut self, ui: &mut Ui, panes: &[Pane], room: Vec2, gallery: &Gallery) -> Option<Asked> {
         let gap = ui.spacing().item_spacing;
         let pixels = size_of(gallery.archive);
         let cell = |columns: usize| {
@@ -104,32 +123,33 @@ impl Pictures {
         let largest = (1..=panes.len()).max_by(|&a, &b| scale(a).total_cmp(&scale(b))).unwrap_or(1);
         // Two pictures are easier to compare side by side.
         let columns = if panes.len() == 2 && scale(2) > 0.7 * scale(1) { 2 } else { largest };
-        let mut there = None;
+        let mut asked = None;
         for row in panes.chunks(columns) {
             ui.horizontal_top(|ui| {
                 for &pane in row {
-                    ui.vertical(|ui| there = self.pane(ui, pane, cell(columns), gallery).or(there));
+                    ui.vertical(|ui| asked = self.pane(ui, pane, cell(columns), gallery).or(asked));
                 }
             });
         }
-        there
+        asked
     }
 
     /// Shows one picture under its name, or the reason why there is none.
-    fn pane(&mut self, ui: &mut Ui, pane: Pane, room: Vec2, gallery: &Gallery) -> Option<CameraPose> {
+    fn pane(&mut self, ui: &mut Ui, pane: Pane, room: Vec2, gallery: &Gallery) -> Option<Asked> {
         let painted = gallery.painted.get(&pane);
         let pixels = size_of(gallery.archive);
         let width = (room / vec2(pixels[0] as f32, pixels[1] as f32)).min_elem() * pixels[0] as f32;
         ui.set_width(width.max(40.0));
-        head(ui, pane, painted, gallery.pose);
+        head(ui, pane, painted, gallery);
         let canvas = PictureCanvas::allocate(ui, pixels, room, &described(pane, painted));
-        match painted.map(|painted| &painted.result) {
-            Some(Ok(drawn)) => {
+        match painted.map(|painted| (painted.pose, &painted.result)) {
+            Some((pose, Ok(drawn))) => {
                 let texture = self.texture(ui, pane, &drawn.picture);
                 canvas.draw(texture, Color32::WHITE);
-                None
+                draw_marks(drawn, &canvas, canvas.rect);
+                self.hand.touch(ui, &canvas, &touched(pane, pose, drawn, gallery)).map(Asked::Change)
             }
-            Some(Err(reason)) => words(ui, canvas.rect, pane, reason, gallery.probe),
+            Some((_, Err(reason))) => words(ui, canvas.rect, pane, reason, gallery.probe),
             None => waiting(ui, canvas.rect),
         }
     }
@@ -142,7 +162,7 @@ impl Pictures {
         room: Vec2,
         share: &mut f32,
         gallery: &Gallery,
-    ) -> Option<CameraPose> {
+    ) -> Option<Asked> {
         let painted = panes.map(|pane| gallery.painted.get(&pane));
         let pixels = size_of(gallery.archive);
         let room = room - vec2(0.0, 2.0 * (HEAD + ui.spacing().item_spacing.y));
@@ -151,7 +171,7 @@ impl Pictures {
         {
             ui.horizontal(|ui| {
                 ui.weak(*side);
-                head(ui, *pane, painted, gallery.pose);
+                head(ui, *pane, painted, gallery);
             });
         }
         let names = [0, 1].map(|side| described(panes[side], painted[side]));
@@ -161,18 +181,38 @@ impl Pictures {
             Some(Ok(drawn)) => self.texture(ui, panes[side], &drawn.picture),
             _ => self.no_picture(ui),
         });
-        canvas.draw_wipe(ui, textures[0], textures[1], share);
-        let line = canvas.rect.left() + *share * canvas.rect.width();
+        let line = |share: f32| canvas.rect.left() + share * canvas.rect.width();
+        let side = self.side(&canvas, panes, line(*share));
+        let mut asked = None;
+        if let Some(Painted { pose, result: Ok(drawn), .. }) = painted[side] {
+            let touched = touched(panes[side], *pose, drawn, gallery);
+            asked = self.hand.touch(ui, &canvas, &touched).map(Asked::Change);
+        }
+        if !self.hand.is_holding() && asked.is_none() {
+            canvas.drag_wipe(ui, share);
+        }
+        canvas.draw_wipe(textures[0], textures[1], *share);
+        let line = line(*share);
         let halves = [canvas.rect.with_max_x(line), canvas.rect.with_min_x(line)];
-        let mut there = None;
         for side in [0, 1] {
+            if let Some(Ok(drawn)) = painted[side].map(|painted| &painted.result) {
+                draw_marks(drawn, &canvas, halves[side]);
+            }
             if let Some(Err(reason)) = painted[side].map(|painted| &painted.result)
                 && halves[side].width() > 100.0
             {
-                there = words(ui, halves[side], panes[side], reason, gallery.probe).or(there);
+                asked = words(ui, halves[side], panes[side], reason, gallery.probe).or(asked);
             }
         }
-        there
+        asked
+    }
+
+    /// Returns which of the two pictures of a wipe the mouse touches: the one that the hand began with, or the one under the
+    /// pointer.
+    fn side(&self, canvas: &PictureCanvas, panes: [Pane; 2], line: f32) -> usize {
+        let held = self.hand.pane().and_then(|held| panes.iter().position(|pane| *pane == held));
+        let pointer = canvas.response.interact_pointer_pos().or(canvas.response.hover_pos());
+        held.unwrap_or_else(|| usize::from(pointer.is_some_and(|pointer| pointer.x > line)))
     }
 
     fn texture(&mut self, ui: &Ui, pane: Pane, picture: &Arc<ColorImage>) -> TextureId {
@@ -218,9 +258,35 @@ fn aspect_box(ui: &mut Ui, settings: &mut DriveSettings) {
     chosen.response.labelled_by(label.id);
 }
 
-/// Shows a picture's name and facts, and whether it belongs to another pose than the robot's.
-fn head(ui: &mut Ui, pane: Pane, painted: Option<&Painted>, pose: CameraPose) {
-    let is_old = painted.is_some_and(|painted| painted.pose != pose);
+/// Shows the switch of the clean stage.
+fn clean_box(ui: &mut Ui, settings: &mut DriveSettings, has_clean_stage: bool) {
+    let mut is_on = settings.is_clean && has_clean_stage;
+    let clicked = ui
+        .add_enabled(has_clean_stage, egui::Checkbox::new(&mut is_on, "Clean stage"))
+        .on_hover_text("Without the people, robots and balls that stood there while recording")
+        .on_disabled_hover_text("This database does not know what stood there while recording");
+    if clicked.changed() {
+        settings.is_clean = is_on;
+    }
+}
+
+/// Returns a picture with the things that the mouse may touch in it.
+fn touched<'a>(pane: Pane, pose: CameraPose, drawn: &'a Drawn, gallery: &'a Gallery) -> Touched<'a> {
+    let camera = &gallery.archive.setup().camera;
+    Touched { pane, camera, pose, seen: &drawn.things, things: gallery.things }
+}
+
+/// Draws a picture's labels in the part of it that is shown, if there are any.
+fn draw_marks(drawn: &Drawn, canvas: &PictureCanvas, shown: Rect) {
+    if let Some(marks) = &drawn.marks {
+        marks.draw(canvas, shown);
+    }
+}
+
+/// Shows a picture's name and facts, and whether it belongs to another pose or other things than there are now.
+fn head(ui: &mut Ui, pane: Pane, painted: Option<&Painted>, gallery: &Gallery) {
+    let is_old = painted
+        .is_some_and(|painted| painted.pose != gallery.pose || painted.things != gallery.things.shown());
     let has_room = !is_old || ui.available_width() > ROOM_FOR_FACTS;
     let drawn = painted.and_then(|painted| painted.result.as_ref().ok());
     let facts = drawn.map(|drawn| &drawn.facts).filter(|_| has_room);
@@ -235,7 +301,7 @@ fn head(ui: &mut Ui, pane: Pane, painted: Option<&Painted>, pose: CameraPose) {
     };
     ui.allocate_ui_with_layout(vec2(ui.available_width(), HEAD), Flow::right_to_left(Align::Center), |ui| {
         if is_old {
-            ui.weak("updating …").on_hover_text("This is the picture at a pose before");
+            ui.weak("updating …").on_hover_text("This is the picture before the last change");
         }
         ui.with_layout(Flow::left_to_right(Align::Center), names);
     });
@@ -258,7 +324,7 @@ fn facts_in_words(kind: PictureKind, facts: &Facts) -> String {
     if let Some(covered) = facts.covered {
         words.push(format!("{:.0} % recorded", 100.0 * covered));
     }
-    words.push(format!("{:.0} ms", facts.milliseconds));
+    words.push(format!("{:.0} ms", facts.times.whole_ms()));
     words.join(" · ")
 }
 
@@ -271,23 +337,25 @@ fn described(pane: Pane, painted: Option<&Painted>) -> String {
         Aspect::Trust => ", how far to trust it,",
     };
     match painted {
-        Some(Painted { pose, result: Ok(_) }) => {
+        Some(Painted { pose, result: Ok(drawn), .. }) => {
             let degrees = pose.yaw_rad.to_degrees();
-            format!("{name}{shown} at x {:.2} m, y {:.2} m, yaw {degrees:.0}°", pose.x_m, pose.y_m)
+            let marks =
+                drawn.marks.as_ref().map_or_else(String::new, |marks| format!(", {}", marks.in_words()));
+            format!("{name}{shown} at x {:.2} m, y {:.2} m, yaw {degrees:.0}°{marks}", pose.x_m, pose.y_m)
         }
         Some(_) => format!("no picture: {name}"),
         None => format!("{name} on its way"),
     }
 }
 
-fn waiting(ui: &mut Ui, rect: Rect) -> Option<CameraPose> {
+fn waiting(ui: &mut Ui, rect: Rect) -> Option<Asked> {
     let place = Rect::from_center_size(rect.center(), Vec2::splat(24.0));
     ui.put(place, egui::Spinner::new().size(24.0));
     None
 }
 
 /// Shows why there is no picture, and a button that leads to one.
-fn words(ui: &mut Ui, rect: Rect, pane: Pane, reason: &str, probe: Option<NearProbe>) -> Option<CameraPose> {
+fn words(ui: &mut Ui, rect: Rect, pane: Pane, reason: &str, probe: Option<NearProbe>) -> Option<Asked> {
     let inside = rect.shrink(0.06 * rect.width()).round_ui();
     let mut child = ui.new_child(
         UiBuilder::new().max_rect(inside).layout(Flow::top_down(Align::Center)).id_salt(pane.kind.name()),
@@ -306,41 +374,7 @@ fn words(ui: &mut Ui, rect: Rect, pane: Pane, reason: &str, probe: Option<NearPr
             let before = if is_small { go(ui) } else { None };
             ui.add(egui::Label::new(text).wrap());
             let after = if is_small { None } else { go(ui) };
-            before.or(after).map(|probe| probe.pose)
+            before.or(after).map(|probe| Asked::Pose(probe.pose))
         })
         .inner
-}
-
-/// Shows the meaning of the colours.
-fn legend_ui(ui: &mut Ui, pane: Pane, gallery: &Gallery) {
-    let drawn = gallery.painted.get(&pane).and_then(|painted| painted.result.as_ref().ok());
-    let Some(drawn) = drawn else { return };
-    ui.horizontal_wrapped(|ui| match pane.aspect {
-        Aspect::Trust => {
-            ui.weak("white: fully · black: not at all");
-        }
-        _ if drawn.facts.used.is_empty() => {
-            ui.weak("made of no recorded picture");
-        }
-        _ => {
-            ui.weak("made of");
-            for (number, used) in drawn.facts.used.iter().enumerate() {
-                if used.share >= LEAST_SHARE {
-                    let frame = gallery.archive.images()[used.image as usize].frame_index;
-                    let share = 100.0 * used.share;
-                    let text = format!("frame {frame}, {:.0} px away: {share:.0} %", used.distance_px);
-                    swatched(ui, hue(number), &text);
-                }
-            }
-            if pane.aspect == Aspect::Origins {
-                swatched(ui, Color32::BLACK, "no recorded picture shows it");
-            }
-        }
-    });
-}
-
-/// Shows words behind a colour swatch, in one row.
-fn swatched(ui: &mut Ui, color: Color32, text: &str) {
-    let row = egui::WidgetAtom::new((swatch(color), RichText::new(text).weak()));
-    ui.add(row).widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, text));
 }

@@ -14,8 +14,8 @@ const WALK_M_PER_S: f64 = 0.4;
 const TURN_RAD_PER_S: f64 = 0.8;
 /// Speed along a path, metres per second.
 const FOLLOW_M_PER_S: f64 = 0.3;
-/// Distance by which the robot may leave the carpet, metres.
-const MARGIN_M: f64 = 1.0;
+/// Distance by which robots and ball may leave the carpet, metres.
+pub const MARGIN_M: f64 = 1.0;
 /// Distance between points of a path, metres.
 const PATH_STEP_M: f64 = 0.05;
 /// Look-ahead distance that gives the heading on a path, metres: hand-drawn lines are not straight.

@@ -21,6 +21,10 @@ pub struct DriveSettings {
     /// Position of the line of a wipe, 0 to 1 from the left.
     pub wipe_share: f32,
     pub is_best_effort: bool,
+    /// Whether pictures are those of the clean stage, where the database has one.
+    pub is_clean: bool,
+    /// Whether labels are drawn over the pictures.
+    pub is_labelled: bool,
     pub layers: Layers,
     /// Name of the device that draws and finds poses; the first device if no device has it.
     pub device: String,
@@ -37,6 +41,8 @@ impl Default for DriveSettings {
             aspect: Aspect::default(),
             wipe_share: 0.5,
             is_best_effort: false,
+            is_clean: false,
+            is_labelled: false,
             layers: Layers::default(),
             device: String::new(),
             map_share: 0.37,

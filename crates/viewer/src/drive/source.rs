@@ -6,6 +6,7 @@ use image::RgbImage;
 use reality_sim_core::{pose::CameraPose, sequence::Sequence};
 use reality_sim_db::metric::PixelMetric;
 use reality_sim_pipeline::{self as pipeline, Event, FilterPlan, HoldBack, PipelineError, Plan, PoseChoice};
+use reality_sim_sensor::Model;
 use reality_sim_synthesis::Archive;
 
 use super::work_folder::WorkFolder;
@@ -20,6 +21,8 @@ pub struct Source {
     pub archive: Arc<Archive>,
     /// True pictures that are not in the archive.
     pub probes: Option<Probes>,
+    /// Effects of the camera, which things in the pictures go through.
+    pub model: Option<Model>,
     /// Declared after the archive, which keeps a file in it open.
     _folder: Option<WorkFolder>,
 }
@@ -27,7 +30,12 @@ pub struct Source {
 impl Source {
     /// Takes a database that was opened.
     pub fn of_archive(archive: Arc<Archive>) -> Self {
-        Self { archive, probes: None, _folder: None }
+        Self { archive, probes: None, model: None, _folder: None }
+    }
+
+    /// Lets things in the pictures go through the effects of a model.
+    pub fn with_model(self, model: Option<Model>) -> Self {
+        Self { model, ..self }
     }
 }
 
@@ -123,7 +131,7 @@ pub fn build(
     }
     stop_if_cancelled(progress)?;
     let archive = Archive::open(&path, CACHE_BYTES).map_err(|error| error.to_string())?;
-    Ok(Source { archive: Arc::new(archive), probes, _folder: Some(folder) })
+    Ok(Source { archive: Arc::new(archive), probes, model: None, _folder: Some(folder) })
 }
 
 fn filter_plan(device: Option<&Device>) -> FilterPlan {

@@ -24,16 +24,20 @@ use reality_sim_core::{
 
 use super::{
     DrivePanel, DriveSettings,
+    answer::{Answer, Around, Painted},
     driving::Driving,
     kind::{Aspect, Pane, PictureKind},
-    painter::{Answer, Around, Painted, Painter, Wish},
+    painter::Painter,
     source::{Source, build},
+    wish::Wish,
 };
 use crate::{
     background::{Outcome, Task},
     device::Device,
     problems::Problems,
 };
+
+mod staged;
 
 /// Time limit, far more than any test takes.
 const LIMIT: Duration = Duration::from_secs(120);
@@ -78,6 +82,9 @@ fn wish(source: &Source, pose: CameraPose) -> Wish {
         pose,
         panes: PictureKind::ALL.map(Pane::picture).to_vec(),
         is_best_effort: false,
+        is_clean: false,
+        things: Vec::new(),
+        is_labelled: false,
         edges_in: None,
         probes: source.probes.clone(),
         device: None,
@@ -327,7 +334,7 @@ const ALONE: &str = "REALITY_SIM_VIEWER_TEST_TEMPORARY";
 fn the_panel_that_is_left() {
     let Some(parent) = std::env::var_os(ALONE).map(PathBuf::from) else { return };
     let (sequence, start) = (Arc::new(walk()), Instant::now());
-    let panel = DrivePanel::of_recording(sequence);
+    let panel = DrivePanel::of_recording(sequence, None);
     let show = |ui: &mut Ui, panel: &mut DrivePanel| {
         panel.ui(ui, &mut DriveSettings::default(), &[], &mut Problems::default());
     };
@@ -376,7 +383,7 @@ fn a_long_recording_becomes_a_database_only_on_request() {
     let show = |ui: &mut Ui, panel: &mut DrivePanel| {
         panel.ui(ui, &mut DriveSettings::default(), &[], &mut Problems::default());
     };
-    let panel = DrivePanel::of_recording(Arc::new(long));
+    let panel = DrivePanel::of_recording(Arc::new(long), None);
     let mut window = Harness::builder().with_size([900.0, 600.0]).build_ui_state(show, panel);
     window.run_steps(3);
     window.get_by_label_contains("its 2001 pictures");

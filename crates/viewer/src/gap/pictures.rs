@@ -66,7 +66,8 @@ impl Pictures {
         let canvas = PictureCanvas::allocate(ui, left.size, room, &name);
         let uploaded = &mut self.simulated[usize::from(side == Side::With)];
         let textures = [self.measured.texture(ui.ctx(), left), uploaded.texture(ui.ctx(), right)];
-        canvas.draw_wipe(ui, textures[0], textures[1], share);
+        canvas.drag_wipe(ui, share);
+        canvas.draw_wipe(textures[0], textures[1], *share);
     }
 }
 

@@ -5,7 +5,7 @@ use glam::DVec2;
 use reality_sim_core::pose::{CameraPose, Pose2};
 
 use super::{
-    super::{edges::Edges, painter::Around, widgets::hue},
+    super::{answer::Around, edges::Edges, widgets::hue},
     layers::{EDGES, IMAGES, MapContent},
 };
 use crate::{colors, field_view::FieldCanvas};

@@ -7,7 +7,7 @@ use reality_sim_synthesis::UsedImage;
 use serde::{Deserialize, Serialize};
 
 use super::super::{
-    painter::Around,
+    answer::Around,
     source::{Probes, Source},
 };
 

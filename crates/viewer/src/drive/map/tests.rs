@@ -1,12 +1,17 @@
 use egui_kittest::{Harness, kittest::Queryable};
-use reality_sim_core::field::FieldDimensions;
+use reality_sim_core::{
+    camera::{Camera, Distortion},
+    field::FieldDimensions,
+};
 
 use super::*;
+use crate::drive::things::Eye;
 
 /// A map, shown or hidden, and its robot.
 struct Window {
     map: Map,
     robot: Robot,
+    things: Things,
     field: FieldDimensions,
     is_shown: bool,
 }
@@ -14,11 +19,13 @@ struct Window {
 fn window() -> Harness<'static, Window> {
     let field = FieldDimensions::preset("humanoid-kidsize-2010").unwrap();
     let robot = Robot::new(CameraPose::new(Pose2::new(0.0, 0.0, 0.0), 0.5, 0.4, 0.0), &field);
-    let window = Window { map: Map::default(), robot, field, is_shown: true };
+    let camera = Camera::new([640, 480], [215.0, 215.0, 319.5, 239.5], Distortion::Pinhole).unwrap();
+    let things = Things::before(Eye { camera: &camera, pose: robot.pose() }, &field);
+    let window = Window { map: Map::default(), robot, things, field, is_shown: true };
     let show = |ui: &mut Ui, window: &mut Window| {
         if window.is_shown {
             let canvas = window.map.view.show(ui, &window.field, vec2(600.0, 400.0), "the field");
-            window.map.drag(ui, &canvas, &mut window.robot);
+            window.map.drag(ui, &canvas, &mut window.robot, &mut window.things);
         }
     };
     Harness::builder().with_size([620.0, 420.0]).build_ui_state(show, window)
