@@ -4,7 +4,7 @@ use glam::Vec2;
 use rayon::prelude::*;
 use reality_sim_core::{
     camera::LANES,
-    warp::{Origin, Source, Surface, Target, UNSEEN_COST, fill, glimpse_places},
+    warp::{Look, Origin, Source, Surface, Target, UNSEEN_COST, fill},
 };
 use reality_sim_db::{Database, Ground, ImageMask, ImageRecord, index::ImageIndex};
 
@@ -44,11 +44,11 @@ impl CleanView {
     }
 
     /// Raises the costs of pixels that an image does not show because something stood in front of them, see
-    /// [`reality_sim_core::warp::costs`].
-    pub fn raise_costs(&self, target: &Target, source: &Source, image: ImageIndex, costs: &mut [f32]) {
+    /// [`Look::costs`].
+    pub fn raise_costs(&self, look: &Look, source: &Source, image: ImageIndex, costs: &mut [f32]) {
         let Some(mask) = self.mask(image) else { return };
         let size = [source.camera.max_u, source.camera.max_v].map(|last| last as u32 + 1);
-        for (cost, place) in costs.iter_mut().zip(glimpse_places(target, source)) {
+        for (cost, place) in costs.iter_mut().zip(look.places(source)) {
             if place.is_some_and(|place| mask.hides(place.map(|pixel| pixel.round() as u32), size)) {
                 *cost = cost.max(UNSEEN_COST);
             }

@@ -7,7 +7,7 @@
 use nalgebra::{DMatrix, DVector};
 use reality_sim_core::{
     statistics::median,
-    warp::{Source, Target, glimpses},
+    warp::{Look, Source},
 };
 
 /// Usable grey values: darker ones are noise, brighter ones are saturated.
@@ -23,8 +23,8 @@ const PRIOR_PLACES: f64 = 2.0;
 const LARGEST_GAIN: f64 = 2.0;
 
 /// Returns a gain for red, green and blue of each source.
-pub(crate) fn gains(target: &Target, sources: &[Source]) -> Vec<[f32; 3]> {
-    let seen: Vec<Vec<Option<[f32; 3]>>> = sources.iter().map(|source| glimpses(target, source)).collect();
+pub(crate) fn gains(look: &Look, sources: &[Source]) -> Vec<[f32; 3]> {
+    let seen: Vec<Vec<Option<[f32; 3]>>> = sources.iter().map(|source| look.colors(source)).collect();
     let channels = [0, 1, 2].map(|channel| channel_gains(&seen, channel));
     (0..sources.len()).map(|source| [0, 1, 2].map(|channel| channels[channel][source])).collect()
 }

@@ -10,7 +10,7 @@ use image::imageops::{FilterType, resize};
 use rayon::prelude::*;
 use reality_sim_core::{
     camera::KernelCamera,
-    warp::{BlendWeights, Hall, Picture, Placement, ProxyGeometry, RayTable, Source, Target, glimpses},
+    warp::{BlendWeights, Hall, Look, Picture, Placement, ProxyGeometry, RayTable, Source, Target},
 };
 
 use crate::{Archive, SynthesisError, select::select, smaller_camera::smaller};
@@ -117,7 +117,8 @@ impl<'a> PicturePairs<'a> {
         let sums = self.pairs.par_iter().map(|&[target, partner]| {
             let [own, other] = [target, partner].map(|index| &self.pictures[index]);
             let target = Target { rays: &own.rays, placement: own.placement, proxy: &proxy };
-            let colors = glimpses(&target, &own.source()).into_iter().zip(glimpses(&target, &other.source()));
+            let look = Look::new(&target);
+            let colors = look.colors(&own.source()).into_iter().zip(look.colors(&other.source()));
             let differences = colors.filter_map(|(a, b)| Some(color_difference(a?, b?)));
             differences.fold([0.0, 0.0], |sum, difference| [sum[0] + difference, sum[1] + 1.0])
         });
@@ -193,7 +194,7 @@ fn partners(pictures: &[SmallPicture], target: usize, proxy: &ProxyGeometry) -> 
         (0..pictures.len()).filter(|&other| distance_m(&pictures[other]) > BASELINE_M).collect();
     let sources: Vec<Source> = others.iter().map(|&other| pictures[other].source()).collect();
     let wanted = Target { rays: &own.rays, placement: own.placement, proxy };
-    let chosen = select(&wanted, &sources, &BlendWeights::default(), PARTNERS);
+    let chosen = select(&Look::new(&wanted), &sources, &BlendWeights::default(), PARTNERS);
     chosen.into_iter().map(|index| [target, others[index]]).collect()
 }
 

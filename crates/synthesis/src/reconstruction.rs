@@ -90,9 +90,12 @@ const PIXELS_A_TASK: usize = 1 << 15;
 
 impl Counts {
     fn new(origins: &[Origin]) -> Self {
+        // Neighbouring pixels mostly have the same source: runs are counted, since a counter that was just written is slow to read.
         let count = |origins: &[Origin]| {
             let mut counts = [0; 256];
-            origins.iter().for_each(|origin| counts[usize::from(origin.source)] += 1);
+            for run in origins.chunk_by(|a, b| a.source == b.source) {
+                counts[usize::from(run[0].source)] += run.len();
+            }
             counts
         };
         let sum = |a: [usize; 256], b: [usize; 256]| std::array::from_fn(|source| a[source] + b[source]);

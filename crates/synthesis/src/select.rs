@@ -5,26 +5,29 @@
 //! (greedy facility location: within 1 − 1/e of the best choice).
 
 use rayon::prelude::*;
-use reality_sim_core::warp::{BlendWeights, Source, Target, costs};
+use reality_sim_core::{
+    camera::LANES,
+    warp::{BlendWeights, Look, Source},
+};
 
 /// Candidates that one task looks through: less work would not outweigh its start.
 const CANDIDATES_A_TASK: usize = 16;
 
 /// Returns the indices of the candidates to use, at most `count`, the best first.
-pub fn select(target: &Target, candidates: &[Source], weights: &BlendWeights, count: usize) -> Vec<usize> {
-    least_costly(&all_costs(target, candidates, weights, |_, _| {}), count)
+pub fn select(look: &Look, candidates: &[Source], weights: &BlendWeights, count: usize) -> Vec<usize> {
+    least_costly(&all_costs(look, candidates, weights, |_, _| {}), count)
 }
 
-/// Returns how badly each candidate shows each of the target's pixels, see [`costs`]. `change` may raise the costs of a candidate,
+/// Returns how badly each candidate shows the pixels of a look, see [`Look::costs`]. `change` may raise the costs of a candidate,
 /// which it gets with its index.
 pub fn all_costs(
-    target: &Target,
+    look: &Look,
     candidates: &[Source],
     weights: &BlendWeights,
     change: impl Fn(usize, &mut [f32]) + Sync,
 ) -> Vec<Vec<f32>> {
     let costs_of = |(index, candidate): (usize, &Source)| {
-        let mut costs = costs(target, candidate, weights);
+        let mut costs = look.costs(candidate, weights);
         change(index, &mut costs);
         costs
     };
@@ -37,7 +40,7 @@ pub fn least_costly(costs: &[Vec<f32>], count: usize) -> Vec<usize> {
     let mut least = vec![f32::INFINITY; pixels];
     let mut chosen: Vec<usize> = Vec::new();
     while chosen.len() < count.min(costs.len()) {
-        let total = |index: usize| -> f32 { costs[index].iter().zip(&least).map(|(a, b)| a.min(*b)).sum() };
+        let total = |index: usize| sum_of_least(&costs[index], &least);
         let rest = (0..costs.len()).filter(|index| !chosen.contains(index));
         let Some((best, _)) = rest.map(|index| (index, total(index))).min_by(|a, b| a.1.total_cmp(&b.1))
         else {
@@ -47,4 +50,15 @@ pub fn least_costly(costs: &[Vec<f32>], count: usize) -> Vec<usize> {
         chosen.push(best);
     }
     chosen
+}
+
+/// Returns the sum of the lesser numbers of two lists, summed in sixteen parts, which takes vectors.
+fn sum_of_least(a: &[f32], b: &[f32]) -> f32 {
+    let mut sums = [0.0_f32; LANES];
+    for (a, b) in a.chunks(LANES).zip(b.chunks(LANES)) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a.min(*b);
+        }
+    }
+    sums.iter().sum()
 }

@@ -6,8 +6,8 @@ use reality_sim_core::{
     camera::Camera,
     pose::CameraPose,
     warp::{
-        BlendWeights, CpuWarper, MAX_SOURCES, Origin, Picture, Placement, ProxyGeometry, RayTable, Source,
-        Target, Warper, complete,
+        BlendWeights, CpuWarper, Look, MAX_SOURCES, Origin, Picture, Placement, ProxyGeometry, RayTable,
+        Source, Target, Warper, complete,
     },
 };
 use reality_sim_db::index::{ImageIndex, Neighbour};
@@ -177,7 +177,7 @@ impl Synthesizer {
     /// Decodes the pictures that any method needs at this pose, so that a later call draws without delay.
     pub fn prepare(&self, pose: CameraPose) -> Result<(), SynthesisError> {
         let proxy = self.archive.proxy_geometry().holding(pose);
-        let mut images = self.chosen(&self.target(pose, &proxy), pose, self.config.sources)?;
+        let mut images = self.chosen(&Look::new(&self.target(pose, &proxy)), pose, self.config.sources)?;
         images.extend(self.nearest_of_size(pose).ok().map(|nearest| nearest.image));
         images.sort_unstable();
         images.dedup();
@@ -287,24 +287,20 @@ impl Synthesizer {
 
     /// Chooses the neighbours to draw from, and measures how bright they are.
     fn choose(&self, target: &Target, pose: CameraPose, count: usize) -> Result<Choice, SynthesisError> {
-        let images = self.chosen(target, pose, count)?;
+        let look = Look::new(target);
+        let images = self.chosen(&look, pose, count)?;
         let pictures = self.pictures(&images)?;
         let sources: Vec<Source> = images
             .iter()
             .zip(&pictures)
             .map(|(&image, picture)| self.archive.source(image, picture))
             .collect();
-        let gains = if sources.len() > 1 { gains(target, &sources) } else { vec![[1.0; 3]; sources.len()] };
+        let gains = if sources.len() > 1 { gains(&look, &sources) } else { vec![[1.0; 3]; sources.len()] };
         Ok(Choice { pose, count, images, gains })
     }
 
     /// Chooses the neighbours to draw from: those of the nearest and the natural ones that together show most.
-    fn chosen(
-        &self,
-        target: &Target,
-        pose: CameraPose,
-        count: usize,
-    ) -> Result<Vec<ImageIndex>, SynthesisError> {
+    fn chosen(&self, look: &Look, pose: CameraPose, count: usize) -> Result<Vec<ImageIndex>, SynthesisError> {
         let mut candidates = self.nearest(pose, self.config.candidates)?;
         let natural = self.archive.index().natural(pose);
         for natural in natural.map_err(|reason| SynthesisError::NoNeighbours { pose, reason })? {
@@ -317,9 +313,9 @@ impl Synthesizer {
         let sources: Vec<Source> =
             candidates.iter().map(|candidate| self.archive.source(candidate.image, &nothing)).collect();
         let view = self.clean_view()?;
-        let costs = all_costs(target, &sources, &self.config.weights, |index, costs| {
+        let costs = all_costs(look, &sources, &self.config.weights, |index, costs| {
             if let Some(view) = view {
-                view.raise_costs(target, &sources[index], candidates[index].image, costs);
+                view.raise_costs(look, &sources[index], candidates[index].image, costs);
             }
         });
         let chosen = least_costly(&costs, count.clamp(1, MAX_SOURCES));

@@ -216,30 +216,9 @@ pub(crate) fn weigh(source: &Source, weights: &BlendWeights, pixels: &Pixels, pe
     weight
 }
 
-/// Number of rows of pixels that [`costs`] and [`glimpses`] examine, with sixteen pixels each.
-const LOOK_ROWS: usize = 12;
-
-/// Cost of a pixel that a source does not see, the largest of [`costs`].
-pub const UNSEEN_COST: f32 = 4.0;
-
-/// Returns how badly a source shows each of a few hundred evenly spread pixels of the target: 0 for a perfect view.
-pub fn costs(target: &Target, source: &Source, weights: &BlendWeights) -> Vec<f32> {
-    let mut costs = Vec::with_capacity(LOOK_ROWS * LANES);
-    for points in spread_points(target) {
-        let pixels = see(source.camera, &source.placement, &points);
-        let weight =
-            pixels.map_or([0.0; LANES], |pixels| view_weight(target, source, weights, &points, &pixels));
-        costs.extend((0..LANES).map(|i| {
-            let has_ray = !points.distance[i].is_nan();
-            if has_ray { (1.0 / weight[i].max(1e-6).sqrt()).min(UNSEEN_COST) } else { 0.0 }
-        }));
-    }
-    costs
-}
-
 /// Returns the weight of a source at points, 0 where a goal hides them.
 #[inline(always)]
-fn view_weight(
+pub(crate) fn view_weight(
     target: &Target,
     source: &Source,
     weights: &BlendWeights,
@@ -253,56 +232,4 @@ fn view_weight(
         weight[i] = if unhidden[i] > 0.0 { weight[i] } else { 0.0 };
     }
     weight
-}
-
-/// Returns the colours that a source shows at the pixels of [`costs`]; `None` where it does not see them, or its mask hides
-/// them.
-pub fn glimpses(target: &Target, source: &Source) -> Vec<Option<[f32; 3]>> {
-    let mut glimpses = Vec::with_capacity(LOOK_ROWS * LANES);
-    for points in spread_points(target) {
-        let unhidden = unhidden(target.proxy, &source.placement, &points);
-        let pixels = see(source.camera, &source.placement, &points);
-        let colors = pixels.map(|pixels| (pixels.seen, sample(source.picture, &pixels)));
-        let colors = colors.as_ref();
-        glimpses.extend((0..LANES).map(|i| {
-            colors
-                .filter(|(seen, samples)| seen[i] * unhidden[i] * samples.shown[i] > 0.0)
-                .map(|(_, samples)| samples.color.map(|channel| channel[i]))
-        }));
-    }
-    glimpses
-}
-
-/// Returns the places, in pixels of a source's camera, at which it would show the pixels of [`costs`]; `None` where it does not see
-/// them.
-pub fn glimpse_places(target: &Target, source: &Source) -> Vec<Option<[f32; 2]>> {
-    let mut places = Vec::with_capacity(LOOK_ROWS * LANES);
-    for points in spread_points(target) {
-        let unhidden = unhidden(target.proxy, &source.placement, &points);
-        let pixels = see(source.camera, &source.placement, &points);
-        let pixels = pixels.as_ref();
-        places.extend((0..LANES).map(|i| {
-            pixels
-                .filter(|pixels| pixels.seen[i] * unhidden[i] > 0.0)
-                .map(|pixels| [pixels.u[i], pixels.v[i]])
-        }));
-    }
-    places
-}
-
-fn spread_points(target: &Target) -> impl Iterator<Item = ProxyPoints> {
-    (0..LOOK_ROWS).map(|row| {
-        let blocks = target.rays.row((2 * row + 1) * target.rays.height as usize / (2 * LOOK_ROWS));
-        proxy_points(target.proxy, &target.placement, &spread(blocks, target.rays.width as usize))
-    })
-}
-
-/// Returns sixteen rays spread over a row.
-fn spread(blocks: &[RayBlock], width: usize) -> RayBlock {
-    std::array::from_fn(|axis| {
-        std::array::from_fn(|lane| {
-            let pixel = (2 * lane + 1) * width / (2 * LANES);
-            blocks[pixel / LANES][axis][pixel % LANES]
-        })
-    })
 }

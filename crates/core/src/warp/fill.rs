@@ -20,17 +20,24 @@ struct Level {
 
 /// Fills the pixels whose source is [`Origin::NOWHERE`], in rows of this width. Does nothing if no pixel was recorded at all.
 pub fn fill(colors: &mut [[u8; 3]], origins: &[Origin], width: usize) {
-    let has =
-        |is_it: fn(&Origin) -> bool| origins.par_chunks(PIXELS_A_TASK).any(|part| part.iter().any(is_it));
-    if !has(is_unknown) || !has(|origin| origin.is_recorded()) {
+    let blocks = Blocks::new(origins, width);
+    if !blocks.all.iter().any(|block| block.has_unknown) || !blocks.all.iter().any(|block| block.has_recorded)
+    {
         return;
     }
-    let filled = half_size(colors, origins, width).filled();
+    let filled = half_size(colors, origins, width, &blocks).filled();
     let rows = colors.par_chunks_mut(width).zip(origins.par_chunks(width)).enumerate();
     rows.with_min_len(PIXELS_A_TASK.div_ceil(width)).for_each(|(v, (row, origins))| {
-        for (u, (color, _)) in row.iter_mut().zip(origins).enumerate().filter(|(_, (_, o))| is_unknown(o)) {
-            if let Some(pixel) = filled.bilinear(u, v) {
-                *color = [0, 1, 2].map(|channel| (pixel[channel] + 0.5) as u8);
+        let parts = row.chunks_mut(BLOCK).zip(origins.chunks(BLOCK)).enumerate();
+        for (column, (colors, origins)) in
+            parts.filter(|(column, _)| blocks.at(*column, v / BLOCK).has_unknown)
+        {
+            for (u, (color, _)) in
+                colors.iter_mut().zip(origins).enumerate().filter(|(_, (_, o))| is_unknown(o))
+            {
+                if let Some(pixel) = filled.bilinear(column * BLOCK + u, v) {
+                    *color = [0, 1, 2].map(|channel| (pixel[channel] + 0.5) as u8);
+                }
             }
         }
     });
@@ -40,19 +47,124 @@ fn is_unknown(origin: &Origin) -> bool {
     origin.source == Origin::NOWHERE
 }
 
-/// Returns a picture at half its size. The full size is never converted to floats: memory access takes most of the
-/// time.
-fn half_size(colors: &[[u8; 3]], origins: &[Origin], width: usize) -> Level {
-    let height = colors.len() / width;
-    Level::by_rows(width.div_ceil(2), height.div_ceil(2), |v, pixels| {
-        let rows = [2 * v, (2 * v + 1).min(height - 1)].map(|row| row * width..(row + 1) * width);
-        let [upper, lower] = rows.map(|row| colors[row.clone()].chunks(2).zip(origins[row].chunks(2)));
-        // The last row of an odd number has none below it.
-        let lower_counts = u64::from(2 * v + 1 < height);
-        for (pixel, (upper, lower)) in pixels.iter_mut().zip(upper.zip(lower)) {
-            *pixel = mean(known_sum(upper.0, upper.1) + lower_counts * known_sum(lower.0, lower.1));
+/// Columns and rows of a block of pixels: a pixel takes at most the third level of halved pictures from within 14 pixels of it
+/// (2 + 4 + 8), and of what is farther away only blocks as a whole.
+const BLOCK: usize = 16;
+
+/// What is known of a block.
+#[derive(Clone, Copy, Default)]
+struct Block {
+    has_unknown: bool,
+    has_recorded: bool,
+    /// Whether all of it was recorded and nothing beside it is unknown: only its mean matters.
+    is_far: bool,
+}
+
+/// Blocks of a picture, row by row.
+struct Blocks {
+    columns: usize,
+    all: Vec<Block>,
+}
+
+impl Blocks {
+    fn new(origins: &[Origin], width: usize) -> Self {
+        let columns = width.div_ceil(BLOCK);
+        let rows = origins.par_chunks(BLOCK * width);
+        let all = rows.flat_map_iter(|rows| (0..columns).map(move |column| block(rows, width, column)));
+        let mut blocks = Self { columns, all: all.collect() };
+        blocks.find_far();
+        blocks
+    }
+
+    fn at(&self, column: usize, row: usize) -> &Block {
+        &self.all[row * self.columns + column]
+    }
+
+    /// Keeps those blocks far that have nothing unknown beside them.
+    fn find_far(&mut self) {
+        let rows = self.all.len() / self.columns;
+        for index in 0..self.all.len() {
+            let (column, row) = (index % self.columns, index / self.columns);
+            let beside = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
+            let is_clear = beside(row, rows)
+                .all(|row| beside(column, self.columns).all(|column| !self.at(column, row).has_unknown));
+            self.all[index].is_far &= is_clear;
         }
-    })
+    }
+}
+
+/// Examines a block of a row of blocks; whether it is far is said by itself alone.
+fn block(rows: &[Origin], width: usize, column: usize) -> Block {
+    let (mut unknown, mut recorded, mut all) = (0, 0, 0);
+    for row in rows.chunks(width) {
+        let part = &row[column * BLOCK..width.min((column + 1) * BLOCK)];
+        all += part.len();
+        for origin in part {
+            unknown += usize::from(is_unknown(origin));
+            recorded += usize::from(origin.is_recorded());
+        }
+    }
+    let is_far = recorded == all && all == BLOCK * BLOCK;
+    Block { has_unknown: unknown > 0, has_recorded: recorded > 0, is_far }
+}
+
+/// Returns a picture at half its size. The full size is never converted to floats, and far blocks are only summed up: memory
+/// access takes most of the time.
+fn half_size(colors: &[[u8; 3]], origins: &[Origin], width: usize, blocks: &Blocks) -> Level {
+    let height = colors.len() / width;
+    let (half_width, half_height) = (width.div_ceil(2), height.div_ceil(2));
+    let mut pixels = vec![[0.0_f32; 4]; half_width * half_height];
+    let block_rows = pixels.par_chunks_mut(BLOCK / 2 * half_width).enumerate();
+    block_rows.for_each(|(row, pixels)| {
+        for column in 0..blocks.columns {
+            let part = column * BLOCK / 2..half_width.min((column + 1) * BLOCK / 2);
+            if blocks.at(column, row).is_far {
+                let mean = block_mean(colors, width, column, row);
+                pixels.chunks_mut(half_width).for_each(|pixels| pixels[part.clone()].fill(mean));
+                continue;
+            }
+            for (v, pixels) in pixels.chunks_mut(half_width).enumerate() {
+                let v = row * BLOCK + 2 * v;
+                halve_row(colors, origins, width, [column * BLOCK, v], &mut pixels[part.clone()]);
+            }
+        }
+    });
+    Level { width: half_width, height: half_height, pixels }
+}
+
+/// Returns the mean of a whole block that was recorded, with a weight of 1.
+fn block_mean(colors: &[[u8; 3]], width: usize, column: usize, row: usize) -> [f32; 4] {
+    // All bytes of a row of the block beside each other, which takes vectors.
+    let mut sums = [0u16; 3 * BLOCK];
+    for v in row * BLOCK..(row + 1) * BLOCK {
+        let first = v * width + column * BLOCK;
+        let bytes = colors[first..first + BLOCK].as_flattened();
+        sums.iter_mut().zip(bytes).for_each(|(sum, byte)| *sum += u16::from(*byte));
+    }
+    let mean = |channel: usize| {
+        let sum: u32 = sums.iter().skip(channel).step_by(3).map(|sum| u32::from(*sum)).sum();
+        sum as f32 / (BLOCK * BLOCK) as f32
+    };
+    [mean(0), mean(1), mean(2), 1.0]
+}
+
+/// Sets pixels of a row of the picture at half its size from those at and after a place.
+fn halve_row(
+    colors: &[[u8; 3]],
+    origins: &[Origin],
+    width: usize,
+    [u, v]: [usize; 2],
+    pixels: &mut [[f32; 4]],
+) {
+    let end = width.min(u + 2 * pixels.len());
+    let height = colors.len() / width;
+    let rows = [v, (v + 1).min(height - 1)].map(|row| row * width + u..row * width + end);
+    let [upper, lower] = rows.map(|row| colors[row.clone()].chunks(2).zip(origins[row].chunks(2)));
+    // The last row of an odd number has none below it.
+    let lower_counts = u64::from(v + 1 < height);
+    for (pixel, (upper, lower)) in pixels.iter_mut().zip(upper.zip(lower)) {
+        *pixel = mean(known_sum(upper.0, upper.1) + lower_counts * known_sum(lower.0, lower.1));
+    }
 }
 
 /// Returns the sums of red, green and blue of known pixels and their number, sixteen bits each: at most four pixels fit.

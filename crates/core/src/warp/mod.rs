@@ -10,6 +10,7 @@ mod fill;
 mod ground;
 mod kernel;
 mod lanes;
+mod look;
 mod mix;
 mod origin;
 mod picture;
@@ -21,13 +22,12 @@ mod surfaces;
 mod weights;
 
 pub use self::{
-    blend::{
-        Source, Target, UNSEEN_COST, Warped, blend, blend_into, complete, costs, glimpse_places, glimpses,
-    },
+    blend::{Source, Target, Warped, blend, blend_into, complete},
     cells::blend_cells_into,
     fill::fill,
     ground::{GroundColors, ground_colors},
     kernel::Placement,
+    look::{Look, UNSEEN_COST},
     origin::Origin,
     picture::Picture,
     proxy_geometry::{Billboard, Hall, ProxyGeometry},

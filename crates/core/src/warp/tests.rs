@@ -256,19 +256,20 @@ fn a_nearer_picture_is_trusted_more_and_chosen_before_a_farther_one() {
     assert!(from_near as f64 > 0.8 * both.origins.len() as f64);
     let rays = RayTable::new(&camera);
     let target = Target { rays: &rays, placement: Placement::new(pose), proxy: &proxy };
-    let total = |taken: &Taken| costs(&target, &taken.source(), &BlendWeights::default()).iter().sum::<f32>();
+    let look = Look::new(&target);
+    let total = |taken: &Taken| look.costs(&taken.source(), &BlendWeights::default()).iter().sum::<f32>();
     assert!(total(&at(0.05)) < total(&at(-1.5)));
 }
 
 #[test]
-fn glimpses_are_the_colours_of_the_places_seen() {
+fn a_look_tells_the_colours_of_the_places_seen() {
     let (camera, proxy) = (fisheye(), open_geometry());
     let pose = CameraPose::new(Pose2::new(0.0, 0.0, 0.0), 0.5, 0.42, 0.0);
     let (a, b) = (near(pose, 0.2, 0.1), near(pose, -0.2, -0.1));
     let taken = [a, b].map(|from| Taken::new(&camera, from, &photograph(&camera, from, &proxy)));
     let rays = RayTable::new(&camera);
     let target = Target { rays: &rays, placement: Placement::new(pose), proxy: &proxy };
-    let [a, b] = taken.each_ref().map(|taken| glimpses(&target, &taken.source()));
+    let [a, b] = taken.each_ref().map(|taken| Look::new(&target).colors(&taken.source()));
     let both: Vec<_> = a.iter().zip(&b).filter_map(|(a, b)| Some(((*a)?, (*b)?))).collect();
     assert!(both.len() > 100);
     assert!(both.iter().all(|(a, b)| (0..3).all(|i| (a[i] - b[i]).abs() < 6.0)), "both see the same place");

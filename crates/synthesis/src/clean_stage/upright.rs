@@ -6,7 +6,9 @@
 use std::f32::consts::{PI, TAU};
 
 use glam::{Vec2, Vec3};
-use reality_sim_core::warp::{BlendWeights, CpuWarper, Placement, ProxyGeometry, Source, Target, Warper};
+use reality_sim_core::warp::{
+    BlendWeights, CpuWarper, Look, Placement, ProxyGeometry, Source, Target, Warper,
+};
 
 use super::{
     blobs::Bits,
@@ -125,7 +127,7 @@ fn hall(picture: &ShrunkPicture, others: &[ShrunkPicture], proxy: &ProxyGeometry
         |other: &&ShrunkPicture| place(&other.placement).distance(place(&picture.placement)) > BASELINE_M;
     let sources: Vec<Source> = others.iter().filter(is_elsewhere).map(ShrunkPicture::source).collect();
     let weights = BlendWeights::default();
-    let chosen = select(&target, &sources, &weights, SOURCES);
+    let chosen = select(&Look::new(&target), &sources, &weights, SOURCES);
     let sources: Vec<Source> = chosen.into_iter().map(|index| sources[index]).collect();
     let drawn = CpuWarper.blend(&target, &sources, &weights).ok()?;
     let pixel = |(color, origin): (&[u8; 3], &reality_sim_core::warp::Origin)| {
