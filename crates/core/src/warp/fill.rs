@@ -253,3 +253,52 @@ impl Level {
         (total > 0.0).then(|| [mean(0), mean(1), mean(2), 1.0])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn far_blocks_change_nothing_that_is_filled(
+            size in (60_usize..150, 40_usize..110), holes in prop::collection::vec((0.0..1.0, 0.0..1.0, 1.0..30.0), 1..4),
+            outside_px in 0.0..40.0, waves in prop::array::uniform3(0.02..0.6),
+        ) {
+            let (width, height) = size;
+            let pixel = |index: usize| [(index % width) as f64, (index / width) as f64];
+            let origin = |index: usize| {
+                let [u, v] = pixel(index);
+                let is_hole = |(x, y, radius): &(f64, f64, f64)| (u - x * width as f64).hypot(v - y * height as f64) < *radius;
+                let source = match () {
+                    () if u + v < outside_px => Origin::OUTSIDE,
+                    () if holes.iter().any(is_hole) => Origin::NOWHERE,
+                    () => 0,
+                };
+                Origin { source, trust: 0 }
+            };
+            let color = |index: usize| {
+                let [u, v] = pixel(index);
+                waves.map(|wave: f64| (128.0 + 100.0 * (wave * u).sin() * (wave * v).cos()) as u8)
+            };
+            let origins: Vec<Origin> = (0..width * height).map(origin).collect();
+            let colors: Vec<[u8; 3]> = (0..width * height).map(color).collect();
+            let blocks = Blocks::new(&origins, width);
+            let mut near = Blocks::new(&origins, width);
+            near.all.iter_mut().for_each(|block| block.is_far = false);
+            let [quick, plain] =
+                [&blocks, &near].map(|blocks| half_size(&colors, &origins, width, blocks).filled());
+            for index in (0..width * height).filter(|index| is_unknown(&origins[*index])) {
+                let [quick, plain] = [&quick, &plain].map(|level| level.bilinear(index % width, index / width));
+                let (Some(quick), Some(plain)) = (quick, plain) else {
+                    prop_assert!(quick.is_none() && plain.is_none());
+                    continue;
+                };
+                prop_assert!((0..3).all(|channel| (quick[channel] - plain[channel]).abs() < 0.01));
+            }
+        }
+    }
+}

@@ -1,7 +1,5 @@
 //! A look at a picture that is to be drawn: a few hundred of its pixels, evenly spread, at which sources are compared.
 
-#![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
-
 use super::{
     BlendWeights, Source, Target,
     blend::view_weight,
