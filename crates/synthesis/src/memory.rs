@@ -3,8 +3,8 @@
 use reality_sim_core::pose::CameraPose;
 use reality_sim_db::{index::ImageIndex, metric::PixelMetric};
 
-/// Distance from where neighbours were chosen up to which a camera keeps them, root mean square pixels: a few hundredths of a
-/// picture's width, far less than neighbours are apart. `examples/camera_speed.rs` measures what it costs in PSNR.
+/// Distance from where neighbours were chosen up to which a camera keeps them, root mean square pixels: about a hundredth of the
+/// width of a picture of 640 pixels. Chosen, not derived; what it costs in PSNR has not been measured.
 const KEEP_PX: f64 = 8.0;
 
 /// What a camera remembers of its last picture: which neighbours it was drawn from, and how bright they are. Pictures drawn

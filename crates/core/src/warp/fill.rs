@@ -52,7 +52,6 @@ fn is_unknown(origin: &Origin) -> bool {
 const BLOCK: usize = 16;
 
 /// What is known of a block.
-#[derive(Clone, Copy, Default)]
 struct Block {
     has_unknown: bool,
     has_recorded: bool,
@@ -109,7 +108,7 @@ fn block(rows: &[Origin], width: usize, column: usize) -> Block {
 }
 
 /// Returns a picture at half its size. The full size is never converted to floats, and far blocks are only summed up: memory
-/// access takes most of the time.
+/// access takes most of the time. The shader averages every pixel: what is filled is the same.
 fn half_size(colors: &[[u8; 3]], origins: &[Origin], width: usize, blocks: &Blocks) -> Level {
     let height = colors.len() / width;
     let (half_width, half_height) = (width.div_ceil(2), height.div_ceil(2));
