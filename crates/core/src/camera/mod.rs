@@ -10,7 +10,7 @@ mod rim;
 
 use glam::{DVec2, DVec3};
 
-pub(crate) use self::kernel::{inside_lanes, place_lanes};
+pub(crate) use self::kernel::{Places, inside_lanes, place_lanes};
 use self::rim::PINHOLE_MAX_ANGLE_RAD;
 pub use self::{
     kernel::{KernelCamera, LANES, Lanes, Lens, Pixels, RADIAL_TERMS, project_lanes},

@@ -7,7 +7,7 @@
 
 use super::{
     BlendWeights, MAX_SOURCES, Source, Target,
-    blend::{draw_bands, form, say, weigh},
+    blend::{draw_bands, form, say},
     kernel::{ProxyPoints, proxy_points},
     mix::{Opinions, SETTLED},
     origin::Origin,
@@ -23,7 +23,8 @@ pub(crate) const CELL: usize = LANES;
 /// Rows of a cell that are drawn together: their numbers stay in the processor's nearest memory.
 const ROWS: usize = 8;
 
-/// Draws what [`super::blend_into`] draws, faster: places are looked up at most 0.05 px beside those that it finds.
+/// Draws what [`super::blend_into`] draws, faster: places are looked up at most 0.05 px beside those that it finds. Both count places
+/// in parts of a pixel, 256 along each axis.
 ///
 /// # Panics
 ///
@@ -149,10 +150,10 @@ impl<'a> Cell<'a> {
         let mut priors = [[0.0_f32; LANES]; ROWS];
         let mut is_seen = [false; ROWS];
         for row in 0..rows.len() {
-            if let Some((pixels, penalty)) = map.at(start + row, source.camera) {
+            if let Some((found, weights)) = map.at(start + row, source, self.weights) {
                 is_seen[row] = true;
-                taps[row] = Taps::at(source.picture, &pixels.u, &pixels.v);
-                priors[row] = weigh(source, self.weights, &pixels, &penalty);
+                taps[row] = found;
+                priors[row] = weights;
             }
         }
         load(source.picture, &mut taps[..rows.len()]);

@@ -4,13 +4,14 @@
 
 use super::{
     BlendWeights, Source, Target,
-    blend::penalties,
+    blend::{penalties, weigh},
     edges::{Edges, Meeting, post_margin},
     kernel::{ON_SCREEN, Placement, ProxyPoints, in_camera},
     lanes::largest_of,
     proxy_geometry::ProxyGeometry,
+    sampling::Taps,
 };
-use crate::camera::{KernelCamera, LANES, Lanes, Pixels, inside_lanes, place_lanes};
+use crate::camera::{KernelCamera, LANES, Lanes, Pixels, Places, inside_lanes, place_lanes};
 
 /// Columns and rows of a cell's nodes.
 pub(crate) const NODES: [usize; 4] = [0, 5, 10, 15];
@@ -43,12 +44,14 @@ pub(crate) enum SourceView {
 pub(crate) struct SmoothMap {
     /// For every row of nodes, the coefficients along the row: four of the column, four of the row, four of the penalty.
     node_rows: [Lanes; 4],
+    /// Whether all of the cell lies inside the source's picture, where no border lowers its weight.
+    is_inner: bool,
 }
 
 impl SmoothMap {
     /// Fits the polynomials; `None` where they bend too much.
     #[inline(always)]
-    fn new(u: &Lanes, v: &Lanes, penalty: &Lanes) -> Option<Self> {
+    fn new(u: &Lanes, v: &Lanes, penalty: &Lanes, is_inner: bool) -> Option<Self> {
         if !(is_cubic(u) && is_cubic(v)) {
             return None;
         }
@@ -62,12 +65,12 @@ impl SmoothMap {
                 }
             }
         }
-        Some(Self { node_rows })
+        Some(Self { node_rows, is_inner })
     }
 
-    /// Returns the source's pixels for a row of the cell, and its penalties; `None` if it shows none of them.
+    /// Returns columns and rows of the source's picture for a row of the cell, pixels, and the source's penalties.
     #[inline(always)]
-    pub fn at(&self, row: usize, camera: &KernelCamera) -> Option<(Pixels, Lanes)> {
+    pub fn places(&self, row: usize) -> [Lanes; 3] {
         let shares = &SHARES[row];
         let mut row = [0.0_f32; LANES];
         for k in 0..LANES {
@@ -76,9 +79,25 @@ impl SmoothMap {
                 + shares[2] * self.node_rows[2][k]
                 + shares[3] * self.node_rows[3][k];
         }
-        let mut pixels =
-            Pixels { u: cubic(&row, 0), v: cubic(&row, 4), seen: [0.0; LANES], nearness: [0.0; LANES] };
-        if inside_lanes(camera, &mut pixels) { Some((pixels, cubic(&row, 8))) } else { None }
+        [cubic(&row, 0), cubic(&row, 4), cubic(&row, 8)]
+    }
+
+    /// Returns the pixels of the source's picture around a row of the cell, and the source's weights; `None` if it shows none of it.
+    #[inline(always)]
+    pub fn at(&self, row: usize, source: &Source, weights: &BlendWeights) -> Option<(Taps, Lanes)> {
+        let [u, v, penalty] = self.places(row);
+        if self.is_inner {
+            let mut weight = [0.0_f32; LANES];
+            for i in 0..LANES {
+                weight[i] = 1.0 / (penalty[i] * penalty[i]);
+            }
+            return Some((Taps::inside(source.picture, &u, &v), weight));
+        }
+        let mut pixels = Pixels { u, v, seen: [0.0; LANES], nearness: [0.0; LANES] };
+        inside_lanes(source.camera, &mut pixels).then(|| {
+            let taps = Taps::at(source.picture, &pixels.u, &pixels.v);
+            (taps, weigh(source, weights, &pixels, &penalty))
+        })
     }
 }
 
@@ -222,11 +241,30 @@ pub(crate) fn view(
     if is_beside {
         return SourceView::Hidden;
     }
+    // Within it no weight fades. A pixel at least, more than the polynomials are off: places are looked up without asking again.
+    let margin = (weights.border_px - 1.0).max(1.0);
+    let is_inner = least_u >= margin
+        && largest_u <= camera.max_u - margin
+        && least_v >= margin
+        && largest_v <= camera.max_v - margin
+        && is_in_circle(camera, &places);
     let penalty = penalties(target, source, weights, points, &places.nearness);
-    match SmoothMap::new(&places.u, &places.v, &penalty) {
+    match SmoothMap::new(&places.u, &places.v, &penalty, is_inner) {
         Some(map) => SourceView::Smooth(map),
         None => SourceView::Uneven,
     }
+}
+
+/// Returns whether all of a cell lies in the camera's image circle.
+#[inline(always)]
+fn is_in_circle(camera: &KernelCamera, places: &Places) -> bool {
+    let Some([circle_u, circle_v, radius_squared]) = camera.circle else { return true };
+    let mut squares = [0.0_f32; LANES];
+    for i in 0..LANES {
+        let (du, dv) = (places.u[i] - circle_u, places.v[i] - circle_v);
+        squares[i] = du * du + dv * dv;
+    }
+    range(&squares)[1] <= radius_squared
 }
 
 /// Returns how much of a cell a goal hides from a camera.

@@ -62,15 +62,14 @@ fn by_cells(target: &Target, source: &Source) -> Vec<Option<Seen>> {
             let cell = Cell::new(target, &sources, &weights, column, top, CELL.min(height - top));
             let surface = |row: usize| cell.points(row).surface;
             for row in 0..CELL.min(height - top) {
-                let seen = match &cell.views[0] {
+                let ([u, v, _], prior) = match &cell.views[0] {
                     SourceView::Uneven => continue,
-                    SourceView::Hidden => None,
-                    SourceView::Smooth(map) => map.at(row, source.camera),
+                    SourceView::Hidden => ([[0.0; LANES]; 3], None),
+                    SourceView::Smooth(map) => (map.places(row), map.at(row, source, &weights)),
                 };
                 for lane in 0..CELL.min(width - column * CELL) {
-                    let (is_shown, u, v) = seen.map_or((false, 0.0, 0.0), |(pixels, _)| {
-                        (pixels.seen[lane] > 0.0, pixels.u[lane], pixels.v[lane])
-                    });
+                    let is_shown = prior.is_some_and(|(_, weights)| weights[lane] > 0.0);
+                    let (u, v) = (u[lane], v[lane]);
                     // The nodes' surface counts for the whole cell.
                     let surface = surface(0)[0];
                     found[(top + row) * width + column * CELL + lane] =
