@@ -1,8 +1,6 @@
 //! Bilinear colours of pictures at sixteen places, in three steps: the places' pixels, the pixels' words, the colours. What is
 //! loaded from anywhere is no work for vectors, so that a step of its own, for many places at once, is faster.
 
-#![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
-
 use super::{
     Picture,
     lanes::{float, least, rounded},
