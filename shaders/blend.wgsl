@@ -88,7 +88,8 @@ fn sample(number: u32, place: vec2<f32>) -> vec4<f32> {
     let size = sources[number].size;
     let layer = sources[number].layer;
     let last = vec2<f32>(max(size, vec2<u32>(2u)) - 2u);
-    let inside = clamp(place, vec2<f32>(0.0), last + 1.0);
+    // Places count in parts of a pixel, as on the processor.
+    let inside = round(clamp(place, vec2<f32>(0.0), last + 1.0) * 256.0) / 256.0;
     let corner = floor(min(inside, last));
     let f = inside - corner;
     let first = vec2<u32>(corner);
