@@ -68,6 +68,8 @@ impl Taps {
         let mut taps = Self::NONE;
         for i in 0..LANES {
             let (u, v) = (rounded(u[i] * float(PARTS)), rounded(v[i] * float(PARTS)));
+            // Of a picture smaller than its camera's, the last pixels.
+            let (u, v) = (u.min((last_column + 1) * PARTS), v.min((last_row + 1) * PARTS));
             let (column, row) = ((u / PARTS).min(last_column), (v / PARTS).min(last_row));
             taps.beside[0][i] = u - column * PARTS;
             taps.beside[1][i] = v - row * PARTS;
@@ -85,7 +87,7 @@ impl Taps {
             (a[i], b[i]) = (self.upper[i] as u32, (self.upper[i] >> 32) as u32);
             (c[i], d[i]) = (self.lower[i] as u32, (self.lower[i] >> 32) as u32);
         }
-        let (mut red_blue, mut green_mask) = ([0u32; LANES], [0u32; LANES]);
+        let (mut red_blue, mut green) = ([0u32; LANES], [0u32; LANES]);
         for i in 0..LANES {
             let [right, below] = [self.beside[0][i], self.beside[1][i]];
             let both = (right * below + PARTS / 2) / PARTS;
@@ -96,15 +98,15 @@ impl Taps {
                 + upper_right * (b[i] & EVEN_BYTES)
                 + lower_left * (c[i] & EVEN_BYTES)
                 + both * (d[i] & EVEN_BYTES);
-            green_mask[i] = own * (a[i] >> 8 & EVEN_BYTES)
-                + upper_right * (b[i] >> 8 & EVEN_BYTES)
-                + lower_left * (c[i] >> 8 & EVEN_BYTES)
-                + both * (d[i] >> 8 & EVEN_BYTES);
+            green[i] = own * (a[i] >> 8 & 255)
+                + upper_right * (b[i] >> 8 & 255)
+                + lower_left * (c[i] >> 8 & 255)
+                + both * (d[i] >> 8 & 255);
         }
         let mut samples = Samples { color: [[0.0; LANES]; 3], shown: [0.0; LANES] };
         for i in 0..LANES {
             samples.color[0][i] = float(red_blue[i] & 0xffff) / float(PARTS);
-            samples.color[1][i] = float(green_mask[i] & 0xffff) / float(PARTS);
+            samples.color[1][i] = float(green[i]) / float(PARTS);
             samples.color[2][i] = float(red_blue[i] >> 16) / float(PARTS);
             let mask = (a[i] & b[i] & c[i] & d[i]) >> 24;
             samples.shown[i] = if mask == u32::from(Picture::SHOWN) { 1.0 } else { 0.0 };
