@@ -37,7 +37,7 @@ const PARTS: &[&str] = &[
 ];
 
 /// Packages of this workspace that each package may use.
-const MAY_USE: [(&str, &[&str]); 13] = [
+const MAY_USE: [(&str, &[&str]); 14] = [
     ("reality-sim-core", &[]),
     (GPU, &["reality-sim-core"]),
     ("reality-sim-db", &["reality-sim-core"]),
@@ -57,6 +57,7 @@ const MAY_USE: [(&str, &[&str]); 13] = [
     ),
     (LIBRARY, PARTS),
     ("reality-sim-viewer", PARTS),
+    ("reality-sim-python", &[LIBRARY]),
 ];
 
 fn cargo(arguments: &[&str]) -> String {

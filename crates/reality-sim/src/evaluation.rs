@@ -5,7 +5,10 @@
 
 use serde::Serialize;
 
-use crate::pose::{CameraPose, wrap_angle};
+use crate::{
+    pose::{CameraPose, wrap_angle},
+    sequence::Sequence,
+};
 
 /// Error of the place above which a frame is lost, metres.
 pub const LOST_DISTANCE_M: f64 = 0.5;
@@ -58,6 +61,14 @@ pub struct ErrorStatistics {
 }
 
 impl ErrorStatistics {
+    /// Computes the statistics of a recording's poses against its reference poses; `None` if it has none.
+    pub fn of(sequence: &Sequence, poses: &[CameraPose]) -> Option<Self> {
+        let both = sequence.reference_poses().zip(poses);
+        let errors: Vec<PoseError> =
+            both.filter_map(|(truth, pose)| Some(PoseError::new(*pose, truth?))).collect();
+        Self::new(&errors)
+    }
+
     /// Computes the statistics of some errors; `None` if there are none.
     pub fn new(errors: &[PoseError]) -> Option<Self> {
         let mut distances_m: Vec<f64> = errors.iter().map(|error| error.distance_m).collect();

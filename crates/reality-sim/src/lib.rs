@@ -16,6 +16,7 @@
 //! | give a simulator a camera | [`simulator`] |
 //! | make the picture at a pose from the field's model | [`sensor::Renderer`] |
 //! | find what a model of the camera misses | [`gap`] |
+//! | tag a recording as the program does, with one or many settings | [`tagging`] |
 //! | compare poses with ground truth, and pictures with true ones | [`evaluation`], [`probing`] |
 //! | draw poses in a picture, pictures side by side, coverage | [`overlay`], [`montage`], [`coverage_chart`] |
 //! | use the parts of localization | [`preprocess`], [`observation`], [`filter`], [`search`], [`refine`] |
@@ -81,6 +82,7 @@ pub mod evaluation;
 pub mod montage;
 pub mod overlay;
 pub mod probing;
+pub mod tagging;
 
 #[cfg(feature = "gpu")]
 pub use reality_sim_gpu as gpu;

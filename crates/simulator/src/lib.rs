@@ -10,7 +10,7 @@
 //! | [`labels`] | what all pixels show, lines and crossings in pixels, boxes |
 //! | [`coco`] | labels in the form of COCO |
 //! | [`Layer`], [`Object`], [`Sphere`] | something that is drawn over the recorded scene |
-//! | [`Ball`], [`Humanoid`], [`Body`], [`PictureLayer`] | layers that are ready to use |
+//! | [`Ball`], [`Humanoid`], [`Body`], [`PictureLayer`], [`CubeLayer`] | layers that are ready to use |
 //! | [`Mesh`], [`Placed`], [`draw_mesh`] | surfaces of triangles, and the rasteriser |
 //! | [`View`], [`Canvas`], [`Fragment`] | what a layer sees of the camera, and what it draws on |
 //! | [`Light`], [`Shading`], [`light_left`] | the hall's light, how a body looks in it, and what is left of it beside a thing |
@@ -49,6 +49,7 @@ mod canvas;
 mod class;
 pub mod coco;
 mod compose;
+mod cube_layer;
 mod drawing;
 mod error;
 mod field_surfaces;
@@ -79,6 +80,7 @@ pub use self::{
     camera::Camera,
     canvas::{Canvas, Fragment, PARTS},
     class::Class,
+    cube_layer::{CubeFace, CubeLayer, CubeSide, NO_CUBE_OBJECT},
     error::LookError,
     frame::Frame,
     humanoid::Humanoid,

@@ -1,6 +1,5 @@
 //! `reality-sim tag`: finds the camera pose of every picture of a sequence.
 
-mod lines;
 mod options;
 mod report;
 mod watch;
@@ -15,19 +14,17 @@ use reality_sim::{
     CameraPose, LocalizedFrame, Localizer, Observation, Pose2, Sequence, StampedPose,
     calibration::{Assessment, assess_frames},
     evaluation::PoseError,
-    localization::Picture,
     overlay::{BorderOutline, Overlay},
     quality::LineAgreement,
-    refine::SmoothedPose,
     sequence::{counted, save_image},
+    tagging::{LinesOfPictures, TaggedPose},
     write_tum,
 };
 
 pub use self::options::{TagArgs, field_by_name};
 use self::{
-    lines::LinesOfPictures,
-    report::{PoseResult, Report, details_csv},
-    watch::{Watchers, is_log, rows, write_details, write_log},
+    report::{Report, details_csv},
+    watch::{Watchers, is_log, write_details, write_log},
 };
 use super::{
     input::Recording,
@@ -68,7 +65,8 @@ pub fn run(args: &TagArgs) -> anyhow::Result<()> {
     }
 
     let assessed = assessed(args, &sequence, &mut frames)?;
-    let results = if args.smooth { smoothed(&sequence, &localizer, &frames)? } else { filtered(&frames) };
+    let results =
+        if args.smooth { smoothed(&sequence, &localizer, &frames)? } else { TaggedPose::filtered(&frames) };
     let poses: Vec<CameraPose> = results.iter().map(|result| result.pose).collect();
     let lines = lines.agreement(&poses);
     watchers.finish()?;
@@ -91,7 +89,7 @@ fn write(
     args: &TagArgs,
     sequence: &Sequence,
     (frames, lines): (&[LocalizedFrame], &[LineAgreement]),
-    results: &[PoseResult],
+    results: &[TaggedPose],
 ) -> anyhow::Result<()> {
     let poses: Vec<CameraPose> = results.iter().map(|result| result.pose).collect();
     if let Some(details) = &args.details {
@@ -153,38 +151,19 @@ fn assessed(
     Ok(if args.details.is_some() { assess_frames(sequence, frames)? } else { None })
 }
 
-/// Returns the filter's pose of every picture, from this and earlier pictures only.
-fn filtered(frames: &[LocalizedFrame]) -> Vec<PoseResult> {
-    let sigmas =
-        |frame: &LocalizedFrame| frame.fit.map(|fit| fit.covariance.diagonal().map(f64::sqrt).into());
-    let covariance = |frame: &LocalizedFrame| frame.fit.map(|fit| rows(&fit.covariance));
-    let result = |frame: &LocalizedFrame| PoseResult {
-        pose: frame.pose,
-        sigmas: sigmas(frame),
-        covariance: covariance(frame),
-    };
-    frames.iter().map(result).collect()
-}
-
 /// Returns the most probable poses of the whole recording.
 fn smoothed(
     sequence: &Sequence,
     localizer: &Localizer,
     frames: &[LocalizedFrame],
-) -> anyhow::Result<Vec<PoseResult>> {
-    let picture = |index| sequence.load_image(index).map(Picture::from);
-    let Some(smoothed) = localizer.smoother().smooth(frames, picture)? else {
+) -> anyhow::Result<Vec<TaggedPose>> {
+    let Some(smoothed) = TaggedPose::smoothed(sequence, localizer, frames)? else {
         bail!(
             "{}: no picture shows enough of the lines to smooth the poses: leave out --smooth",
             sequence.folder.display()
         );
     };
-    let result = |pose: &SmoothedPose| PoseResult {
-        pose: pose.pose,
-        sigmas: Some(pose.covariance.diagonal().map(f64::sqrt).into()),
-        covariance: Some(rows(&pose.covariance)),
-    };
-    Ok(smoothed.iter().map(result).collect())
+    Ok(smoothed)
 }
 
 /// Checks the outputs first: nobody should wait for an hour and learn then that the result cannot be written.

@@ -13,9 +13,10 @@ use clap::Args;
 use reality_sim::{
     FieldDimensions, LocalizerConfig, ObservationKind, Pose2, Sequence,
     field::preset_names,
-    filter::{Estimator, KldConfig, Resampling},
+    filter::{Estimator, Resampling},
     pose::FARTHEST_M,
     sequence::{counted, read_field},
+    tagging::TagSettings,
 };
 
 use crate::commands::{
@@ -172,21 +173,24 @@ impl TagArgs {
 
     /// Returns the settings of the filter.
     pub fn config(&self) -> LocalizerConfig {
-        let mut config = LocalizerConfig::new(self.observation);
-        let observation = &mut config.observation;
-        observation.blur_sigma_px = self.blur.unwrap_or(observation.blur_sigma_px);
-        observation.alpha = self.alpha.unwrap_or(observation.alpha);
-        observation.mask_border = !self.no_border_mask;
-        config.filter.particles = self.particles as usize;
-        config.filter.iterations = self.iterations;
-        config.filter.resampling = self.resampling;
-        config.filter.estimator = self.estimator;
-        config.filter.seed = self.seed;
-        config.filter.adaptive = self.adaptive.then(KldConfig::default);
-        config.uses_odometry = !self.no_odometry;
-        config.relocalizes = !self.no_recovery;
-        config.refines |= self.smooth;
-        config
+        let settings = TagSettings {
+            observation: self.observation,
+            particles: self.particles as usize,
+            iterations: self.iterations,
+            resampling: self.resampling,
+            estimator: self.estimator,
+            adaptive: self.adaptive,
+            smooth: self.smooth,
+            seed: self.seed,
+            blur_px: self.blur,
+            alpha: self.alpha,
+            border_mask: !self.no_border_mask,
+            odometry: !self.no_odometry,
+            recovery: !self.no_recovery,
+            known_start: !self.unknown_start,
+            calibration_errors: self.details.is_some(),
+        };
+        settings.config()
     }
 
     /// Opens the sequence and applies the options: another camera or field, a model, fewer frames, another start.

@@ -11,6 +11,7 @@ use reality_sim::{
     filter::{Estimator, Resampling},
     quality::{LineAgreement, RecordingQuality},
     sequence::counted,
+    tagging::TaggedPose,
 };
 
 use super::options::TagArgs;
@@ -19,20 +20,11 @@ use crate::commands::{device::Device, output::aligned, parameter::of_parameter};
 /// Standard deviations by which a recording must contradict the calibration for that to be said.
 const CONTRADICTED: f64 = 4.0;
 
-/// Resulting pose with its uncertainty.
-pub struct PoseResult {
-    pub pose: CameraPose,
-    /// Standard deviations of x, y, yaw, height, pitch and roll, metres and radians.
-    pub sigmas: Option<[f64; 6]>,
-    /// Covariance of the same, row by row.
-    pub covariance: Option<[[f64; 6]; 6]>,
-}
-
 /// Formats one line per picture; unknown values are left empty.
 pub fn details_csv(
     sequence: &Sequence,
     frames: &[LocalizedFrame],
-    results: &[PoseResult],
+    results: &[TaggedPose],
     lines: &[LineAgreement],
 ) -> String {
     const DEGREES_OF_FREEDOM: [&str; 6] = ["x_m", "y_m", "yaw_rad", "height_m", "pitch_rad", "roll_rad"];
@@ -54,7 +46,7 @@ pub fn details_csv(
         }
         for axis in 0..DEGREES_OF_FREEDOM.len() {
             csv.push(',');
-            if let Some(sigmas) = &result.sigmas {
+            if let Some(sigmas) = result.sigmas() {
                 let _ = write!(csv, "{}", sigmas[axis]);
             }
         }
@@ -141,9 +133,6 @@ impl Report {
         frames: &[LocalizedFrame],
         poses: &[CameraPose],
     ) -> Self {
-        let truths = sequence.reference_poses().zip(poses);
-        let errors: Vec<PoseError> =
-            truths.filter_map(|(truth, pose)| Some(PoseError::new(*pose, truth?))).collect();
         let mut seconds: Vec<f64> = frames.iter().map(|frame| frame.seconds).collect();
         seconds.sort_by(f64::total_cmp);
         Self {
@@ -167,7 +156,7 @@ impl Report {
             lines_within_10px: 0.0,
             completeness: 0.0,
             lines_verdict: String::new(),
-            error: ErrorStatistics::new(&errors),
+            error: ErrorStatistics::of(sequence, poses),
             out: args.out.as_deref().map(shown),
             details: args.details.as_deref().map(shown),
             overlay: args.overlay.as_deref().map(shown),

@@ -1,11 +1,13 @@
 //! Who watches while pictures are localized: an MCAP file, Foxglove's websocket. Also details as Parquet.
 
-use std::{array, fs, path::Path};
+use std::{fs, path::Path};
 
 use anyhow::Context;
 
 use reality_sim::{
-    CameraPose, LocalizedFrame, Localizer, Sequence, nalgebra::Matrix6, sequence::write_atomically,
+    CameraPose, LocalizedFrame, Localizer, Sequence,
+    sequence::write_atomically,
+    tagging::{TaggedPose, covariance_rows},
 };
 #[cfg(feature = "live")]
 use reality_sim_formats::show::LiveView;
@@ -14,7 +16,7 @@ use reality_sim_formats::{
     show::{LogFile, Shot},
 };
 
-use super::{options::TagArgs, report::PoseResult};
+use super::options::TagArgs;
 
 /// Watchers of one run.
 pub struct Watchers {
@@ -111,7 +113,7 @@ pub fn write_details(
     path: &Path,
     csv: &str,
     sequence: &Sequence,
-    results: &[PoseResult],
+    results: &[TaggedPose],
 ) -> anyhow::Result<()> {
     if !has_ending(path, "parquet") {
         return Ok(write_atomically(path, csv.as_bytes())?);
@@ -120,17 +122,12 @@ pub fn write_details(
     let facts = sequence.frames.iter().zip(results).map(|(frame, result)| PictureFacts {
         sequence: sequence.name.clone(),
         image: frame.image.clone(),
-        covariance: result.covariance,
+        covariance: result.covariance.as_ref().map(covariance_rows),
         quality: None,
     });
     let times_s: Vec<f64> = sequence.frames.iter().map(|frame| frame.timestamp_s).collect();
     table.add_facts(&times_s, &facts.collect::<Vec<_>>());
     Ok(table.write_parquet(path)?)
-}
-
-/// Returns the rows of a covariance.
-pub fn rows(covariance: &Matrix6<f64>) -> [[f64; 6]; 6] {
-    array::from_fn(|row| array::from_fn(|column| covariance[(row, column)]))
 }
 
 fn read_picture(sequence: &Sequence, index: usize) -> anyhow::Result<Vec<u8>> {

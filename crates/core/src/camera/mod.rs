@@ -284,6 +284,21 @@ impl Camera {
         Ok(Self { fx, fy, cx, cy, distortion, width, height, max_angle_rad, image_circle: None })
     }
 
+    /// Returns the same lens with pictures of another size, width and height in pixels. Fails if they have too many or no pixels.
+    pub fn resized(&self, size: [u32; 2]) -> Result<Self, InvalidCamera> {
+        let across = f64::from(size[0]) / f64::from(self.width);
+        let down = f64::from(size[1]) / f64::from(self.height);
+        // Pixel centres have whole coordinates: the picture starts half a pixel before the first one.
+        let place = |u: f64, v: f64| [(u + 0.5) * across - 0.5, (v + 0.5) * down - 0.5];
+        let [cx, cy] = place(self.cx, self.cy);
+        let resized = Self::new(size, [self.fx * across, self.fy * down, cx, cy], self.distortion)?;
+        let image_circle = self.image_circle.map(|circle| {
+            let [cx, cy] = place(circle.cx, circle.cy);
+            ImageCircle { cx, cy, radius: circle.radius * across.min(down) }
+        });
+        Ok(Self { max_angle_rad: self.max_angle_rad, image_circle, ..resized })
+    }
+
     /// Limits the camera to directions up to this angle from the optical axis, radians. Fails if the angle is not above
     /// 0 or is larger than the angle at which the polynomial stops growing.
     pub fn with_max_angle_rad(self, max_angle_rad: f64) -> Result<Self, InvalidCamera> {

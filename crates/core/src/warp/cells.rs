@@ -2,20 +2,22 @@
 //! at sixteen pixels of every cell of 16 × 16, and interpolated between them.
 //!
 //! The map is a bicubic polynomial through four by four nodes. A source's third differences tell whether that is good
-//! enough; where it is not, and wherever an edge may cross a cell, every pixel is computed as in [`super::blend`], of which
-//! this is a faster form.
+//! enough. Where borders of surfaces cross a cell, it has one map for each of them. Where maps are no polynomials, and wherever
+//! something may hide part of a cell from a source, every pixel is computed as in [`super::blend`], of which this is a faster
+//! form.
 
 use super::{
     BlendWeights, MAX_SOURCES, Source, Target,
     blend::{draw_bands, form, say},
+    faces::{Faces, MOST_FACES, on_face},
     kernel::{ProxyPoints, proxy_points},
     mix::{Opinions, SETTLED},
     origin::Origin,
     rays::RayBlock,
     sampling::{Taps, load},
-    smooth::{NODES, SmoothMap, SourceView, is_one_surface, view},
+    smooth::{self, NODES, SmoothMap, SourceView},
 };
-use crate::camera::LANES;
+use crate::camera::{LANES, Lanes};
 
 /// Columns and rows of a cell.
 pub(crate) const CELL: usize = LANES;
@@ -79,9 +81,10 @@ struct Cell<'a> {
     column: usize,
     /// First row, in pixels.
     top: usize,
-    views: [SourceView; MAX_SOURCES],
-    /// Whether some source is looked up pixel by pixel.
-    is_uneven: bool,
+    /// Surfaces that it may show; `None` where every pixel is computed.
+    faces: Option<Faces>,
+    /// What the nodes tell of each source, on each of the surfaces.
+    views: [[SourceView; MAX_SOURCES]; MOST_FACES],
 }
 
 impl<'a> Cell<'a> {
@@ -94,19 +97,28 @@ impl<'a> Cell<'a> {
         top: usize,
         rows: usize,
     ) -> Self {
-        let mut views = [SourceView::Uneven; MAX_SOURCES];
+        let views = [[SourceView::Uneven; MAX_SOURCES]; MOST_FACES];
+        let mut cell = Self { target, sources, weights, column, top, faces: None, views };
         let is_whole = rows == CELL && (column + 1) * CELL <= target.rays.width as usize;
         if is_whole {
-            let nodes = node_rays(target, column, top);
-            let points = proxy_points(target.proxy, &target.placement, &nodes);
-            if is_one_surface(target, &points) {
-                for (found, source) in views.iter_mut().zip(sources) {
-                    *found = view(target, source, weights, &points);
-                }
+            let rays = node_rays(target, column, top);
+            cell.ask_nodes(&proxy_points(target.proxy, &target.placement, &rays));
+        }
+        cell
+    }
+
+    #[inline(always)]
+    fn ask_nodes(&mut self, nodes: &ProxyPoints) {
+        self.faces = Faces::new(self.target, nodes);
+        let Some(faces) = &self.faces else { return };
+        for (views, &face) in self.views.iter_mut().zip(faces.all()) {
+            let Some(points) = on_face(self.target.proxy, &self.target.placement, nodes, face) else {
+                continue;
+            };
+            for (view, source) in views.iter_mut().zip(self.sources) {
+                *view = smooth::view(self.target, source, self.weights, &points);
             }
         }
-        let is_uneven = views[..sources.len()].iter().any(|view| matches!(view, SourceView::Uneven));
-        Self { target, sources, weights, column, top, views, is_uneven }
     }
 
     /// Asks the sources what they show of some rows.
@@ -115,37 +127,80 @@ impl<'a> Cell<'a> {
         for row in rows.iter_mut() {
             row.clear();
         }
-        for (number, (source, view)) in self.sources.iter().zip(&self.views).enumerate() {
-            if let SourceView::Smooth(map) = view {
-                self.form_smooth(number, source, map, start, rows);
-            }
-        }
-        if !self.is_uneven {
-            return;
-        }
-        for (row, opinions) in rows.iter_mut().enumerate() {
-            let points = self.points(start + row);
-            for (number, (source, view)) in self.sources.iter().zip(&self.views).enumerate() {
-                // A closure would not be compiled for the processor's vectors.
-                if matches!(view, SourceView::Uneven)
-                    && form(opinions.next(number), self.target, source, self.weights, &points)
-                {
-                    opinions.keep();
+        match &self.faces {
+            Some(faces) if faces.all().len() == 1 => self.ask_of_one_face(start, rows),
+            Some(faces) => self.ask_of_faces(faces, start, rows),
+            None => {
+                for (row, opinions) in rows.iter_mut().enumerate() {
+                    let points = self.points(start + row);
+                    for number in 0..self.sources.len() {
+                        self.form(number, &points, opinions);
+                    }
                 }
             }
         }
     }
 
+    /// Asks of a cell that shows one surface.
+    #[inline(always)]
+    fn ask_of_one_face(&self, start: usize, rows: &mut [Opinions]) {
+        let mut is_uneven = false;
+        for (number, view) in self.views[0][..self.sources.len()].iter().enumerate() {
+            match view {
+                SourceView::Hidden => {}
+                SourceView::Smooth(map) => self.form_smooth(number, map, start, rows),
+                SourceView::Uneven => is_uneven = true,
+            }
+        }
+        if !is_uneven {
+            return;
+        }
+        for (row, opinions) in rows.iter_mut().enumerate() {
+            let points = self.points(start + row);
+            for number in 0..self.sources.len() {
+                if self.is_uneven(number) {
+                    self.form(number, &points, opinions);
+                }
+            }
+        }
+    }
+
+    /// Asks of a cell across which the borders of surfaces run: every pixel follows from the map of the surface that it sees.
+    #[inline(always)]
+    fn ask_of_faces(&self, faces: &Faces, start: usize, rows: &mut [Opinions]) {
+        for (row, opinions) in rows.iter_mut().enumerate() {
+            let points = self.points(start + row);
+            // A corner of yet another surface may lie between the nodes.
+            let is_known = faces.hold(&points.surface);
+            for number in 0..self.sources.len() {
+                if is_known && !self.is_uneven(number) {
+                    self.form_by_faces(number, faces, start + row, &points.surface, opinions);
+                } else {
+                    self.form(number, &points, opinions);
+                }
+            }
+        }
+    }
+
+    /// Returns whether a source is looked up pixel by pixel.
+    #[inline(always)]
+    fn is_uneven(&self, number: usize) -> bool {
+        let count = self.faces.as_ref().map_or(MOST_FACES, |faces| faces.all().len());
+        self.views[..count].iter().any(|views| matches!(views[number], SourceView::Uneven))
+    }
+
+    /// Forms the opinion of a source on sixteen points.
+    #[inline(always)]
+    fn form(&self, number: usize, points: &ProxyPoints, opinions: &mut Opinions) {
+        if form(opinions.next(number), self.target, &self.sources[number], self.weights, points) {
+            opinions.keep();
+        }
+    }
+
     /// Forms the opinions of a source whose pixels follow from the nodes.
     #[inline(always)]
-    fn form_smooth(
-        &self,
-        number: usize,
-        source: &Source,
-        map: &SmoothMap,
-        start: usize,
-        rows: &mut [Opinions],
-    ) {
+    fn form_smooth(&self, number: usize, map: &SmoothMap, start: usize, rows: &mut [Opinions]) {
+        let source = &self.sources[number];
         let mut taps = [Taps::NONE; ROWS];
         let mut priors = [[0.0_f32; LANES]; ROWS];
         let mut is_seen = [false; ROWS];
@@ -162,6 +217,36 @@ impl<'a> Cell<'a> {
                 say(opinions.next(number), source, &taps[row].samples(), &priors[row]);
                 opinions.keep();
             }
+        }
+    }
+
+    /// Forms the opinion of a source on a row of pixels, each of which follows from the nodes on its own surface.
+    #[inline(always)]
+    fn form_by_faces(
+        &self,
+        number: usize,
+        faces: &Faces,
+        row: usize,
+        surfaces: &Lanes,
+        opinions: &mut Opinions,
+    ) {
+        let source = &self.sources[number];
+        let (mut taps, mut priors) = ([Taps::NONE], [0.0_f32; LANES]);
+        let mut is_seen = false;
+        for (views, &face) in self.views.iter().zip(faces.all()) {
+            let SourceView::Smooth(map) = &views[number] else { continue };
+            if let Some((found, weights)) = map.at(row, source, self.weights) {
+                is_seen = true;
+                taps[0].take(&found, surfaces, face);
+                for i in 0..LANES {
+                    priors[i] = if surfaces[i] == face { weights[i] } else { priors[i] };
+                }
+            }
+        }
+        if is_seen {
+            load(source.picture, &mut taps);
+            say(opinions.next(number), source, &taps[0].samples(), &priors);
+            opinions.keep();
         }
     }
 

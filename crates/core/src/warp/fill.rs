@@ -32,11 +32,10 @@ pub fn fill(colors: &mut [[u8; 3]], origins: &[Origin], width: usize) {
         for (column, (colors, origins)) in
             parts.filter(|(column, _)| blocks.at(*column, v / BLOCK).has_unknown)
         {
-            for (u, (color, _)) in
-                colors.iter_mut().zip(origins).enumerate().filter(|(_, (_, o))| is_unknown(o))
-            {
-                if let Some(pixel) = filled.bilinear(column * BLOCK + u, v) {
-                    *color = [0, 1, 2].map(|channel| (pixel[channel] + 0.5) as u8);
+            let found = filled.twice_as_fine(column * BLOCK, v);
+            for ((color, origin), found) in colors.iter_mut().zip(origins).zip(found) {
+                if is_unknown(origin) {
+                    *color = [0, 1, 2].map(|channel| (found[channel] + 0.5) as u8);
                 }
             }
         }
@@ -196,13 +195,17 @@ fn add(sum: &mut [f32; 4], pixel: [f32; 4]) {
     sum.iter_mut().zip(pixel).for_each(|(sum, value)| *sum += value);
 }
 
-/// Gives unknown pixels the bilinear colour of the next coarser level.
+/// Gives unknown pixels the bilinear colour of the next coarser level, all of which is known.
 fn take_unknown(fine: &mut Level, coarse: &Level) {
     let width = fine.width;
     let rows = fine.pixels.par_chunks_mut(width).enumerate().with_min_len(PIXELS_A_TASK.div_ceil(width));
     rows.for_each(|(v, row)| {
-        for (u, pixel) in row.iter_mut().enumerate().filter(|(_, pixel)| pixel[3] == 0.0) {
-            *pixel = coarse.bilinear(u, v).unwrap_or(*pixel);
+        let parts = row.chunks_mut(BLOCK).enumerate();
+        for (column, part) in parts.filter(|(_, part)| part.iter().any(|pixel| pixel[3] == 0.0)) {
+            let found = coarse.twice_as_fine(column * BLOCK, v);
+            for (pixel, found) in part.iter_mut().zip(found).filter(|(pixel, _)| pixel[3] == 0.0) {
+                *pixel = found;
+            }
         }
     });
 }
@@ -231,25 +234,27 @@ impl Level {
         self
     }
 
-    /// Returns the colour at a pixel of the next finer level, if anything around it is known.
-    fn bilinear(&self, u: usize, v: usize) -> Option<[f32; 4]> {
-        let at = |u: isize, v: isize| {
-            let u = u.clamp(0, self.width as isize - 1) as usize;
-            let v = v.clamp(0, self.height as isize - 1) as usize;
-            self.pixels[v * self.width + u]
-        };
+    /// Returns the bilinear colours of a row of a block of the next finer level, from an even column on. All of this level is known.
+    fn twice_as_fine(&self, u: usize, v: usize) -> [[f32; 4]; BLOCK] {
         // The centre of a coarse pixel lies between two fine ones: three quarters of its own, one quarter of the next.
-        let beside = |fine: usize| (fine / 2) as isize + if fine.is_multiple_of(2) { -1 } else { 1 };
-        let (own_u, own_v) = ((u / 2) as isize, (v / 2) as isize);
-        let taps = [
-            (at(own_u, own_v), 9.0),
-            (at(beside(u), own_v), 3.0),
-            (at(own_u, beside(v)), 3.0),
-            (at(beside(u), beside(v)), 1.0),
-        ];
-        let total: f32 = taps.iter().map(|(tap, share)| share * tap[3]).sum();
-        let mean = |channel: usize| taps.iter().map(|(tap, share)| share * tap[channel]).sum::<f32>() / total;
-        (total > 0.0).then(|| [mean(0), mean(1), mean(2), 1.0])
+        let mix = |own: [f32; 4], next: [f32; 4]| -> [f32; 4] {
+            std::array::from_fn(|channel| 0.75 * own[channel] + 0.25 * next[channel])
+        };
+        let own = v / 2;
+        let next = if v.is_multiple_of(2) { own.saturating_sub(1) } else { (own + 1).min(self.height - 1) };
+        let row = |row: usize| &self.pixels[row * self.width..][..self.width];
+        let (own, next) = (row(own), row(next));
+        // The coarse pixels below the block, and one more on either side.
+        let mut coarse = [[0.0; 4]; BLOCK / 2 + 2];
+        for (i, coarse) in coarse.iter_mut().enumerate() {
+            let column = (u / 2 + i).saturating_sub(1).min(self.width - 1);
+            *coarse = mix(own[column], next[column]);
+        }
+        let mut fine = [[0.0; 4]; BLOCK];
+        for (i, pair) in fine.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+            *pair = [mix(coarse[i + 1], coarse[i]), mix(coarse[i + 1], coarse[i + 2])];
+        }
+        fine
     }
 }
 
@@ -291,11 +296,8 @@ mod tests {
             let [quick, plain] =
                 [&blocks, &near].map(|blocks| half_size(&colors, &origins, width, blocks).filled());
             for index in (0..width * height).filter(|index| is_unknown(&origins[*index])) {
-                let [quick, plain] = [&quick, &plain].map(|level| level.bilinear(index % width, index / width));
-                let (Some(quick), Some(plain)) = (quick, plain) else {
-                    prop_assert!(quick.is_none() && plain.is_none());
-                    continue;
-                };
+                let (u, v) = (index % width, index / width);
+                let [quick, plain] = [&quick, &plain].map(|level| level.twice_as_fine(u / BLOCK * BLOCK, v)[u % BLOCK]);
                 prop_assert!((0..3).all(|channel| (quick[channel] - plain[channel]).abs() < 0.01));
             }
         }

@@ -69,7 +69,11 @@ impl Opinions {
     /// where the mean changes by less than `settled` grey levels.
     #[inline(always)]
     pub fn mixed(&mut self, sources: usize, weights: &BlendWeights, settled: f32) -> Mixed {
-        mix(&mut self.all[..self.count], sources, weights, settled)
+        match &mut self.all[..self.count] {
+            [] => Mixed::NONE,
+            [alone] => of_one(alone, weights),
+            several => mix(several, sources, weights, settled),
+        }
     }
 }
 
@@ -82,6 +86,9 @@ pub(crate) struct Mixed {
 }
 
 impl Mixed {
+    const NONE: Self =
+        Self { color: [[0.0; LANES]; 3], source: [Origin::NOWHERE as f32; LANES], trust: [0.0; LANES] };
+
     /// Stores the pixels: sixteen, or fewer at the end of a row.
     #[inline(always)]
     pub fn write(&self, colors: &mut [[u8; 3]], origins: &mut [Origin]) {
@@ -110,6 +117,31 @@ fn packed(words: &[u32; LANES]) -> [u8; 3 * LANES + 1] {
         bytes[3 * i..3 * i + 4].copy_from_slice(&word.to_le_bytes());
     }
     bytes
+}
+
+/// Returns what one source shows, with which nothing disagrees.
+#[inline(always)]
+fn of_one(opinion: &Opinion, weights: &BlendWeights) -> Mixed {
+    let mut mixed = Mixed::NONE;
+    let number = f32::from(opinion.number);
+    for i in 0..LANES {
+        let prior = opinion.prior[i];
+        let is_shown = prior > 0.0;
+        for channel in 0..3 {
+            mixed.color[channel][i] = if is_shown { opinion.color[channel][i] } else { 0.0 };
+        }
+        mixed.source[i] = if is_shown { number } else { mixed.source[i] };
+        mixed.trust[i] = if is_shown { trust(prior, 1.0, weights) } else { 0.0 };
+    }
+    mixed
+}
+
+/// Returns the trust in a pixel whose best source has this weight, 0 to 1; `agreement` is the share of the sources' weights that
+/// is left after they were compared.
+#[inline(always)]
+fn trust(best: f32, agreement: f32, weights: &BlendWeights) -> f32 {
+    let penalty = 1.0 / most(best, LEAST_WEIGHT).sqrt() - weights.softness;
+    least(agreement / (1.0 + most(penalty, 0.0)), 1.0)
 }
 
 #[inline(always)]
@@ -144,14 +176,12 @@ fn mix(opinions: &mut [Opinion], sources: usize, weights: &BlendWeights, settled
             total[i] += weight;
         }
     }
-    let mut trust = [0.0_f32; LANES];
+    let mut trusts = [0.0_f32; LANES];
     for i in 0..LANES {
-        let penalty = 1.0 / most(best[i], LEAST_WEIGHT).sqrt() - weights.softness;
-        let agreement = total[i] / most(before[i], LEAST_WEIGHT);
-        let found = least(agreement / (1.0 + most(penalty, 0.0)), 1.0);
-        trust[i] = if largest[i] > 0.0 { found } else { 0.0 };
+        let found = trust(best[i], total[i] / most(before[i], LEAST_WEIGHT), weights);
+        trusts[i] = if largest[i] > 0.0 { found } else { 0.0 };
     }
-    Mixed { color: mean, source, trust }
+    Mixed { color: mean, source, trust: trusts }
 }
 
 /// Lowers the weights of colours that are far from the mean.

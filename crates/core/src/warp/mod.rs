@@ -6,6 +6,7 @@
 mod blend;
 mod cells;
 mod edges;
+mod faces;
 mod fill;
 mod ground;
 mod kernel;

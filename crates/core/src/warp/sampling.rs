@@ -78,6 +78,18 @@ impl Taps {
         taps
     }
 
+    /// Takes the places of those pixels whose surface is `face`.
+    #[inline(always)]
+    pub fn take(&mut self, other: &Self, surfaces: &Lanes, face: f32) {
+        for (i, &surface) in surfaces.iter().enumerate() {
+            let is_taken = surface == face;
+            self.first[i] = if is_taken { other.first[i] } else { self.first[i] };
+            for axis in 0..2 {
+                self.beside[axis][i] = if is_taken { other.beside[axis][i] } else { self.beside[axis][i] };
+            }
+        }
+    }
+
     /// Interpolates.
     #[inline(always)]
     pub fn samples(&self) -> Samples {

@@ -6,7 +6,7 @@ use super::{
     BlendWeights, Source, Target,
     blend::{penalties, weigh},
     edges::{Edges, Meeting, post_margin},
-    kernel::{ON_SCREEN, Placement, ProxyPoints, in_camera},
+    kernel::{FIRST_BILLBOARD, ON_SCREEN, Placement, ProxyPoints, in_camera},
     lanes::largest_of,
     proxy_geometry::ProxyGeometry,
     sampling::Taps,
@@ -164,7 +164,7 @@ fn is_cubic(values: &Lanes) -> bool {
 
 /// Smallest and largest value over a cell, as its nodes tell.
 #[inline(always)]
-fn range(values: &Lanes) -> [f32; 2] {
+pub(crate) fn range(values: &Lanes) -> [f32; 2] {
     let mut negative = *values;
     for i in 0..LANES {
         negative[i] = -values[i];
@@ -172,46 +172,6 @@ fn range(values: &Lanes) -> [f32; 2] {
     let (low, high) = (-largest_of(&negative), largest_of(values));
     let excess = EXCESS * (high - low);
     [low - excess, high + excess]
-}
-
-/// Returns whether the whole cell shows one surface of the proxy geometry.
-#[inline(always)]
-pub(crate) fn is_one_surface(target: &Target, points: &ProxyPoints) -> bool {
-    let first = points.surface[0];
-    let mut same = 0u32;
-    for i in 0..LANES {
-        same += u32::from(points.surface[i] == first);
-    }
-    if (same as usize) < LANES {
-        return false;
-    }
-    for billboard in &target.proxy.billboards {
-        let x = billboard.x_m as f32 - target.placement.position_in_world[0];
-        if crosses(&Edges::new(billboard), x, &target.placement, points) {
-            return false;
-        }
-    }
-    true
-}
-
-/// Returns whether an edge of a billboard, `x` metres in front of the camera along the world's x axis, may cross a cell.
-#[inline(always)]
-fn crosses(edges: &Edges, x: f32, eye: &Placement, points: &ProxyPoints) -> bool {
-    let [_, eye_y, eye_z] = eye.position_in_world;
-    let (mut y, mut z) = ([0.0_f32; LANES], [0.0_f32; LANES]);
-    let mut towards = 0u32;
-    for i in 0..LANES {
-        let distance = x / points.direction[0][i];
-        y[i] = eye_y + distance * points.direction[1][i];
-        z[i] = eye_z + distance * points.direction[2][i];
-        towards += u32::from(distance > 0.0);
-    }
-    match towards as usize {
-        0 => false,
-        LANES => edges.meeting(range(&y), range(&z), [0.0; 2]) == Meeting::Partly,
-        // The billboard's plane is seen edge-on: it ends far away.
-        _ => true,
-    }
 }
 
 /// Returns what the nodes tell of a source.
@@ -267,15 +227,16 @@ fn is_in_circle(camera: &KernelCamera, places: &Places) -> bool {
     range(&squares)[1] <= radius_squared
 }
 
-/// Returns how much of a cell a goal hides from a camera.
+/// Returns how much of a cell, all of it on one surface, a goal hides from a camera.
 #[inline(always)]
 fn hiding(proxy: &ProxyGeometry, from: &Placement, points: &ProxyPoints) -> Meeting {
     let [x, y, z] = from.position_in_world;
     let [least_x, most_x] = range(&points.place[0]);
-    for billboard in &proxy.billboards {
+    for (number, billboard) in proxy.billboards.iter().enumerate() {
         let at = billboard.x_m as f32;
-        // The billboard stands behind the camera, or behind the whole cell.
-        if at > x.max(most_x) || at < x.min(least_x) {
+        // The billboard stands behind the camera, or behind the whole cell, or it is what the cell shows.
+        let is_own = points.surface[0] == (FIRST_BILLBOARD + number) as f32;
+        if is_own || at > x.max(most_x) || at < x.min(least_x) {
             continue;
         }
         let (mut across, mut up, mut margin) = ([0.0_f32; LANES], [0.0_f32; LANES], [0.0_f32; LANES]);

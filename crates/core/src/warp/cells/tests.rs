@@ -60,20 +60,26 @@ fn by_cells(target: &Target, source: &Source) -> Vec<Option<Seen>> {
         for column in 0..width.div_ceil(CELL) {
             let sources = [*source];
             let cell = Cell::new(target, &sources, &weights, column, top, CELL.min(height - top));
-            let surface = |row: usize| cell.points(row).surface;
+            let Some(faces) = cell.faces else { continue };
             for row in 0..CELL.min(height - top) {
-                let ([u, v, _], prior) = match &cell.views[0] {
-                    SourceView::Uneven => continue,
-                    SourceView::Hidden => ([[0.0; LANES]; 3], None),
-                    SourceView::Smooth(map) => (map.places(row), map.at(row, source, &weights)),
-                };
-                for lane in 0..CELL.min(width - column * CELL) {
-                    let is_shown = prior.is_some_and(|(_, weights)| weights[lane] > 0.0);
-                    let (u, v) = (u[lane], v[lane]);
-                    // The nodes' surface counts for the whole cell.
-                    let surface = surface(0)[0];
-                    found[(top + row) * width + column * CELL + lane] =
-                        Some(Seen { surface, is_shown, u, v });
+                let seen = cell.points(row).surface;
+                if cell.is_uneven(0) || faces.all().len() > 1 && !faces.hold(&seen) {
+                    continue;
+                }
+                for (views, &surface) in cell.views.iter().zip(faces.all()) {
+                    let ([u, v, _], prior) = match &views[0] {
+                        SourceView::Smooth(map) => (map.places(row), map.at(row, source, &weights)),
+                        _ => ([[0.0; LANES]; 3], None),
+                    };
+                    for lane in 0..CELL.min(width - column * CELL) {
+                        // The nodes' surface counts for the whole of a cell that shows only one.
+                        if faces.all().len() == 1 || surface == seen[lane] {
+                            let is_shown = prior.is_some_and(|(_, weights)| weights[lane] > 0.0);
+                            let (u, v) = (u[lane], v[lane]);
+                            found[(top + row) * width + column * CELL + lane] =
+                                Some(Seen { surface, is_shown, u, v });
+                        }
+                    }
                 }
             }
         }

@@ -1,12 +1,15 @@
 //! Agreement of the poses of a recording with the lines of its pictures.
 
-use reality_sim::{
-    CameraPose, Localizer, Sequence,
+use reality_sim_core::{
+    localization::Localizer,
+    pose::CameraPose,
     preprocess::LinePoints,
     quality::{LineAgreement, LineMeter},
+    sequence::Sequence,
 };
 
 /// Lines of the pictures of a recording, measured as they come.
+#[derive(Debug)]
 pub struct LinesOfPictures {
     meter: LineMeter,
     /// At the filter's poses.

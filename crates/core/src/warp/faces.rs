@@ -1,0 +1,133 @@
+//! Surfaces of the proxy geometry that a cell may show, and where the rays of its nodes meet each of them.
+
+#![expect(clippy::needless_range_loop, reason = "sixteen lanes in step: the form the compiler vectorises")]
+
+use super::{
+    Target,
+    edges::{Edges, Meeting},
+    kernel::{FIRST_BILLBOARD, GROUND, Placement, ProxyPoints},
+    proxy_geometry::ProxyGeometry,
+    smooth::range,
+};
+use crate::camera::{LANES, Lanes};
+
+/// Largest number of surfaces for which a cell's maps are made: the border of two, or a post before two others.
+pub(crate) const MOST_FACES: usize = 3;
+
+/// Numbers of the surfaces that a cell may show.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Faces {
+    numbers: [f32; MOST_FACES],
+    count: usize,
+}
+
+impl Faces {
+    /// Finds the surfaces that the nodes see, and the goals that may stand between them; `None` if there are too many, or if a
+    /// node sees nothing.
+    #[inline(always)]
+    pub fn new(target: &Target, nodes: &ProxyPoints) -> Option<Self> {
+        let mut faces = Self { numbers: [nodes.surface[0]; MOST_FACES], count: 1 };
+        for number in nodes.surface {
+            faces.add(number)?;
+        }
+        for (index, billboard) in target.proxy.billboards.iter().enumerate() {
+            let x = billboard.x_m as f32 - target.placement.position_in_world[0];
+            match crossing(&Edges::new(billboard), x, &target.placement, nodes) {
+                Crossing::None => {}
+                Crossing::Some => faces.add((FIRST_BILLBOARD + index) as f32)?,
+                Crossing::EdgeOn => return None,
+            }
+        }
+        Some(faces)
+    }
+
+    #[inline(always)]
+    fn add(&mut self, number: f32) -> Option<()> {
+        if number.is_nan() {
+            return None;
+        }
+        if !self.all().contains(&number) {
+            *self.numbers.get_mut(self.count)? = number;
+            self.count += 1;
+        }
+        Some(())
+    }
+
+    #[inline(always)]
+    pub fn all(&self) -> &[f32] {
+        &self.numbers[..self.count]
+    }
+
+    /// Returns whether all sixteen pixels see one of the surfaces.
+    #[inline(always)]
+    pub fn hold(&self, surfaces: &Lanes) -> bool {
+        let mut held = 0u32;
+        for i in 0..LANES {
+            let is_held = self.numbers[0] == surfaces[i]
+                || self.numbers[1] == surfaces[i]
+                || self.numbers[2] == surfaces[i];
+            held += u32::from(is_held);
+        }
+        held as usize == LANES
+    }
+}
+
+/// How the edges of a billboard lie in a cell.
+enum Crossing {
+    None,
+    Some,
+    /// The billboard's plane is seen edge-on: it ends far away.
+    EdgeOn,
+}
+
+/// Returns whether an edge of a billboard, `x` metres in front of the camera along the world's x axis, may cross a cell.
+#[inline(always)]
+fn crossing(edges: &Edges, x: f32, eye: &Placement, nodes: &ProxyPoints) -> Crossing {
+    let [_, eye_y, eye_z] = eye.position_in_world;
+    let (mut y, mut z) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+    let mut towards = 0u32;
+    for i in 0..LANES {
+        let distance = x / nodes.direction[0][i];
+        y[i] = eye_y + distance * nodes.direction[1][i];
+        z[i] = eye_z + distance * nodes.direction[2][i];
+        towards += u32::from(distance > 0.0);
+    }
+    match towards as usize {
+        0 => Crossing::None,
+        LANES if edges.meeting(range(&y), range(&z), [0.0; 2]) == Meeting::Partly => Crossing::Some,
+        LANES => Crossing::None,
+        _ => Crossing::EdgeOn,
+    }
+}
+
+/// Returns where the nodes' rays meet the plane of a surface, beyond its borders too; `None` if one of them does not.
+#[inline(always)]
+pub(crate) fn on_face(
+    proxy: &ProxyGeometry,
+    eye: &Placement,
+    nodes: &ProxyPoints,
+    face: f32,
+) -> Option<ProxyPoints> {
+    let number = face as usize;
+    let (axis, at) = match number {
+        0..3 => (number, proxy.min_in_world[number]),
+        3..FIRST_BILLBOARD => (number - 3, proxy.max_in_world[number - 3]),
+        _ => (0, proxy.billboards[number - FIRST_BILLBOARD].x_m),
+    };
+    let ahead = at as f32 - eye.position_in_world[axis];
+    let mut points = *nodes;
+    let mut met = 0u32;
+    for i in 0..LANES {
+        points.distance[i] = ahead / nodes.direction[axis][i];
+        met += u32::from(points.distance[i] > 0.0 && points.distance[i] < f32::INFINITY);
+    }
+    for axis in 0..3 {
+        for i in 0..LANES {
+            points.place[axis][i] =
+                eye.position_in_world[axis] + points.distance[i] * nodes.direction[axis][i];
+        }
+    }
+    points.on_ground = [if face == GROUND { 1.0 } else { 0.0 }; LANES];
+    points.surface = [face; LANES];
+    (met as usize == LANES).then_some(points)
+}

@@ -1,0 +1,39 @@
+//! Native part of the Python package `reality_sim`: a thin face on the Rust library. Signatures and documentation for users are in
+//! `python/reality_sim/_native.pyi`.
+
+#![expect(clippy::needless_pass_by_value, reason = "Python hands arguments over")]
+
+mod build;
+mod database;
+mod error;
+mod layers;
+mod lens;
+mod pictures;
+mod pose;
+mod renderer;
+mod tag;
+
+use pyo3::prelude::*;
+
+/// Recorded pictures for simulators.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use super::{
+        build::build,
+        database::Database,
+        error::{Error, NoPicture},
+        layers::{Ball, Cube, Humanoid, Layer},
+        lens::Lens,
+        renderer::{Frame, FrameLabels, Renderer, SeenObject},
+        tag::{TagErrors, Tags, tag},
+    };
+
+    /// Mark of a pixel that shows no object.
+    #[pymodule_export]
+    const NO_OBJECT: u16 = reality_sim::simulator::NO_OBJECT;
+
+    /// Version of the library.
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
+}
