@@ -110,7 +110,7 @@ class Renderer:
 
     def _make_context(self) -> None:
         model, size = self._model, self._face_size
-        self._gl_context = mujoco.gl_context.GLContext(size, size)
+        self._gl_context = mujoco.GLContext(size, size)
         self._gl_context.make_current()
         buffer, quality = model.vis.global_, model.vis.quality
         before = buffer.offwidth, buffer.offheight, quality.offsamples
