@@ -37,7 +37,7 @@ const PARTS: &[&str] = &[
 ];
 
 /// Packages of this workspace that each package may use.
-const MAY_USE: [(&str, &[&str]); 14] = [
+const MAY_USE: [(&str, &[&str]); 15] = [
     ("reality-sim-core", &[]),
     (GPU, &["reality-sim-core"]),
     ("reality-sim-db", &["reality-sim-core"]),
@@ -58,6 +58,7 @@ const MAY_USE: [(&str, &[&str]); 14] = [
     (LIBRARY, PARTS),
     ("reality-sim-viewer", PARTS),
     ("reality-sim-python", &[LIBRARY]),
+    ("reality-sim-c", &[LIBRARY]),
 ];
 
 fn cargo(arguments: &[&str]) -> String {

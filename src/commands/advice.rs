@@ -7,6 +7,7 @@ use reality_sim::gpu::GpuError;
 use reality_sim::{
     LocalizationError, SynthesisError,
     backend::BackendError,
+    dataset::DatasetError,
     db::{DbError, DbFault, index::NoNeighbours},
     gap::RecordingError,
     pipeline::PipelineError,
@@ -34,6 +35,7 @@ const REMEDIES: &[fn(&(dyn Error + 'static)) -> Option<&'static str>] = &[
     LocalizationError::remedy_of,
     RecordingError::remedy_of,
     DbError::remedy_of,
+    DatasetError::remedy_of,
     BackendError::remedy_of,
     #[cfg(feature = "gpu")]
     GpuError::remedy_of,
@@ -120,6 +122,17 @@ impl Remedied for DbError {
             Self::Database { fault: DbFault::Older { .. }, .. } => {
                 Some("`reality-sim build`, with one of its recordings, opens it for writing")
             }
+            _ => None,
+        }
+    }
+}
+
+impl Remedied for DatasetError {
+    fn remedy(&self) -> Option<&'static str> {
+        match self {
+            Self::MorePictures { .. } => Some("`--count`"),
+            Self::NothingNear { .. } => Some("`--within`"),
+            Self::TooLittleSeen { .. } => Some("`--best-effort`"),
             _ => None,
         }
     }

@@ -25,6 +25,7 @@ mod picture_at;
 mod remove;
 mod render;
 mod shell;
+mod summary;
 mod tag;
 #[cfg(feature = "viewer")]
 mod viewer;
@@ -58,6 +59,8 @@ pub enum Command {
     Export(export::ExportArgs),
     /// Find the effect that a camera model lacks, add it, and measure what that brings
     Gap(Box<gap::GapArgs>),
+    /// Summarise the tables of studies: calibration and poses by robot and day, what to record next
+    Summary(summary::SummaryArgs),
     /// List the graphics adapters, and check that they compute what the CPU computes
     #[cfg(feature = "gpu")]
     Doctor(doctor::DoctorArgs),
@@ -84,6 +87,7 @@ impl Command {
             | Self::Import(_)
             | Self::Info(_)
             | Self::Remove(_)
+            | Self::Summary(_)
             | Self::Completions(_)
             | Self::Man(_) => Ok(()),
             Self::Gap(args) => args.check_usage(),
@@ -108,6 +112,7 @@ impl Command {
             Self::Info(args) => info::run(args),
             Self::Remove(args) => remove::run(args),
             Self::Gap(args) => gap::run(args),
+            Self::Summary(args) => summary::run(args),
             #[cfg(feature = "gpu")]
             Self::Doctor(args) => doctor::run(args),
             #[cfg(feature = "viewer")]

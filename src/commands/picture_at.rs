@@ -30,16 +30,6 @@ pub struct SynthesisArgs {
 }
 
 impl SynthesisArgs {
-    /// Returns the number of pictures that `blend` mixes.
-    pub fn neighbours(&self) -> u8 {
-        self.neighbours
-    }
-
-    /// Returns whether a picture is made however far away the nearest recorded one is.
-    pub fn is_best_effort(&self) -> bool {
-        self.best_effort
-    }
-
     /// Returns whether what stood there is left out.
     pub fn is_clean(&self) -> bool {
         self.clean

@@ -21,10 +21,10 @@ pub(crate) const MAX_TABLE_BYTES: u64 = 64 << 20;
 /// Maximum size of a picture file, bytes.
 pub(crate) const MAX_PICTURE_BYTES: u64 = 512 << 20;
 
-/// Reads all bytes of a regular file that is not larger than the limit.
-pub(crate) fn read_bytes(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, ModelError> {
+/// Opens a regular file that is not larger than the limit.
+pub(crate) fn open_file(path: &Path, limit_bytes: u64) -> Result<File, ModelError> {
     let unreadable = |error: io::Error| ModelError::of_file(path, ModelFault::Unreadable(error));
-    let mut file = File::open(path).map_err(unreadable)?;
+    let file = File::open(path).map_err(unreadable)?;
     let metadata = file.metadata().map_err(unreadable)?;
     if !metadata.is_file() {
         return Err(unreadable(io::Error::other("it is not a regular file")));
@@ -32,9 +32,16 @@ pub(crate) fn read_bytes(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, Model
     if metadata.len() > limit_bytes {
         return Err(ModelError::of_file(path, ModelFault::TooLarge { limit_bytes }));
     }
-    let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
+    Ok(file)
+}
+
+/// Reads all bytes of a regular file that is not larger than the limit.
+pub(crate) fn read_bytes(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, ModelError> {
+    let mut bytes = Vec::new();
     // The file may grow while it is read.
-    file.by_ref().take(metadata.len()).read_to_end(&mut bytes).map_err(unreadable)?;
+    let file = open_file(path, limit_bytes)?;
+    let read = file.take(limit_bytes).read_to_end(&mut bytes);
+    read.map_err(|error| ModelError::of_file(path, ModelFault::Unreadable(error)))?;
     Ok(bytes)
 }
 

@@ -12,6 +12,7 @@
 //! | pictures and a table with any columns, read by a mapping | [`mapped_table`] |
 //! | what Foxglove shows, in an MCAP file or live | [`show`] |
 //! | one row a picture, as Parquet | [`frame_table::FrameTable`] |
+//! | Parquet tables of any columns, read | [`parquet_rows`] |
 
 pub mod colmap;
 mod file;
@@ -25,6 +26,7 @@ pub mod message;
 pub mod model_error;
 pub mod model_import;
 pub mod nerfstudio;
+pub mod parquet_rows;
 mod pixels;
 pub mod posed;
 mod schema;

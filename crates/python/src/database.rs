@@ -22,7 +22,9 @@ use crate::{
 #[pyclass(frozen, module = "reality_sim")]
 #[derive(Debug)]
 pub struct Database {
-    path: PathBuf,
+    pub path: PathBuf,
+    /// Effects of the sensor beside those of the database's camera.
+    pub model: Option<Model>,
     pub archive: Arc<Archive>,
     pub synthesizer: Arc<Synthesizer>,
 }
@@ -50,12 +52,13 @@ impl Database {
                 let database = path.display().to_string();
                 return Err(no_picture(&reality_sim::SynthesisError::NoCleanStage { database }));
             }
-            let archive = match model {
+            let (archive, model) = match model {
                 Some(file) => {
                     let model = Model::read(&file).map_err(failed)?;
-                    archive.with_model(&model).map_err(|error| failed(error.in_file(&file)))?
+                    let archive = archive.with_model(&model).map_err(|error| failed(error.in_file(&file)))?;
+                    (archive, Some(model))
                 }
-                None => archive,
+                None => (archive, None),
             };
             let mut config = SynthesisConfig::new(&archive).with_sources(neighbours);
             if best_effort {
@@ -65,7 +68,7 @@ impl Database {
             let archive = Arc::new(archive);
             let synthesizer =
                 Synthesizer::with(archive.clone(), lens, Arc::new(CpuWarper), config).with_clean(clean);
-            Ok(Self { path, archive, synthesizer: Arc::new(synthesizer) })
+            Ok(Self { path, model, archive, synthesizer: Arc::new(synthesizer) })
         })
     }
 

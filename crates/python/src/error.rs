@@ -29,7 +29,7 @@ pub fn no_look(error: &LookError) -> PyErr {
 }
 
 /// Joins the messages of an error and its causes, each of them once.
-fn with_causes(error: &dyn std::error::Error) -> String {
+pub fn with_causes(error: &dyn std::error::Error) -> String {
     let mut words = error.to_string();
     let mut cause = error.source();
     while let Some(error) = cause {

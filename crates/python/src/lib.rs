@@ -5,12 +5,15 @@
 
 mod build;
 mod database;
+mod dataset;
 mod error;
+mod gap;
 mod layers;
 mod lens;
 mod pictures;
 mod pose;
 mod renderer;
+mod study;
 mod tag;
 
 use pyo3::prelude::*;
@@ -22,10 +25,13 @@ mod _native {
     use super::{
         build::build,
         database::Database,
+        dataset::dataset,
         error::{Error, NoPicture},
+        gap::gap,
         layers::{Ball, Cube, Humanoid, Layer},
         lens::Lens,
         renderer::{Frame, FrameLabels, Renderer, SeenObject},
+        study::{study, study_settings, use_threads},
         tag::{TagErrors, Tags, tag},
     };
 

@@ -9,7 +9,7 @@ use reality_sim::{
 
 use crate::{
     database::{Database, named},
-    error::no_look,
+    error::{failed, no_look},
     layers::Layer,
     lens::Lens,
     pictures::{plane, rgb},
@@ -39,8 +39,13 @@ impl Renderer {
         let method = named(method)?;
         let synthesizer = database.of_size(size)?;
         let camera = py.detach(|| {
-            Camera::with(synthesizer, method).with_labels(labels).with_decoding_ahead(decoding_ahead)
-        });
+            let camera =
+                Camera::with(synthesizer, method).with_labels(labels).with_decoding_ahead(decoding_ahead);
+            match &database.model {
+                Some(model) => camera.with_model(model).map_err(failed),
+                None => Ok(camera),
+            }
+        })?;
         Ok(Self { camera, frame: simulator::Frame::default() })
     }
 

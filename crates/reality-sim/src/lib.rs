@@ -17,6 +17,9 @@
 //! | make the picture at a pose from the field's model | [`sensor::Renderer`] |
 //! | find what a model of the camera misses | [`gap`] |
 //! | tag a recording as the program does, with one or many settings | [`tagging`] |
+//! | make pictures at random poses with labels | [`dataset`] |
+//! | compare a recording with its camera as the program does | [`comparison`] |
+//! | all of this for thousands of recordings | [`study`] |
 //! | compare poses with ground truth, and pictures with true ones | [`evaluation`], [`probing`] |
 //! | draw poses in a picture, pictures side by side, coverage | [`overlay`], [`montage`], [`coverage_chart`] |
 //! | use the parts of localization | [`preprocess`], [`observation`], [`filter`], [`search`], [`refine`] |
@@ -77,11 +80,14 @@
 //! # }
 //! ```
 
+pub mod comparison;
 pub mod coverage_chart;
+pub mod dataset;
 pub mod evaluation;
 pub mod montage;
 pub mod overlay;
 pub mod probing;
+pub mod study;
 pub mod tagging;
 
 #[cfg(feature = "gpu")]

@@ -72,6 +72,11 @@ impl SynthesisConfig {
     pub fn best_effort(self) -> Self {
         Self { reach_px: f64::INFINITY, least_covered: 0.0, ..self }
     }
+
+    /// Returns whether there are pictures wherever there is any image at all.
+    pub fn is_best_effort(&self) -> bool {
+        self.reach_px.is_infinite() && self.least_covered <= 0.0
+    }
 }
 
 /// Source of pictures at any pose. Threads share one.

@@ -1,10 +1,13 @@
 //! Options of `dataset`.
 
-use std::{fmt, ops::RangeInclusive, path::PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use reality_sim::synthesis::MethodKind;
+use reality_sim::{
+    dataset::{self, DatasetSettings, Numbers},
+    synthesis::MethodKind,
+};
 
 use crate::commands::{
     choice::{described, one_of},
@@ -14,13 +17,6 @@ use crate::commands::{
 
 /// Methods whose pictures show exactly what is seen from the pose, so that labels fit.
 const METHODS: [MethodKind; 3] = [MethodKind::Auto, MethodKind::Plane, MethodKind::Blend];
-
-/// Largest number of balls, and of robots, in a picture.
-const MOST_THINGS: u16 = 50;
-
-/// Distance of the nearest recorded picture, pixels, up to which poses are drawn: `docs/reconstruction.md` measures pictures as far
-/// away as 142 px.
-const WITHIN_PX: f64 = 150.0;
 
 /// Options of `dataset`.
 #[derive(Debug, Args)]
@@ -40,13 +36,13 @@ pub struct DatasetArgs {
     #[arg(long, default_value_t, value_parser = one_of::<MethodKind>(METHODS.map(|kind| described(kind.name(), kind.description()))))]
     pub method: MethodKind,
     /// Largest distance of the nearest recorded picture, root mean square pixels
-    #[arg(long, default_value_t = WITHIN_PX, value_name = "PX", value_parser = distance_px)]
+    #[arg(long, default_value_t = DatasetSettings::default().within, value_name = "PX", value_parser = distance_px)]
     pub within: f64,
     /// Number of balls in a picture, each number as often
-    #[arg(long, value_name = "MIN..MAX", default_value = "0..1", value_parser = numbers)]
+    #[arg(long, value_name = "MIN..MAX", default_value_t = DatasetSettings::default().balls)]
     pub balls: Numbers,
     /// Number of robots in a picture, each number as often
-    #[arg(long, value_name = "MIN..MAX", default_value = "0..3", value_parser = numbers)]
+    #[arg(long, value_name = "MIN..MAX", default_value_t = DatasetSettings::default().robots)]
     pub robots: Numbers,
     /// Make pictures of this camera.toml instead of the camera that took the recorded ones
     #[arg(long, value_name = "FILE")]
@@ -82,32 +78,12 @@ pub enum PictureFormat {
     Png,
 }
 
-impl PictureFormat {
-    /// Returns the ending of file names.
-    pub fn ending(self) -> &'static str {
-        match self {
-            Self::Jpg => "jpg",
-            Self::Png => "png",
+impl From<PictureFormat> for dataset::PictureFormat {
+    fn from(format: PictureFormat) -> Self {
+        match format {
+            PictureFormat::Jpg => Self::Jpg,
+            PictureFormat::Png => Self::Png,
         }
-    }
-}
-
-/// Numbers from a least to a greatest one.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Numbers(pub RangeInclusive<u16>);
-
-impl fmt::Display for Numbers {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{}..{}", self.0.start(), self.0.end())
-    }
-}
-
-/// Reads `MIN..MAX`, or one number.
-fn numbers(text: &str) -> Result<Numbers, String> {
-    let (least, most) = text.split_once("..").unwrap_or((text, text));
-    match (least.trim().parse(), most.trim().parse()) {
-        (Ok(least), Ok(most)) if least <= most && most <= MOST_THINGS => Ok(Numbers(least..=most)),
-        _ => Err(format!("give one number, or two as MIN..MAX, from 0 to {MOST_THINGS}")),
     }
 }
 
@@ -117,6 +93,22 @@ fn distance_px(text: &str) -> Result<f64, String> {
 }
 
 impl DatasetArgs {
+    /// Returns the settings that the options state.
+    pub fn settings(&self) -> DatasetSettings {
+        DatasetSettings {
+            count: self.count,
+            seed: self.seed,
+            method: self.method,
+            within: self.within,
+            balls: self.balls,
+            robots: self.robots,
+            format: self.format.into(),
+            depth: self.depth,
+            instances: self.instances,
+            trust: self.trust,
+        }
+    }
+
     /// Refuses options that contradict each other.
     pub fn check_usage(&self) -> Result<(), String> {
         self.synthesis.backend.check_usage()
@@ -126,15 +118,6 @@ impl DatasetArgs {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_are_one_or_two_in_order() {
-        assert_eq!(numbers("0..3"), Ok(Numbers(0..=3)));
-        assert_eq!(numbers("2"), Ok(Numbers(2..=2)));
-        for wrong in ["", "3..2", "-1..2", "1..", "0..51", "a", "1..2..3"] {
-            assert!(numbers(wrong).is_err(), "{wrong}");
-        }
-    }
 
     #[test]
     fn distances_are_positive() {

@@ -94,6 +94,12 @@ pub enum Fault {
         /// Given name, quoted.
         name: String,
     },
+    /// A day is no date.
+    #[error("`recorded_on` is {day}: write a date as 2026-05-31, or leave the key out")]
+    BadDay {
+        /// Given text, quoted.
+        day: String,
+    },
     /// The camera model is unknown.
     #[error("the camera model {model} is not known: use OPENCV_FISHEYE, OPENCV or PINHOLE")]
     UnknownModel {

@@ -15,6 +15,7 @@ mod groundtruth;
 mod jpeg;
 mod limits;
 mod mounting;
+mod origin;
 mod picture;
 mod printable;
 mod sequence_file;
@@ -42,6 +43,7 @@ pub use self::{
     frames::FrameRecord,
     groundtruth::match_poses,
     mounting::Mounting,
+    origin::{Origin, read_origin},
     picture::{check_image, decode_image, save_image},
     printable::{Printable, counted, for_terminal, on_one_line, one_line},
     sequence_file::is_inside_folder,

@@ -11,6 +11,8 @@ A pose is ``(x_m, y_m, yaw_rad)``, or these and ``height_m, pitch_rad, roll_rad`
 roll is positive clockwise as seen from behind the camera.
 """
 
+from typing import TYPE_CHECKING, Any
+
 from ._native import (
     NO_OBJECT,
     VERSION as __version__,
@@ -30,16 +32,25 @@ from ._native import (
     Tags,
     build,
 )
+from .comparison import GapReport, GapSettings, gap
+from .datasets import Dataset, DatasetSettings, dataset
 from .tagging import TagSettings, tag
+
+if TYPE_CHECKING:
+    from .studies import study
 
 __all__ = [
     "NO_OBJECT",
     "Ball",
     "Cube",
     "Database",
+    "Dataset",
+    "DatasetSettings",
     "Error",
     "Frame",
     "FrameLabels",
+    "GapReport",
+    "GapSettings",
     "Humanoid",
     "Layer",
     "Lens",
@@ -51,5 +62,17 @@ __all__ = [
     "Tags",
     "__version__",
     "build",
+    "dataset",
+    "gap",
+    "study",
     "tag",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    # pyarrow is loaded where it is needed only: that takes longer than all of this.
+    if name == "study":
+        from .studies import study
+
+        return study
+    raise AttributeError(f"module {__name__} has no attribute {name}")

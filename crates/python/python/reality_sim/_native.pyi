@@ -320,3 +320,37 @@ class Renderer:
 
     def forget_path(self) -> None:
         """Lets the next picture be made as if it were the first."""
+
+def study_settings(settings: str) -> str:
+    """Completes the settings of a study, in JSON, by the default values.
+
+    Raises:
+      ValueError: for settings that there are not.
+    """
+
+def study(recording: str | PathLike[str], name: str, settings: list[str]) -> list[tuple[str, bytes | None]]:
+    """Studies a recording with each of some settings, in JSON; data sets made from it are in a folder of its ``name``. Returns for each what was found, or the error, in JSON, and a JPEG file, if there is one.
+
+    Raises:
+      ValueError: for settings that there are not.
+      OSError: where the machine fails.
+    """
+
+def use_threads(threads: int) -> bool:
+    """Sets how many threads work at once in this process. Returns false if another number was set, or used, before."""
+
+def gap(recording: str | PathLike[str], settings: str) -> tuple[str, str, str]:
+    """Compares a recording with a model of its camera, with settings in JSON. Returns report.json, model.toml and report.html.
+
+    Raises:
+      ValueError: for settings that there are not.
+      Error: where the recording cannot be read, or does not suffice.
+    """
+
+def dataset(database: Database, out: str | PathLike[str], settings: str) -> tuple[int, int, int, int]:
+    """Makes pictures with labels, with settings in JSON. Returns the numbers of pictures, of those made, of those there before, and of annotations.
+
+    Raises:
+      ValueError: for settings that there are not.
+      Error: where the folder holds something else, or no pictures can be made.
+    """

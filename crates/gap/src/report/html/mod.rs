@@ -10,7 +10,8 @@ mod text;
 
 use reality_sim_core::sequence::counted;
 
-use self::{maps::Subject, text::escape};
+use self::maps::Subject;
+pub use self::text::{escape, table};
 use crate::{
     inference::held_out::ChannelGap,
     measurement::quantity::Channel,
@@ -34,11 +35,15 @@ pub fn page(report: &Report, pictures: &Pictures) -> String {
         effects::objects(&report.objects),
         notes::section(report),
     ];
+    document(&title, &sections.concat())
+}
+
+/// Returns a page in UTF-8 in the style of the reports. Title and body are HTML.
+pub fn document(title: &str, body: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>{title}</title>\n\
-         <style>\n{STYLE}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
-        sections.concat()
+         <style>\n{STYLE}</style>\n</head>\n<body>\n{body}</body>\n</html>\n"
     )
 }
 

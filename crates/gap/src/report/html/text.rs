@@ -1,7 +1,7 @@
 //! Text in HTML.
 
 /// Escapes text for use between tags and in attributes. Control characters, which HTML does not allow, are shown by their escapes.
-pub(super) fn escape(text: &str) -> String {
+pub fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {
@@ -26,7 +26,7 @@ pub(super) fn capital(text: &str) -> String {
 
 /// Returns a table with a row of headings. Headings are plain text, and those that start with `>` are above numbers; rows
 /// are HTML.
-pub(super) fn table(headings: &[&str], rows: &[String]) -> String {
+pub fn table(headings: &[&str], rows: &[String]) -> String {
     let heading = |text: &&str| match text.strip_prefix('>') {
         Some(text) => format!("<th class=\"n\" scope=\"col\">{}</th>", escape(text)),
         None => format!("<th scope=\"col\">{}</th>", escape(text)),

@@ -1,13 +1,12 @@
 //! What a data set was made with, so that a later run goes on only with the same.
 
-use anyhow::Context;
+use reality_sim_core::sequence::CameraSetup;
+use reality_sim_sensor::Model;
+use reality_sim_synthesis::Archive;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use reality_sim::{Archive, Camera, sequence::CameraSetup};
-
-use super::options::DatasetArgs;
-use crate::commands::model_file::ModelFile;
+use super::{DatasetError, DatasetSettings, DatasetSource};
 
 /// Name of the file in the data set's folder.
 pub const MANIFEST: &str = "dataset.json";
@@ -27,7 +26,7 @@ pub struct Manifest {
     seed: u64,
     method: &'static str,
     backend: &'static str,
-    neighbours: u8,
+    neighbours: usize,
     within_px: f64,
     best_effort: bool,
     clean: bool,
@@ -42,57 +41,47 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// Notes options, database, camera and model.
-    pub fn new(
-        args: &DatasetArgs,
-        archive: &Archive,
-        camera: &Camera,
-        model: Option<&ModelFile>,
-    ) -> anyhow::Result<Self> {
-        let setup = CameraSetup { camera: camera.clone(), ..archive.setup().clone() };
-        let origin = args.camera.as_ref().unwrap_or(&args.database);
+    /// Notes settings, database, camera and model.
+    pub fn new(source: &DatasetSource, settings: &DatasetSettings) -> Result<Self, DatasetError> {
+        let synthesizer = source.synthesizer();
+        let (archive, config) = (synthesizer.archive(), synthesizer.config());
+        let setup = CameraSetup { camera: synthesizer.camera().clone(), ..archive.setup().clone() };
         Ok(Self {
             version: VERSION,
             program: env!("CARGO_PKG_VERSION"),
-            database: name_of(args),
+            database: source.name(),
             images: archive.images().len(),
             records: format!("{:016x}", hash_of_records(archive)),
-            seed: args.seed,
-            method: args.method.name(),
-            backend: args.synthesis.backend.device()?.name,
-            neighbours: args.synthesis.neighbours(),
-            within_px: args.within,
-            best_effort: args.synthesis.is_best_effort(),
-            clean: args.synthesis.is_clean(),
-            balls: args.balls.to_string(),
-            robots: args.robots.to_string(),
-            camera: setup.to_toml(origin)?,
-            model: model.map(|model| model.model.to_toml()),
-            format: args.format.ending(),
-            depth: args.depth,
-            instances: args.instances,
-            trust: args.trust,
+            seed: settings.seed,
+            method: settings.method.name(),
+            backend: source.device(),
+            neighbours: config.sources,
+            within_px: settings.within,
+            best_effort: config.is_best_effort(),
+            clean: synthesizer.is_clean(),
+            balls: settings.balls.to_string(),
+            robots: settings.robots.to_string(),
+            camera: setup.to_toml(source.database())?,
+            model: source.model().map(Model::to_toml),
+            format: settings.format.ending(),
+            depth: settings.depth,
+            instances: settings.instances,
+            trust: settings.trust,
         })
     }
 
     /// Returns the manifest as the text of its file.
-    pub fn text(&self) -> anyhow::Result<String> {
+    pub fn text(&self) -> serde_json::Result<String> {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
 
     /// Returns the keys in which another manifest's text differs.
-    pub fn differences(&self, other: &str) -> anyhow::Result<Vec<String>> {
-        let other: Map<String, Value> =
-            serde_json::from_str(other).context("is not the manifest of a data set")?;
+    pub fn differences(&self, other: &str) -> serde_json::Result<Vec<String>> {
+        let other: Map<String, Value> = serde_json::from_str(other)?;
         let own: Map<String, Value> = serde_json::from_str(&self.text()?)?;
         let keys = own.keys().chain(other.keys().filter(|key| !own.contains_key(*key)));
         Ok(keys.filter(|key| own.get(*key) != other.get(*key)).cloned().collect())
     }
-}
-
-/// Returns the name of the database's file: the data set stays the same where the file lies elsewhere.
-pub fn name_of(args: &DatasetArgs) -> String {
-    args.database.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Returns a hash of what is known of the images: their files' names and lengths, and their poses (FNV-1a, 64 bits: a fingerprint

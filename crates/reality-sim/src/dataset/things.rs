@@ -4,13 +4,15 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, Vec3};
 
-use reality_sim::{
-    Camera, CameraPose, FieldDimensions, Pose2,
+use reality_sim_core::{
+    camera::Camera,
+    field::FieldDimensions,
     filter::{Purpose, Stream},
-    simulator::{Ball, Humanoid, Layer},
+    pose::{CameraPose, Pose2},
 };
+use reality_sim_simulator::{Ball, Humanoid, Layer};
 
-use super::options::Numbers;
+use super::Numbers;
 
 /// Radius of the balls, metres: FIFA size 1, that of the ray-traced recordings.
 const BALL_RADIUS_M: f64 = 0.065;
@@ -48,8 +50,8 @@ pub struct Things<'a> {
     pub field: &'a FieldDimensions,
     pub camera: &'a Camera,
     pub seed: u64,
-    pub balls: &'a Numbers,
-    pub robots: &'a Numbers,
+    pub balls: Numbers,
+    pub robots: Numbers,
 }
 
 /// Space on the ground that something takes.
@@ -70,12 +72,8 @@ impl Things<'_> {
     /// post or in the robot that carries the camera.
     pub fn draw(&self, picture: u32, pose: CameraPose) -> Vec<Box<dyn Layer>> {
         let stream = |number: u32| Stream::new(self.seed, Purpose::Dataset, picture, FIRST_STREAM + number);
-        let number_of = |numbers: &Numbers, random: f64| {
-            let (least, most) = (u32::from(*numbers.0.start()), u32::from(*numbers.0.end()));
-            least + (random * f64::from(most - least + 1)) as u32
-        };
-        let balls = number_of(self.balls, stream(0).uniform(0));
-        let robots = number_of(self.robots, stream(0).uniform(1));
+        let balls = self.balls.choose(stream(0).uniform(0));
+        let robots = self.robots.choose(stream(0).uniform(1));
         let mut taken = self.taken(pose);
         let mut things: Vec<Box<dyn Layer>> = Vec::new();
         for number in 1..=balls {
@@ -140,7 +138,7 @@ fn one_of<T: Copy>(list: &[T], random: f64) -> T {
 
 #[cfg(test)]
 mod tests {
-    use reality_sim::camera::Distortion;
+    use reality_sim_core::camera::Distortion;
 
     use super::*;
 
@@ -149,8 +147,8 @@ mod tests {
         let field = FieldDimensions::preset("humanoid-kidsize-2010").expect("a preset");
         let camera =
             Camera::new([640, 480], [215.0, 215.0, 319.5, 239.5], Distortion::Pinhole).expect("a camera");
-        let numbers = Numbers(3..=3);
-        let things = Things { field: &field, camera: &camera, seed: 7, balls: &numbers, robots: &numbers };
+        let numbers: Numbers = "3".parse().expect("a number");
+        let things = Things { field: &field, camera: &camera, seed: 7, balls: numbers, robots: numbers };
         let pose = CameraPose { x_m: -2.0, height_m: 0.5, pitch_rad: 0.3, ..CameraPose::default() };
         let mut before = String::new();
         for picture in 0..50 {

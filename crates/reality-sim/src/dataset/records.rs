@@ -5,24 +5,22 @@ use std::{
     io::{self, BufWriter, Write},
 };
 
+use reality_sim_core::{
+    camera::{Camera, ImageCircle},
+    pose::CameraPose,
+    sequence::write_atomically_with,
+    warp::Origin,
+};
+use reality_sim_simulator::{
+    Frame,
+    coco::{SeenCrossingRecord, SeenLineRecord, annotations, categories, crossings, lines},
+};
 use serde::Serialize;
 use serde_json::json;
 
-use reality_sim::{
-    Camera, CameraPose, FieldDimensions,
-    camera::ImageCircle,
-    sequence::write_atomically_with,
-    simulator::{
-        Frame,
-        coco::{SeenCrossingRecord, SeenLineRecord, annotations, categories, crossings, lines},
-    },
-    warp::Origin,
-};
-
 use super::{
+    DatasetError, DatasetSettings, DatasetSource,
     folder::{DatasetFolder, Part},
-    manifest::name_of,
-    options::DatasetArgs,
 };
 
 /// Record of a picture: COCO's keys, and those that it does not know.
@@ -84,12 +82,13 @@ impl<'a> CameraRecord<'a> {
 
 /// Returns the records of a picture: its own, and those of its annotations, a line each.
 pub fn records(
-    args: &DatasetArgs,
+    source: &DatasetSource,
+    settings: &DatasetSettings,
     folder: &DatasetFolder,
     picture: u32,
     frame: &Frame,
-    camera: &Camera,
-) -> anyhow::Result<String> {
+) -> serde_json::Result<String> {
+    let camera = source.synthesizer().camera();
     let if_wanted = |part| folder.has(part).then(|| folder.name(part, picture));
     let nearest_px = frame.used.iter().map(|used| used.distance_px).reduce(f64::min);
     let seen = frame.origins.iter().filter(|origin| origin.source != Origin::OUTSIDE).count().max(1);
@@ -105,9 +104,9 @@ pub fn records(
         trust: if_wanted(Part::Trust),
         pose: frame.pose,
         camera: CameraRecord::new(camera),
-        database: name_of(args),
-        seed: args.seed,
-        method: args.method.name(),
+        database: source.name(),
+        seed: settings.seed,
+        method: settings.method.name(),
         covered: to_thousandths(frame.covered),
         trust_mean: to_thousandths(trust as f64 / (f64::from(u8::MAX) * seen as f64)),
         nearest_px: nearest_px.map(to_thousandths),
@@ -127,27 +126,27 @@ fn to_thousandths(value: f64) -> f64 {
 
 /// Brings the records of all pictures together in one file, without holding them in memory. Returns the number of annotations.
 pub fn write_annotations(
-    args: &DatasetArgs,
+    source: &DatasetSource,
+    settings: &DatasetSettings,
     folder: &DatasetFolder,
-    field: &FieldDimensions,
-) -> anyhow::Result<usize> {
+) -> Result<usize, DatasetError> {
     let info = json!({
-        "description": format!("Pictures from {} at random poses", name_of(args)),
+        "description": format!("Pictures from {} at random poses", source.name()),
         "version": env!("CARGO_PKG_VERSION"),
-        "seed": args.seed,
+        "seed": settings.seed,
     });
-    let categories = serde_json::to_string(&categories(field))?;
+    let categories = json!(categories(source.synthesizer().archive().field()));
     let mut count = 0;
     write_atomically_with(&folder.annotations(), |file| {
         let mut file = BufWriter::new(file);
         write!(file, "{{\"info\":{info},\"licenses\":[],\"categories\":{categories},\"images\":[")?;
-        for picture in 0..args.count {
+        for picture in 0..settings.count {
             let records = read(folder, picture)?;
             let image = records.lines().next().unwrap_or_default();
             write!(file, "{}\n{image}", if picture == 0 { "" } else { "," })?;
         }
         write!(file, "],\"annotations\":[")?;
-        for picture in 0..args.count {
+        for picture in 0..settings.count {
             for annotation in read(folder, picture)?.lines().skip(1) {
                 write!(file, "{}\n{annotation}", if count == 0 { "" } else { "," })?;
                 count += 1;

@@ -2,17 +2,13 @@
 
 use std::{io::Cursor, path::Path};
 
-use anyhow::bail;
 use image::{EncodableLayout, ImageBuffer, ImageFormat, Luma, Pixel, PixelWithColorType};
-
-use reality_sim::{
-    sequence::{save_image, write_atomically},
-    simulator::{Camera, Frame, Layer},
-};
+use reality_sim_core::sequence::{save_image, write_atomically};
+use reality_sim_simulator::{Camera, Frame, Layer};
 
 use super::{
+    DatasetError, DatasetSettings, DatasetSource,
     folder::{DatasetFolder, Part},
-    options::DatasetArgs,
     poses::Poses,
     records::records,
     things::Things,
@@ -23,7 +19,8 @@ const MOST_REFUSALS: u32 = 200;
 
 /// What all threads share.
 pub struct Task<'a> {
-    pub args: &'a DatasetArgs,
+    pub source: &'a DatasetSource,
+    pub settings: &'a DatasetSettings,
     pub folder: &'a DatasetFolder,
     pub poses: Poses<'a>,
     pub things: Things<'a>,
@@ -43,10 +40,9 @@ impl<'a> Worker<'a> {
     }
 
     /// Makes a picture and writes its files, the records last.
-    pub fn make(&mut self, picture: u32) -> anyhow::Result<()> {
+    pub fn make(&mut self, picture: u32) -> Result<(), DatasetError> {
         self.look(picture)?;
-        let Self { task: Task { args, folder, .. }, frame, .. } = self;
-        let lens = self.camera.synthesizer().camera();
+        let Self { task: Task { source, settings, folder, .. }, frame, .. } = self;
         folder.begin()?;
         save_image(&folder.file(Part::Image, picture), &frame.picture)?;
         write_png(&folder.file(Part::Mask, picture), &frame.labels.class_picture())?;
@@ -59,21 +55,20 @@ impl<'a> Worker<'a> {
         if folder.has(Part::Trust) {
             write_png(&folder.file(Part::Trust, picture), &frame.labels.trust_picture())?;
         }
-        let records = records(args, folder, picture, frame, lens)?;
+        let records = records(source, settings, folder, picture, frame)
+            .map_err(|cause| DatasetError::Records { picture, cause })?;
         Ok(write_atomically(&folder.file(Part::Records, picture), records.as_bytes())?)
     }
 
     /// Looks from the first pose of those drawn for the picture at which there is one.
-    fn look(&mut self, picture: u32) -> anyhow::Result<()> {
-        let Task { args, poses, things, .. } = self.task;
+    fn look(&mut self, picture: u32) -> Result<(), DatasetError> {
+        let Task { source, poses, things, .. } = self.task;
+        let database = || source.database().to_path_buf();
         let mut after = 0;
         for _ in 0..MOST_REFUSALS {
             let Some(drawn) = poses.draw(picture, after) else {
-                bail!(
-                    "{}: no random pose for picture {picture} is within {} px of a recorded picture: record more of the field, or give a larger --within",
-                    args.database.display(),
-                    args.within
-                );
+                let within_px = poses.within_px;
+                return Err(DatasetError::NothingNear { database: database(), picture, within_px });
             };
             after = drawn.before + 1;
             let things = things.draw(picture, drawn.pose);
@@ -85,20 +80,19 @@ impl<'a> Worker<'a> {
                 Err(error) => return Err(error.into()),
             }
         }
-        bail!(
-            "{}: recorded pictures show too little at {MOST_REFUSALS} random poses for picture {picture}: record more of the field, or give --best-effort",
-            args.database.display()
-        );
+        Err(DatasetError::TooLittleSeen { database: database(), picture, poses: MOST_REFUSALS })
     }
 }
 
 /// Writes a picture of numbers as PNG.
-fn write_png<T>(path: &Path, picture: &ImageBuffer<Luma<T>, Vec<T>>) -> anyhow::Result<()>
+fn write_png<T>(path: &Path, picture: &ImageBuffer<Luma<T>, Vec<T>>) -> Result<(), DatasetError>
 where
     Luma<T>: Pixel<Subpixel = T> + PixelWithColorType,
     [T]: EncodableLayout,
 {
     let mut bytes = Cursor::new(Vec::new());
-    picture.write_to(&mut bytes, ImageFormat::Png)?;
+    picture
+        .write_to(&mut bytes, ImageFormat::Png)
+        .map_err(|cause| DatasetError::Encoding { file: path.to_path_buf(), cause })?;
     Ok(write_atomically(path, bytes.get_ref())?)
 }

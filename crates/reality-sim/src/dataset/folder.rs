@@ -6,15 +6,12 @@ use std::{
     sync::Mutex,
 };
 
-use anyhow::{Context, bail};
-
-use reality_sim::sequence::write_atomically;
+use reality_sim_core::sequence::write_atomically;
 
 use super::{
+    DatasetError, DatasetSettings,
     manifest::{MANIFEST, Manifest},
-    options::DatasetArgs,
 };
-use crate::commands::{output::check_writable_folder, output_folder::OutputFolder};
 
 /// Start of the names of files that a run was killed over.
 const UNFINISHED: &str = ".unfinished-";
@@ -44,63 +41,69 @@ pub struct DatasetFolder {
 impl DatasetFolder {
     /// Checks that a data set can be written into a folder: a new one, or the rest of one with the same manifest. Nothing is
     /// created yet.
-    pub fn check(args: &DatasetArgs, inputs: &[PathBuf], manifest: &Manifest) -> anyhow::Result<Self> {
-        let path = &args.out;
-        OutputFolder::check(path, inputs)?;
-        let optional =
-            [(args.depth, Part::Depth), (args.instances, Part::Instances), (args.trust, Part::Trust)];
+    pub fn check(
+        path: PathBuf,
+        settings: &DatasetSettings,
+        manifest: &Manifest,
+    ) -> Result<Self, DatasetError> {
+        let optional = [
+            (settings.depth, Part::Depth),
+            (settings.instances, Part::Instances),
+            (settings.trust, Part::Trust),
+        ];
         let optional = optional.into_iter().filter_map(|(is_wanted, part)| is_wanted.then_some(part));
         let parts = [Part::Image, Part::Mask].into_iter().chain(optional).chain([Part::Records]);
+        let file = path.join(MANIFEST);
+        let no_manifest = |cause| DatasetError::Manifest { file: file.clone(), cause };
         let folder = Self {
-            path: path.clone(),
-            manifest: manifest.text()?,
-            image_ending: args.format.ending(),
+            manifest: manifest.text().map_err(no_manifest)?,
+            image_ending: settings.format.ending(),
             parts: parts.collect(),
             is_begun: Mutex::new(false),
+            path,
         };
-        match fs::read_to_string(path.join(MANIFEST)) {
-            Ok(found) => folder.check_same(manifest, &found, args.count)?,
-            Err(_) => check_empty(path)?,
+        match fs::read_to_string(&file) {
+            Ok(found) => {
+                folder.check_same(manifest.differences(&found).map_err(no_manifest)?, settings.count)?;
+            }
+            Err(_) => folder.check_empty()?,
         }
         Ok(folder)
     }
 
-    fn check_same(&self, manifest: &Manifest, found: &str, count: u32) -> anyhow::Result<()> {
-        let path = self.path.display();
-        let different = manifest.differences(found).with_context(|| format!("{path}/{MANIFEST}"))?;
+    fn check_same(&self, different: Vec<String>, count: u32) -> Result<(), DatasetError> {
+        let folder = self.path.clone();
         if !different.is_empty() {
-            bail!(
-                "{path}: holds a data set that was made with another {}: give the same options, or another folder",
-                different.join(", ")
-            );
+            return Err(DatasetError::OtherSettings { folder, keys: different });
         }
-        let beyond = self.file(Part::Records, count);
-        if beyond.exists() {
-            bail!(
-                "{path}: holds more than {count} pictures already: give a larger --count, or another folder"
-            );
+        if self.file(Part::Records, count).exists() {
+            return Err(DatasetError::MorePictures { folder, count });
+        }
+        Ok(())
+    }
+
+    /// Refuses a folder that holds something else.
+    fn check_empty(&self) -> Result<(), DatasetError> {
+        let Ok(entries) = fs::read_dir(&self.path) else { return Ok(()) };
+        let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+        if names.into_iter().any(|name| !name.starts_with(UNFINISHED)) {
+            return Err(DatasetError::OtherFiles { folder: self.path.clone() });
         }
         Ok(())
     }
 
     /// Creates the folders and writes the manifest, if that is not done yet. Threads may call it at once.
-    pub fn begin(&self) -> anyhow::Result<()> {
+    pub fn begin(&self) -> Result<(), DatasetError> {
         let mut is_begun = self.is_begun.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         if *is_begun {
             return Ok(());
         }
-        let create = |folder: &Path| {
-            fs::create_dir_all(folder)
-                .with_context(|| format!("{}: cannot be created: check the path", folder.display()))
-        };
         create(&self.path)?;
         if !self.path.join(MANIFEST).exists() {
             write_atomically(&self.path.join(MANIFEST), self.manifest.as_bytes())?;
         }
         for part in &self.parts {
-            let folder = self.path.join(part.folder());
-            create(&folder)?;
-            check_writable_folder(&folder)?;
+            create(&self.path.join(part.folder()))?;
         }
         *is_begun = true;
         Ok(())
@@ -150,15 +153,6 @@ impl Part {
     }
 }
 
-/// Refuses a folder that holds something else.
-fn check_empty(path: &Path) -> anyhow::Result<()> {
-    let Ok(entries) = fs::read_dir(path) else { return Ok(()) };
-    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    if names.into_iter().any(|name| !name.starts_with(UNFINISHED)) {
-        bail!(
-            "{}: holds other files and no {MANIFEST}: give a new folder, or that of a data set to be completed",
-            path.display()
-        );
-    }
-    Ok(())
+fn create(folder: &Path) -> Result<(), DatasetError> {
+    fs::create_dir_all(folder).map_err(|cause| DatasetError::Folder { folder: folder.to_path_buf(), cause })
 }

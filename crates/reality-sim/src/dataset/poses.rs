@@ -4,10 +4,11 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use reality_sim::{
-    Archive, CameraPose, Pose2,
+use reality_sim_core::{
     filter::{Purpose, Stream},
+    pose::{CameraPose, Pose2},
 };
+use reality_sim_synthesis::Archive;
 
 /// Number of poses that are drawn for a picture before it is given up: where one in ten thousand is near enough, one picture in
 /// twenty thousand is. Each takes some microseconds.

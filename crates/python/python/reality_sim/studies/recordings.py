@@ -1,0 +1,64 @@
+"""Recordings by their address: folders of this machine, or of any file system that pyarrow opens."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+__all__ = ["fetched", "hash_of"]
+
+_BLOCK = 1 << 20
+
+
+@contextlib.contextmanager
+def fetched(uri: str | os.PathLike[str]) -> Iterator[Path]:
+    """Brings a recording to this machine, and removes it again at the end if it was not there.
+
+    Raises:
+      OSError: where there is no such folder, or it cannot be read.
+      ValueError: where no file system has such addresses.
+    """
+    text = os.fspath(uri)
+    if "://" not in text:
+        if not os.path.isdir(text):
+            raise FileNotFoundError(f"{text}: there is no such folder")
+        yield Path(text)
+        return
+    from pyarrow import fs
+
+    system, path = fs.FileSystem.from_uri(text)
+    if isinstance(system, fs.LocalFileSystem):
+        if not os.path.isdir(path):
+            raise FileNotFoundError(f"{text}: there is no such folder")
+        yield Path(path)
+        return
+    with tempfile.TemporaryDirectory(prefix="reality-sim-") as folder:
+        fs.copy_files(path, folder, source_filesystem=system)
+        yield Path(folder)
+
+
+def hash_of(path: Path) -> str:
+    """Returns the hash of a file, or of all files of a folder with their names: the same wherever they lie (SHA-256).
+
+    Files whose names begin with a dot are no part of a recording.
+    """
+    if path.is_file():
+        return _hash_of_file(path)
+    whole = hashlib.sha256()
+    for name, file in sorted((file.relative_to(path).as_posix(), file) for file in path.rglob("*") if file.is_file()):
+        if any(part.startswith(".") for part in name.split("/")):
+            continue
+        whole.update(f"{name}\0{_hash_of_file(file)}\n".encode())
+    return whole.hexdigest()
+
+
+def _hash_of_file(file: Path) -> str:
+    of_file = hashlib.sha256()
+    with file.open("rb") as stream:
+        while block := stream.read(_BLOCK):
+            of_file.update(block)
+    return of_file.hexdigest()
