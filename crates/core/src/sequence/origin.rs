@@ -93,7 +93,7 @@ mod tests {
     fn what_is_no_robot_and_no_day_is_refused_with_its_line() {
         for text in ["\nrobot = \"a\\nb\"", "\nrecorded_on = \"yesterday\"", "\nrecorded_on = \"10:20:30\""] {
             let error = origin(text).unwrap_err().to_string();
-            assert!(error.starts_with("sequence.toml:2: "), "{error}");
+            assert!(error.starts_with("sequence.toml, line 2: "), "{error}");
         }
     }
 }

@@ -1,22 +1,19 @@
 //! A data set from beginning to end.
 
 use std::{
-    num::NonZero,
     path::{Path, PathBuf},
     sync::{
-        Arc, Mutex, PoisonError,
+        Mutex, PoisonError,
         atomic::{AtomicU32, Ordering},
     },
     thread,
     time::{Duration, Instant},
 };
 
-use reality_sim_sensor::Model;
 use reality_sim_simulator::Camera;
-use reality_sim_synthesis::Synthesizer;
 
 use super::{
-    DatasetError, DatasetSettings,
+    DatasetError, DatasetSettings, DatasetSource,
     folder::DatasetFolder,
     manifest::Manifest,
     poses::Poses,
@@ -24,16 +21,6 @@ use super::{
     things::Things,
     worker::{Task, Worker},
 };
-
-/// What the pictures of a data set are made from.
-#[derive(Debug)]
-pub struct DatasetSource {
-    database: PathBuf,
-    synthesizer: Arc<Synthesizer>,
-    model: Option<Model>,
-    device: &'static str,
-    threads: usize,
-}
 
 /// Data set that is whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,64 +35,6 @@ pub struct Dataset {
     pub annotations: usize,
     /// Time in which the pictures were made.
     pub drawing: Duration,
-}
-
-impl DatasetSource {
-    /// Makes a source of a database's file and a synthesizer of its pictures.
-    pub fn new(database: &Path, synthesizer: impl Into<Arc<Synthesizer>>) -> Self {
-        let threads = thread::available_parallelism().map_or(1, NonZero::get);
-        Self {
-            database: database.to_path_buf(),
-            synthesizer: synthesizer.into(),
-            model: None,
-            device: "cpu",
-            threads,
-        }
-    }
-
-    /// Adds the effects of a model to the pictures.
-    pub fn with_model(self, model: Option<Model>) -> Self {
-        Self { model, ..self }
-    }
-
-    /// Sets the name of the device on which the synthesizer draws, which the data set tells; it is `cpu` by default.
-    pub fn with_device(self, device: &'static str) -> Self {
-        Self { device, ..self }
-    }
-
-    /// Sets the number of threads; it is that of the cores by default. Pictures are the same with any number.
-    pub fn with_threads(self, threads: usize) -> Self {
-        Self { threads: threads.max(1), ..self }
-    }
-
-    pub(super) fn database(&self) -> &Path {
-        &self.database
-    }
-
-    /// Returns the name of the database's file: the data set stays the same where the file lies elsewhere.
-    pub(super) fn name(&self) -> String {
-        self.database.file_name().unwrap_or_default().to_string_lossy().into_owned()
-    }
-
-    pub(super) fn synthesizer(&self) -> &Synthesizer {
-        &self.synthesizer
-    }
-
-    pub(super) fn model(&self) -> Option<&Model> {
-        self.model.as_ref()
-    }
-
-    pub(super) fn device(&self) -> &'static str {
-        self.device
-    }
-
-    fn camera(&self, settings: &DatasetSettings) -> Result<Camera, DatasetError> {
-        let camera = Camera::with(self.synthesizer.clone(), settings.method).with_labels(true);
-        Ok(match &self.model {
-            Some(model) => camera.with_model(model)?,
-            None => camera,
-        })
-    }
 }
 
 /// Makes a data set, or completes one that was begun with the same settings, in a folder that is there afterwards. `progress` is told,
@@ -166,7 +95,7 @@ fn make_all(task: &Task, camera: &Camera, progress: impl Fn(u32) + Sync) -> Resu
         Ok(())
     };
     thread::scope(|scope| {
-        for _ in 0..task.source.threads {
+        for _ in 0..task.source.threads() {
             scope.spawn(|| {
                 if let Err(error) = work(&mut Worker::new(task, camera)) {
                     failed.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);

@@ -32,11 +32,13 @@ mod manifest;
 mod poses;
 mod records;
 mod settings;
+mod source;
 mod things;
 mod worker;
 
 pub use self::{
     error::DatasetError,
-    make::{Dataset, DatasetSource, make},
+    make::{Dataset, make},
     settings::{DatasetSettings, InvalidNumbers, Numbers, PictureFormat},
+    source::DatasetSource,
 };

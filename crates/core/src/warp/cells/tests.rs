@@ -180,11 +180,26 @@ proptest! {
         let exact = blend(&target, &sources, &weights);
         let mut colors = vec![[0; 3]; rays.pixels()];
         let origins = blend_cells_into(&target, &sources, &weights, &mut colors);
-        let far = colors.iter().zip(&exact.colors).filter(|(a, b)| (0..3).any(|i| a[i].abs_diff(b[i]) > 2)).count();
+        // In 1500 such scenes it was 0.18 % at most, and 0.06 % in all but one.
+        let beyond = colors.iter().enumerate().filter(|(index, color)| !is_around(&exact.colors, rays.width as usize, *index, **color)).count();
         let other = origins.iter().zip(&exact.origins).filter(|(a, b)| a.source != b.source).count();
-        prop_assert!(far <= colors.len() / 100, "{far} colours");
+        prop_assert!(beyond <= colors.len() / 200, "{beyond} colours");
         prop_assert!(other <= colors.len() / 100, "{other} origins");
     }
+}
+
+/// Whether a colour is, to two levels, among those of the pixels at most one to the side: where edges are at most a pixel off.
+fn is_around(colors: &[[u8; 3]], width: usize, index: usize, color: [u8; 3]) -> bool {
+    let (u, v) = (index % width, index / width);
+    let rows = v.saturating_sub(1)..=(v + 1).min(colors.len() / width - 1);
+    let around = || {
+        rows.clone().flat_map(|v| (u.saturating_sub(1)..=(u + 1).min(width - 1)).map(move |u| v * width + u))
+    };
+    (0..3).all(|channel| {
+        let values = || around().map(|index| colors[index][channel]);
+        let (least, most) = (values().min().unwrap_or(0), values().max().unwrap_or(255));
+        (least.saturating_sub(2)..=most.saturating_add(2)).contains(&color[channel])
+    })
 }
 
 /// Makes a picture with soft stripes.
