@@ -26,8 +26,8 @@ int main(int argc, char **argv)
 
     uint32_t width, height;
     RsPose pose;
-    rs_camera_size(camera, &width, &height);
-    rs_camera_usual_pose(camera, &pose);
+    if (rs_camera_size(camera, &width, &height) != RS_STATUS_OK || rs_camera_usual_pose(camera, &pose) != RS_STATUS_OK)
+        return fail("camera");
     pose.x_m = -2.3;
     pose.y_m = 0.2;
     pose.yaw_rad = 1.6;
@@ -53,9 +53,11 @@ int main(int argc, char **argv)
 
     const double center_m[3] = { balls[0].x_m, balls[0].y_m, balls[0].z_m };
     double pixel[2];
-    if (rs_camera_project(camera, pose, center_m, pixel) == RS_STATUS_OK)
-        printf("centre of the ball: %.1f %.1f, %.2f m away\n", pixel[0], pixel[1],
-               distance_m[(size_t)lround(pixel[1]) * width + (size_t)lround(pixel[0])]);
+    if (rs_camera_project(camera, pose, center_m, pixel) != RS_STATUS_OK)
+        return fail("centre of the ball");
+    const long column = lround(pixel[0]), row = lround(pixel[1]);
+    if (column >= 0 && column < (long)width && row >= 0 && row < (long)height)
+        printf("centre of the ball: %.1f %.1f, %.2f m away\n", pixel[0], pixel[1], distance_m[(size_t)row * width + (size_t)column]);
 
     FILE *file = fopen(argv[2], "wb");
     if (file == NULL) {
