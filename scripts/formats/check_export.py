@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Checks what `reality-sim export` writes against the packages of others: pycolmap, evo, mcap and pyarrow.
+"""Checks what `reality-sim export` writes against the packages of others: pycolmap, evo, mcap, mcap-ros2-support and pyarrow.
 
-    python3 -m venv venv && venv/bin/pip install pycolmap evo mcap mcap-protobuf-support pyarrow
+    python3 -m venv venv && venv/bin/pip install pycolmap evo mcap mcap-protobuf-support mcap-ros2-support pyarrow numpy
     cargo build --release && venv/bin/python scripts/formats/check_export.py target/release/reality-sim assets/walk
 
 The truth about pixels is the program's own: a model's keypoints are where its camera sees the points of the field's lines.
@@ -123,6 +123,72 @@ def check_mcap(program, sequence, folder):
     check("mcap", whole and images == report["pictures"] and len(counts) == 6, counts)
 
 
+def check_ros2(program, sequence, folder):
+    """mcap's decoder of ROS 2 reads what a camera streams by the definitions in the log; boxes, labels, lens and tf agree on where a ball is."""
+    import numpy as np
+    from mcap_ros2.reader import read_ros2_messages
+
+    database, path, log = folder / "walk.db", folder / "path.tum", folder / "stream.mcap"
+    run(program, "build", sequence, "--poses", sequence / "groundtruth.tum", "--out", database)
+    path.write_text("".join((sequence / "groundtruth.tum").read_text().splitlines(keepends=True)[:12]))
+    ball = (-2.3, 1.2, 0.1)
+    report = run(program, "stream", database, "--path", path, "--ball", f"{ball[0]},{ball[1]},{ball[2]}", "--out", log)
+    shots = {}
+    for message in read_ros2_messages(str(log)):
+        shots.setdefault(message.log_time_ns, {})[message.channel.topic] = message.ros_msg
+    whole = all(len(shot) == 7 for shot in shots.values())
+    check("mcap-ros2, messages", whole and len(shots) == report["pictures"], f"{len(shots)} times 7 messages")
+    largest, seen = 0.0, 0
+    for shot in shots.values():
+        boxes = [one for one in shot["/camera/objects"].detections if one.results[0].hypothesis.class_id == "ball"]
+        if not boxes:
+            continue
+        seen += 1
+        box, info, transform = boxes[0].bbox, shot["/camera/camera_info"], shot["/tf"].transforms[0].transform
+        instances = pixels_of(shot["/camera/instances"], "<u2")
+        rows, columns = np.nonzero(instances == int(boxes[0].id))
+        # The box is the instance's.
+        assert columns.min() == box.center.position.x - box.size_x / 2, boxes
+        assert rows.max() + 1 == box.center.position.y + box.size_y / 2, boxes
+        assert (pixels_of(shot["/camera/classes"], "u1")[rows, columns] == 4).all()
+        # The middle of the ball's pixels is where the lens sees its centre, and their depths are its front's.
+        in_camera = rotated(transform.rotation, np.array(ball) - vector(transform.translation))
+        pixel = equidistant(info, in_camera)
+        if 0 < columns.min() and columns.max() + 1 < info.width and rows.max() + 1 < info.height:
+            largest = max(largest, math.hypot(pixel[0] - columns.mean(), pixel[1] - rows.mean()))
+        depths = pixels_of(shot["/camera/depth"], "<f4")[rows, columns]
+        assert in_camera[2] - ball[2] - 0.01 < depths.min() and depths.max() < in_camera[2] + ball[2] + 0.01, depths
+        assert shot["/camera/image_raw"].encoding == "rgb8" and len(shot["/camera/image_raw"].data) == 3 * info.width * info.height
+    check("mcap-ros2, ball", seen >= 3 and largest < 1.0, f"{seen} pictures of the ball, {largest:.2f} px from its centre")
+
+
+def pixels_of(image, kind):
+    import numpy as np
+
+    return np.frombuffer(bytes(image.data), kind).reshape(image.height, image.width)
+
+
+def vector(xyz):
+    return [xyz.x, xyz.y, xyz.z]
+
+
+def rotated(q, point):
+    """Rotates a vector of the world into the camera, by the quaternion of the camera in the world."""
+    import numpy as np
+
+    u, s = np.array([-q.x, -q.y, -q.z]), q.w
+    return 2 * np.dot(u, point) * u + (s * s - np.dot(u, u)) * point + 2 * s * np.cross(u, point)
+
+
+def equidistant(info, point):
+    """Projects by ROS's fisheye model."""
+    assert info.distortion_model == "equidistant" and len(info.d) == 4, info
+    radius = math.hypot(point[0], point[1])
+    t = math.atan2(radius, point[2])
+    bent = t * (1 + sum(k * t ** (2 * power + 2) for power, k in enumerate(info.d)))
+    return info.k[0] * bent * point[0] / radius + info.k[2], info.k[4] * bent * point[1] / radius + info.k[5]
+
+
 def check_parquet(program, sequence, folder):
     """pyarrow reads the table, with the values of the CSV file that it was made from."""
     import pyarrow.parquet
@@ -153,6 +219,7 @@ def main():
         check_colmap(program, sequence, folder)
         check_tum(program, sequence, folder)
         check_mcap(program, sequence, folder)
+        check_ros2(program, sequence, folder)
         check_parquet(program, sequence, folder)
     print("all is as it should be")
 

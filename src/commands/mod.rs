@@ -24,11 +24,15 @@ mod parameter;
 mod picture_at;
 mod remove;
 mod render;
+#[cfg(feature = "live")]
+mod serving;
 mod shell;
+mod stream;
 mod summary;
 mod tag;
 #[cfg(feature = "viewer")]
 mod viewer;
+mod wanted_ball;
 
 use clap::CommandFactory;
 
@@ -47,6 +51,8 @@ pub enum Command {
     Import(Box<import::ImportArgs>),
     /// Make the picture at a pose, or the pictures along a path, from a database
     Render(Box<render::RenderArgs>),
+    /// Send what a camera sees along a path as messages of ROS 2, to a file or live
+    Stream(Box<stream::StreamArgs>),
     /// Make pictures at random poses with labels, from a database
     Dataset(Box<dataset::DatasetArgs>),
     /// Compare reconstructed pictures with true ones that are not in the database
@@ -80,6 +86,7 @@ impl Command {
             Self::Tag(args) => args.check_usage(),
             Self::Build(args) => args.check_usage(),
             Self::Render(args) => args.check_usage(),
+            Self::Stream(args) => args.check_usage(),
             Self::Dataset(args) => args.check_usage(),
             Self::Evaluate(args) => args.check_usage(),
             Self::Export(args) => args.check_usage(),
@@ -106,6 +113,7 @@ impl Command {
             Self::Build(args) => build::run(args),
             Self::Import(args) => import::run(args),
             Self::Render(args) => render::run(args),
+            Self::Stream(args) => stream::run(args),
             Self::Dataset(args) => dataset::run(args),
             Self::Evaluate(args) => evaluate::run(args),
             Self::Export(args) => export::run(args),

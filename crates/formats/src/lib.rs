@@ -11,6 +11,7 @@
 //! | nerfstudio's `transforms.json`, written and read | [`nerfstudio`] |
 //! | pictures and a table with any columns, read by a mapping | [`mapped_table`] |
 //! | what Foxglove shows, in an MCAP file or live | [`show`] |
+//! | what a simulator's camera sees, as ROS 2's messages | [`ros2`] |
 //! | one row a picture, as Parquet | [`frame_table::FrameTable`] |
 //! | Parquet tables of any columns, read | [`parquet_rows`] |
 
@@ -29,6 +30,7 @@ pub mod nerfstudio;
 pub mod parquet_rows;
 mod pixels;
 pub mod posed;
+pub mod ros2;
 mod schema;
 pub mod show;
 pub mod undistort;

@@ -10,12 +10,12 @@ use reality_sim::{
     synthesis::MethodKind,
 };
 
-use super::balls::{WantedBall, wanted_ball};
 use crate::commands::{
     choice::{described, one_of},
     output::{check_distinct, check_output_picture},
     output_folder::OutputFolder,
     picture_at::SynthesisArgs,
+    wanted_ball::{WantedBall, wanted_ball},
 };
 
 /// Options of `render`.

@@ -27,8 +27,8 @@ pub struct EffectOfRobot {
 #[derive(Debug, Serialize)]
 pub struct EffectOnDay {
     pub day: String,
-    /// Number of recordings that were compared.
-    pub recordings: usize,
+    /// Number of comparisons: a recording that was compared with several settings counts for each.
+    pub comparisons: usize,
     /// Number of them that show it.
     pub showing: usize,
     /// Medians of its parameters over these, in the units of `model.toml`.
@@ -39,8 +39,8 @@ pub struct EffectOnDay {
 #[derive(Debug, Serialize)]
 pub struct RobotHealth {
     pub robot: String,
-    /// Number of recordings that were compared.
-    pub recordings: usize,
+    /// Number of comparisons: a recording that was compared with several settings counts for each.
+    pub comparisons: usize,
     /// Number of them without a missing effect, as far as they can tell.
     pub healthy: usize,
     /// Number of them with residuals that no effect explains.
@@ -62,7 +62,7 @@ pub fn robots(rows: &[StudyRow]) -> Vec<RobotHealth> {
         let median_of = |name| median(rows.iter().filter_map(|row| row.figure(name)));
         RobotHealth {
             robot: robot.to_owned(),
-            recordings: rows.len(),
+            comparisons: rows.len(),
             healthy: rows.iter().filter(|row| verdict(row) == "none").count(),
             unexplained: rows.iter().filter(|row| verdict(row) == "unknown").count(),
             gap_before: median_of("gap_before"),
@@ -70,7 +70,7 @@ pub fn robots(rows: &[StudyRow]) -> Vec<RobotHealth> {
         }
     };
     let mut robots: Vec<RobotHealth> = robots.into_iter().map(health).collect();
-    let share = |robot: &RobotHealth| robot.healthy as f64 / robot.recordings.max(1) as f64;
+    let share = |robot: &RobotHealth| robot.healthy as f64 / robot.comparisons.max(1) as f64;
     robots.sort_by(|a, b| share(a).total_cmp(&share(b)));
     robots
 }
@@ -88,7 +88,7 @@ pub fn effects(rows: &[StudyRow]) -> Vec<EffectOfRobot> {
 }
 
 impl EffectOfRobot {
-    /// Follows an effect from day to day. A day shows it where more than half of its recordings do.
+    /// Follows an effect from day to day. A day shows it where more than half of its comparisons do.
     fn new(rows: &[StudyRow], robot: &str, id: &str) -> Option<Self> {
         let mut by_day: BTreeMap<&str, Vec<&StudyRow>> = BTreeMap::new();
         for row in compared(rows).filter(|row| row.robot == robot) {
@@ -96,7 +96,7 @@ impl EffectOfRobot {
         }
         let days: Vec<EffectOnDay> =
             by_day.iter().map(|(day, rows)| EffectOnDay::new(day, rows, id)).collect();
-        let shows = |day: &EffectOnDay| 2 * day.showing > day.recordings;
+        let shows = |day: &EffectOnDay| 2 * day.showing > day.comparisons;
         let last = days.iter().rposition(shows)?;
         let first = days[..last].iter().rposition(|day| !shows(day)).map_or(0, |before| before + 1);
         let latest = by_day.values().flatten().rev().find_map(|row| effect_of(row, id))?;
@@ -124,7 +124,7 @@ impl EffectOnDay {
         let medians = values.into_iter().filter_map(|(name, values)| Some((name, median(values)?)));
         Self {
             day: day.to_owned(),
-            recordings: rows.len(),
+            comparisons: rows.len(),
             showing: showing.len(),
             parameters: medians.collect(),
         }

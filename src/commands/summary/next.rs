@@ -66,7 +66,9 @@ impl FieldCoverage {
             let number = |key: &str| place[key].as_f64().unwrap_or(f64::NAN);
             let cell = found.entry((number("x_m").floor() as i64, number("y_m").floor() as i64)).or_default();
             cell.0 += place["pictures"].as_u64().unwrap_or_default();
-            cell.1.insert((number("yaw_rad") / std::f64::consts::TAU * SECTORS as f64).round() as i64);
+            // Half a turn to either side is the same heading.
+            let sector = (number("yaw_rad") / std::f64::consts::TAU * SECTORS as f64).round() as i64;
+            cell.1.insert(sector.rem_euclid(SECTORS as i64));
         }
         let reach = |length_m: f64| (length_m / 2.0).ceil() as i64;
         let (x_end, y_end) = (reach(field.length_m), reach(field.width_m));

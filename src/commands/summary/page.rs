@@ -9,8 +9,8 @@ use reality_sim::{
 };
 
 use super::{
-    Summary,
     calibration::{EffectOfRobot, RobotHealth},
+    findings::{FailedRow, Summary},
     next::{CoveredCell, FieldCoverage, NotSeen},
     tagging::{TaggingOnDay, WorstRecording},
 };
@@ -47,7 +47,7 @@ fn robots(robots: &[RobotHealth]) -> String {
     let row = |robot: &RobotHealth| {
         vec![
             escape(&robot.robot),
-            robot.recordings.to_string(),
+            robot.comparisons.to_string(),
             robot.healthy.to_string(),
             robot.unexplained.to_string(),
             number(robot.gap_before, 2),
@@ -58,7 +58,7 @@ fn robots(robots: &[RobotHealth]) -> String {
         "Calibration by robot",
         &[
             "Robot",
-            ">Recordings",
+            ">Comparisons",
             ">Nothing missing",
             ">Unexplained",
             ">Gap before, noise",
@@ -74,7 +74,7 @@ fn effects(effects: &[EffectOfRobot]) -> String {
             let sizes: Vec<String> =
                 day.parameters.iter().map(|(name, value)| format!("{} {value:.3e}", escape(name))).collect();
             let sizes = if sizes.is_empty() { String::new() } else { format!(": {}", sizes.join(", ")) };
-            format!("{} {} of {}{sizes}", escape(day_name(&day.day)), day.showing, day.recordings)
+            format!("{} {} of {}{sizes}", escape(day_name(&day.day)), day.showing, day.comparisons)
         });
         shown.collect::<Vec<_>>().join("<br/>")
     };
@@ -90,7 +90,7 @@ fn effects(effects: &[EffectOfRobot]) -> String {
     };
     titled_table(
         "Effects that the files of the cameras lack",
-        &["Robot", "Effect", "Size at last", "Since", "Recordings that show it, by day"],
+        &["Robot", "Effect", "Size at last", "Since", "Comparisons that show it, by day"],
         effects.iter().map(row),
     )
 }
@@ -205,9 +205,8 @@ fn worst(worst: &[WorstRecording]) -> String {
 }
 
 fn errors(summary: &Summary) -> String {
-    let row = |error: &super::FailedRow| {
-        vec![escape(&error.job), escape(&error.error), error.recordings.to_string()]
-    };
+    let row =
+        |error: &FailedRow| vec![escape(&error.job), escape(&error.error), error.recordings.to_string()];
     titled_table("Studies that failed", &["Job", "Reason", ">Recordings"], summary.errors.iter().map(row))
 }
 

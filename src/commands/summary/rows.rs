@@ -21,7 +21,7 @@ pub struct StudyRow {
     /// Hash of the settings.
     pub settings: String,
     pub version: String,
-    /// Job that was done: `tag`, `gap` or `evaluate`.
+    /// Job that was done: `tag`, `gap`, `evaluate` or `dataset`.
     pub job: String,
     pub error: Option<String>,
     pub name: String,
@@ -44,7 +44,8 @@ impl StudyRow {
         }
     }
 
-    fn new(mut cells: ParquetRow) -> Self {
+    /// Takes a row of a table.
+    pub fn new(mut cells: ParquetRow) -> Self {
         let mut text = |name: &str| match cells.remove(name) {
             Some(Cell::Text(text)) => Some(text),
             _ => None,
@@ -63,7 +64,8 @@ impl StudyRow {
     }
 }
 
-/// Reads tables: Parquet files, and folders of them. Rows come in the order of their keys, and each key once.
+/// Reads tables: Parquet files, and folders of them. Rows come in the order of recordings and settings, each once: that of the newest
+/// version of the library.
 pub fn read(tables: &[PathBuf]) -> anyhow::Result<Vec<StudyRow>> {
     let mut rows = Vec::new();
     for path in tables {
@@ -83,10 +85,18 @@ pub fn read(tables: &[PathBuf]) -> anyhow::Result<Vec<StudyRow>> {
     if rows.is_empty() {
         bail!("{}: holds no rows: study some recordings first", tables[0].display());
     }
-    let key = |row: &StudyRow| (row.recording.clone(), row.settings.clone(), row.version.clone());
-    rows.sort_by_cached_key(key);
-    rows.dedup_by_key(|row| key(row));
-    Ok(rows)
+    Ok(newest(rows))
+}
+
+/// Returns the rows in the order of their keys, of each recording with the same settings only that of the newest version.
+pub fn newest(mut rows: Vec<StudyRow>) -> Vec<StudyRow> {
+    let study = |row: &StudyRow| (row.recording.clone(), row.settings.clone());
+    let version = |row: &StudyRow| -> Vec<u64> {
+        row.version.split(['.', '-', '+']).map_while(|part| part.parse().ok()).collect()
+    };
+    rows.sort_by_cached_key(|row| (study(row), std::cmp::Reverse(version(row))));
+    rows.dedup_by_key(|row| study(row));
+    rows
 }
 
 /// Returns the table's files, in the order of their names.

@@ -1,7 +1,5 @@
 //! Options of `tag`, and their interpretation.
 
-#[cfg(feature = "live")]
-use std::net::SocketAddr;
 use std::{
     ops::Range,
     path::{Path, PathBuf},
@@ -19,6 +17,8 @@ use reality_sim::{
     tagging::TagSettings,
 };
 
+#[cfg(feature = "live")]
+use crate::commands::serving::ServingArgs;
 use crate::commands::{
     choice::{described, one_of},
     device::{BackendArgs, Device},
@@ -99,14 +99,9 @@ pub struct TagArgs {
     /// Write each picture, with lines, border, particles and a map drawn into it, to this folder
     #[arg(long, value_name = "FOLDER")]
     pub overlay: Option<PathBuf>,
-    /// Show the work in Foxglove while it is done, no faster than it was recorded: listen for its websocket at this address
     #[cfg(feature = "live")]
-    #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1, default_missing_value = "127.0.0.1:8765")]
-    pub serve: Option<SocketAddr>,
-    /// Wait for somebody to connect before the first picture
-    #[cfg(feature = "live")]
-    #[arg(long, requires = "serve")]
-    pub serve_wait: bool,
+    #[command(flatten)]
+    pub serving: ServingArgs,
     /// Process only frames A to B − 1, counted from 0; the start pose is then dead-reckoned by odometry
     #[arg(long, value_name = "A..B", value_parser = FrameRange::parse)]
     pub frames: Option<FrameRange>,

@@ -42,7 +42,7 @@ impl Watchers {
         Ok(Self {
             log: log.map(|path| LogFile::create(path)).transpose()?,
             #[cfg(feature = "live")]
-            live: args.serve.map(|address| start_live(address, args.serve_wait)).transpose()?,
+            live: args.serving.start()?,
         })
     }
 
@@ -86,17 +86,6 @@ impl Watchers {
         }
         Ok(self.log.map_or(Ok(()), LogFile::finish)?)
     }
-}
-
-#[cfg(feature = "live")]
-fn start_live(address: std::net::SocketAddr, waits: bool) -> anyhow::Result<LiveView> {
-    let live = LiveView::start(address)?;
-    // On standard error: standard output may be for JSON.
-    eprintln!("open ws://{} in Foxglove", live.address());
-    if waits {
-        live.wait_for_client();
-    }
-    Ok(live)
 }
 
 /// Writes an MCAP file of poses without particles.

@@ -1,6 +1,6 @@
-//! Standard definitions of ROS 2 and Foxglove, for logs that hold none: Humble's SQLite bags name the types only. The fields are
-//! those of the packages `builtin_interfaces`, `std_msgs`, `geometry_msgs`, `sensor_msgs`, `nav_msgs` and `tf2_msgs`, which have
-//! been the same since ROS 2's first release.
+//! Standard definitions of ROS 2 and Foxglove, for logs that hold none (Humble's SQLite bags name the types only) and for those that are
+//! written. The fields are those of the packages `builtin_interfaces`, `std_msgs`, `geometry_msgs`, `sensor_msgs`, `nav_msgs` and
+//! `tf2_msgs`, which have been the same since ROS 2's first release, and of `vision_msgs` since its version 4.
 
 /// Name and text of every definition.
 const DEFINITIONS: &[(&str, &str)] = &[
@@ -50,6 +50,19 @@ const DEFINITIONS: &[(&str, &str)] = &[
         "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort",
     ),
     ("tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms"),
+    ("vision_msgs/Point2D", "float64 x\nfloat64 y"),
+    ("vision_msgs/Pose2D", "Point2D position\nfloat64 theta"),
+    ("vision_msgs/BoundingBox2D", "Pose2D center\nfloat64 size_x\nfloat64 size_y"),
+    ("vision_msgs/ObjectHypothesis", "string class_id\nfloat64 score"),
+    (
+        "vision_msgs/ObjectHypothesisWithPose",
+        "ObjectHypothesis hypothesis\ngeometry_msgs/PoseWithCovariance pose",
+    ),
+    (
+        "vision_msgs/Detection2D",
+        "std_msgs/Header header\nObjectHypothesisWithPose[] results\nBoundingBox2D bbox\nstring id",
+    ),
+    ("vision_msgs/Detection2DArray", "std_msgs/Header header\nDetection2D[] detections"),
 ];
 
 /// Returns the text of a definition by its short name, `package/Type`.

@@ -13,7 +13,7 @@ mod view;
 mod wire;
 
 use self::{cdr::CdrView, cdr_types::CdrTypes, json::JsonSchema, protobuf::ProtobufTypes};
-pub use self::{shape::Shape, view::View};
+pub use self::{ros2msg::complete as ros2_definition, shape::Shape, view::View};
 
 /// Largest definition that is read, bytes: those of ROS 2's largest messages take some ten kilobytes.
 const MAX_DEFINITION_BYTES: usize = 1 << 20;

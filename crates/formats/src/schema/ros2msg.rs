@@ -21,6 +21,31 @@ pub fn standard(type_name: &str) -> Option<CdrTypes> {
     parse(type_name, builtin::text(&short_name(type_name))?).ok()
 }
 
+/// Returns the standard definition of a type followed by those of all types in it, as logs hold them; `None` if it is not a standard one.
+pub fn complete(type_name: &str) -> Option<String> {
+    let mut names = vec![short_name(type_name)];
+    let mut text = String::new();
+    let mut done = 0;
+    while let Some(name) = names.get(done).cloned() {
+        let own = builtin::text(&name)?;
+        if done > 0 {
+            text += &format!("\n{}\nMSG: {name}\n", "=".repeat(80));
+        }
+        text += own;
+        let package = name.split('/').next().unwrap_or_default();
+        for (kind, _) in own.lines().filter_map(field_of) {
+            let element = kind.split(['[', '<']).next().unwrap_or(kind);
+            let part =
+                if element.contains('/') { short_name(element) } else { format!("{package}/{element}") };
+            if builtin::text(&part).is_some() && !names.contains(&part) {
+                names.push(part);
+            }
+        }
+        done += 1;
+    }
+    Some(text)
+}
+
 /// Returns `package/Type` of `package/msg/Type` or `package::msg::Type`.
 pub fn short_name(name: &str) -> String {
     let parts: Vec<&str> = name.split(['/', ':']).filter(|part| !part.is_empty()).collect();
@@ -151,6 +176,10 @@ mod tests {
     fn every_standard_definition_is_complete() {
         for name in builtin::names() {
             assert!(standard(name).is_some(), "{name}");
+            // A reader that knows no definition but this finds all that are in it.
+            let sections = complete(name).map(|text| sections(name, &text).len());
+            let types = standard(name).map(|types| types.structs.len());
+            assert_eq!(sections, types, "{name}");
         }
         assert!(standard("sensor_msgs/msg/Imu").is_some());
         assert!(standard("sensor_msgs/msg/Unheard").is_none());

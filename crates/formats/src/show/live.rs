@@ -8,10 +8,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use foxglove::{Context, WebSocketServer, WebSocketServerHandle};
+use foxglove::{Context, FoxgloveError, WebSocketServer, WebSocketServerHandle};
 use reality_sim_core::sequence::one_line;
 
-use super::{Shot, channels::Channels};
+use super::topics::Topics;
 use crate::model_error::{ModelError, ModelFault};
 
 /// How often it is looked whether somebody has connected.
@@ -23,36 +23,37 @@ const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 /// Time that a client is given to subscribe to topics after it has connected.
 const SUBSCRIPTION: Duration = Duration::from_millis(500);
 
-/// Server that shows pictures as they are localized. Clients that come late see what comes after; slow ones miss pictures,
+/// Server that shows pictures as they are made. Clients that come late see what comes after; slow ones miss pictures,
 /// and hold nobody up.
 #[derive(Debug)]
-pub struct LiveView {
+pub struct TopicServer<T> {
     /// Holds what the server belongs to.
     _context: Arc<Context>,
-    channels: Channels,
+    topics: T,
     server: WebSocketServerHandle,
     address: SocketAddr,
     /// When the last picture was shown, and its own time.
     last: Option<(Instant, f64)>,
 }
 
-impl LiveView {
+impl<T: Topics> TopicServer<T> {
     /// Starts the server. Port 0 is any free one. Fails if the address cannot be had.
     pub fn start(address: SocketAddr) -> Result<Self, ModelError> {
         let context = Context::new();
-        let channels = Channels::new(&context);
+        let failed = |error: FoxgloveError| {
+            let message =
+                format!("cannot be listened at ({}): give another address or port", one_line(&error));
+            ModelError::of_file(&PathBuf::from(address.to_string()), ModelFault::Show { message })
+        };
+        let topics = T::open(&context).map_err(failed)?;
         let server = WebSocketServer::new()
             .name("reality-sim")
             .bind(address.ip().to_string(), address.port())
             .context(&context)
             .start_blocking()
-            .map_err(|error| {
-                let message =
-                    format!("cannot be listened at ({}): give another address or port", one_line(&error));
-                ModelError::of_file(&PathBuf::from(address.to_string()), ModelFault::Show { message })
-            })?;
+            .map_err(failed)?;
         let address = SocketAddr::new(address.ip(), server.port());
-        Ok(Self { _context: context, channels, server, address, last: None })
+        Ok(Self { _context: context, topics, server, address, last: None })
     }
 
     /// Returns the address at which the server listens.
@@ -69,13 +70,14 @@ impl LiveView {
     }
 
     /// Shows a picture, not sooner after the one before than it was recorded.
-    pub fn show(&mut self, shot: &Shot<'_>) {
+    pub fn show(&mut self, shot: &T::Shot<'_>) {
+        let shot_s = T::timestamp_s(shot);
         if let Some((shown, timestamp_s)) = self.last {
-            let step = Duration::try_from_secs_f64(shot.timestamp_s - timestamp_s).unwrap_or_default();
+            let step = Duration::try_from_secs_f64(shot_s - timestamp_s).unwrap_or_default();
             thread::sleep(step.min(LONGEST_PAUSE).saturating_sub(shown.elapsed()));
         }
-        self.last = Some((Instant::now(), shot.timestamp_s));
-        self.channels.log(shot);
+        self.last = Some((Instant::now(), shot_s));
+        self.topics.log(shot);
     }
 
     /// Ends the server, after what was shown has been sent.

@@ -10,7 +10,7 @@ use std::{
 use foxglove::{Context, FoxgloveError, McapCompression, McapWriteOptions, McapWriter, McapWriterHandle};
 use tempfile::NamedTempFile;
 
-use super::{Shot, channels::Channels};
+use super::topics::Topics;
 use crate::model_error::{ModelError, ModelFault};
 
 /// Temporary files of logs that are not complete.
@@ -30,18 +30,18 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// MCAP file that is being written. It gets its name when it is complete, by [`LogFile::finish`]; dropped before, it leaves
+/// MCAP file that is being written. It gets its name when it is complete, by [`TopicFile::finish`]; dropped before, it leaves
 /// nothing behind.
 #[derive(Debug)]
-pub struct LogFile {
+pub struct TopicFile<T> {
     path: PathBuf,
     /// Holds what the writer belongs to.
     _context: Arc<Context>,
-    channels: Channels,
+    topics: T,
     writer: McapWriterHandle<BufWriter<NamedTempFile>>,
 }
 
-impl LogFile {
+impl<T: Topics> TopicFile<T> {
     /// Begins a file, under a temporary name in its folder; a symbolic link is followed. Fails if it cannot be written there, or if a
     /// device, a pipe or a folder has its name: a log is written with jumps back, which only a file allows.
     pub fn create(path: &Path) -> Result<Self, ModelError> {
@@ -58,15 +58,16 @@ impl LogFile {
             .map_err(unwritable)?;
         unfinished().push(file.path().to_path_buf());
         let context = Context::new();
-        let options = McapWriteOptions::new().compression(Some(McapCompression::Lz4));
+        let options = McapWriteOptions::new().compression(Some(McapCompression::Lz4)).profile(T::PROFILE);
         let writer = McapWriter::with_options(options).context(&context).create(BufWriter::new(file));
         let writer = writer.map_err(|error| unwritable(io::Error::other(error)))?;
-        Ok(Self { path: path.to_path_buf(), channels: Channels::new(&context), _context: context, writer })
+        let topics = T::open(&context).map_err(|error| unwritable(io::Error::other(error)))?;
+        Ok(Self { path: path.to_path_buf(), topics, _context: context, writer })
     }
 
     /// Writes a picture and everything that is shown of it.
-    pub fn log(&self, shot: &Shot<'_>) {
-        self.channels.log(shot);
+    pub fn log(&self, shot: &T::Shot<'_>) {
+        self.topics.log(shot);
     }
 
     /// Completes the file, and gives it its name. Fails if the disk is full.

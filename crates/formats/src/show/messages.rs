@@ -15,7 +15,7 @@ use reality_sim_core::{
     pose::CameraPose,
 };
 
-use super::Shot;
+use super::shot::Shot;
 use crate::pixels::HALF_PIXEL;
 
 /// Frame of the field.

@@ -10,32 +10,22 @@
 //! | `/tf` | `foxglove.FrameTransform` | from `world` to `camera` |
 //! | `/field` | `foxglove.SceneUpdate` | the field's lines on the ground |
 //! | `/particles` | `foxglove.PosesInFrame` | the particles, where they are known |
+//!
+//! What a simulator's camera sees goes the same ways, with the topics of [`crate::ros2`].
 
-mod channels;
+mod foxglove_topics;
 #[cfg(feature = "live")]
 mod live;
 mod log_file;
 mod messages;
-
-use reality_sim_core::{camera::Camera, field::FieldDimensions, pose::CameraPose};
+mod shot;
+mod topics;
 
 #[cfg(feature = "live")]
-pub use self::live::LiveView;
-pub use self::log_file::{LogFile, remove_unfinished_logs};
-
-/// Picture with everything that is shown of it.
-#[derive(Debug, Clone, Copy)]
-pub struct Shot<'a> {
-    /// Time at which it was taken, seconds.
-    pub timestamp_s: f64,
-    /// JPEG or PNG file.
-    pub picture: &'a [u8],
-    /// Camera that took it.
-    pub camera: &'a Camera,
-    /// Field on which it was taken.
-    pub field: &'a FieldDimensions,
-    /// Pose of the camera.
-    pub pose: CameraPose,
-    /// Particles; none if they are not known.
-    pub particles: &'a [CameraPose],
-}
+pub use self::{foxglove_topics::LiveView, live::TopicServer};
+pub use self::{
+    foxglove_topics::{FoxgloveTopics, LogFile},
+    log_file::{TopicFile, remove_unfinished_logs},
+    shot::Shot,
+    topics::Topics,
+};
