@@ -188,16 +188,14 @@ def test_what_is_there_is_not_done_again(recordings: list[Path], undisturbed: by
 def test_other_file_systems_are_read_and_written(
     recordings: list[Path], undisturbed: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    class Bucket:
-        """A file system that is not this machine's, as far as anybody can tell."""
+    def opened(address: str) -> tuple[fs.FileSystem, str]:
+        """Opens a file system that is not this machine's, as far as anybody can tell."""
+        base, path = address.removeprefix("bucket://").split("/", 1)
+        root = recordings[0].parent if base == "recordings" else tmp_path
+        return fs.SubTreeFileSystem(str(root), fs.LocalFileSystem()), path
 
-        @staticmethod
-        def from_uri(uri: str) -> tuple[fs.FileSystem, str]:
-            base, path = uri.removeprefix("bucket://").split("/", 1)
-            root = recordings[0].parent if base == "recordings" else tmp_path
-            return fs.SubTreeFileSystem(str(root), fs.LocalFileSystem()), path
-
-    monkeypatch.setattr(fs, "FileSystem", Bucket)
+    for part in ("recordings", "tables"):
+        monkeypatch.setattr(f"reality_sim.studies.{part}.opened", opened)
     worker = studies.StudyWorker(SETTINGS, "bucket://tables/of/walks")
     told = [worker.study_one(f"bucket://recordings/{one.name}") for one in recordings]
     assert {one["written"] for one in told} == {len(SETTINGS)}

@@ -1,4 +1,4 @@
-"""Recordings by their address: folders of this machine, or of any file system that pyarrow opens."""
+"""Recordings by their address: brought to this machine, and told apart by their content."""
 
 from __future__ import annotations
 
@@ -8,6 +8,10 @@ import os
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+
+from pyarrow import fs
+
+from .places import opened
 
 __all__ = ["fetched", "hash_of"]
 
@@ -22,18 +26,10 @@ def fetched(uri: str | os.PathLike[str]) -> Iterator[Path]:
       OSError: where there is no such folder, or it cannot be read.
       ValueError: where no file system has such addresses.
     """
-    text = os.fspath(uri)
-    if "://" not in text:
-        if not os.path.isdir(text):
-            raise FileNotFoundError(f"{text}: there is no such folder")
-        yield Path(text)
-        return
-    from pyarrow import fs
-
-    system, path = fs.FileSystem.from_uri(text)
+    system, path = opened(uri)
     if isinstance(system, fs.LocalFileSystem):
         if not os.path.isdir(path):
-            raise FileNotFoundError(f"{text}: there is no such folder")
+            raise FileNotFoundError(f"{os.fspath(uri)}: there is no such folder")
         yield Path(path)
         return
     with tempfile.TemporaryDirectory(prefix="reality-sim-") as folder:

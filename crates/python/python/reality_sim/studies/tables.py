@@ -11,6 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from pyarrow import fs
 
+from .places import opened
 from .rows import KEY, SCHEMA, batch_of, key_of
 
 __all__ = ["missing_keys", "read_tables", "write_row"]
@@ -27,7 +28,7 @@ def write_row(row: dict[str, Any], tables: str | os.PathLike[str]) -> None:
       OSError: where the folder cannot be written.
     """
     table = pa.Table.from_batches([batch_of([row])])
-    system, folder = _opened(tables)
+    system, folder = _folder_of(tables)
     final = f"{folder}/{key_of(row)}{_ENDING}"
     unfinished = f"{folder}/{_UNFINISHED}{uuid.uuid4().hex}"
     with system.open_output_stream(unfinished) as stream:
@@ -37,7 +38,7 @@ def write_row(row: dict[str, Any], tables: str | os.PathLike[str]) -> None:
 
 def missing_keys(keys: Iterable[str], tables: str | os.PathLike[str]) -> list[str]:
     """Returns those of the wanted keys that have no file yet."""
-    system, folder = _opened(tables)
+    system, folder = _folder_of(tables)
     wanted = list(keys)
     found = system.get_file_info([f"{folder}/{key}{_ENDING}" for key in wanted])
     return [key for key, info in zip(wanted, found) if info.type != fs.FileType.File]
@@ -49,7 +50,7 @@ def read_tables(tables: str | os.PathLike[str]) -> pa.Table:
     Raises:
       OSError: where a file cannot be read.
     """
-    system, folder = _opened(tables)
+    system, folder = _folder_of(tables)
     infos = system.get_file_info(fs.FileSelector(folder, allow_not_found=True))
     names = sorted(info.path for info in infos if info.base_name.endswith(_ENDING) and not info.base_name.startswith("."))
     rows = [pq.read_table(name, filesystem=system, schema=SCHEMA) for name in names]
@@ -57,9 +58,8 @@ def read_tables(tables: str | os.PathLike[str]) -> pa.Table:
     return table.sort_by([(column, "ascending") for column in KEY]).combine_chunks()
 
 
-def _opened(tables: str | os.PathLike[str]) -> tuple[fs.FileSystem, str]:
+def _folder_of(tables: str | os.PathLike[str]) -> tuple[fs.FileSystem, str]:
     """Opens the folder of tables, which is there afterwards."""
-    text = os.fspath(tables)
-    system, folder = fs.FileSystem.from_uri(text) if "://" in text else (fs.LocalFileSystem(), os.path.abspath(text))
+    system, folder = opened(tables)
     system.create_dir(folder, recursive=True)
     return system, folder
