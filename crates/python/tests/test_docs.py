@@ -2,6 +2,8 @@
 
 import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -10,16 +12,44 @@ os.environ.setdefault("MUJOCO_GL", "osmesa")
 ROOT = Path(__file__).parents[3]
 
 
+def blocks(document: str) -> list[tuple[str, str]]:
+    """Reads the code of a document: of each block its language and its text."""
+    return re.findall(r"^```(\w+)\n(.*?)^```", (ROOT / "docs" / document).read_text(), re.DOTALL | re.MULTILINE)
+
+
 def test_the_code_of_the_documentation_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("mujoco")
     (tmp_path / "assets").symlink_to(ROOT / "assets")
     monkeypatch.chdir(tmp_path)
-    blocks = re.findall(r"^```python\n(.*?)^```", (ROOT / "docs" / "python.md").read_text(), re.DOTALL | re.MULTILINE)
-    assert len(blocks) >= 4
+    python = [text for language, text in blocks("python.md") if language == "python"]
+    assert len(python) >= 4
     names: dict = {}
-    for block in blocks:
-        exec(compile(block, "docs/python.md", "exec"), names)  # noqa: S102
+    for text in python:
+        exec(compile(text, "docs/python.md", "exec"), names)  # noqa: S102
     assert names["picture"].shape == (480, 640, 3)
+
+
+@pytest.mark.skipif("REALITY_SIM" not in os.environ, reason="REALITY_SIM, the path of the program, is not set")
+def test_all_runners_of_the_documentation_make_the_same_table(tmp_path: Path) -> None:
+    """Each block runs as a program of its own, in the order in which they stand there."""
+    pytest.importorskip("ray")
+    from reality_sim import studies
+
+    (tmp_path / "assets").symlink_to(ROOT / "assets")
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    (programs / "reality-sim").symlink_to(os.environ["REALITY_SIM"])
+    path = f"{programs}:{Path(sys.executable).parent}:{os.environ['PATH']}"
+    ways = {"python": [sys.executable, "-c"], "sh": ["sh", "-ec"]}
+    for language, text in blocks("scale.md"):
+        if "pip install" not in text:
+            done = subprocess.run([*ways[language], text], cwd=tmp_path, env={**os.environ, "PATH": path}, capture_output=True, text=True)
+            assert done.returncode == 0, f"{text}\n{done.stdout}\n{done.stderr}"
+    tables = [studies.read_tables(str(tmp_path / name)) for name in ("by_ray", "by_processes", "by_shell")]
+    assert tables[0].num_rows == 4
+    assert tables[0].column("error").null_count == 4
+    assert all(table.equals(tables[0]) for table in tables)
+    assert "<html" in (tmp_path / "summary.html").read_text()
 
 
 def test_stubs_name_what_there_is() -> None:
