@@ -20,8 +20,8 @@ use reality_sim_db::{Database, PoseEstimate, PoseSource};
 use tempfile::{TempDir, tempdir};
 
 use common::{
-    Memory, SIZE, Viewer, click, press, shows, texts, type_text, until, until_label, viewer, viewer_of_walk,
-    viewer_with, viewer_with_demonstration, walk,
+    Memory, SIZE, Viewer, click, press, shows, texts, type_text, until, until_label, until_still, viewer,
+    viewer_of_walk, viewer_with, viewer_with_demonstration, walk,
 };
 
 /// Returns a database of the walk's first pictures, in a folder of its own.
@@ -416,23 +416,16 @@ fn a_screenshot_goes_to_the_current_folder_and_the_window_says_where() {
     assert_eq!((picture.width(), picture.height()), (1280, 820));
     press(&mut viewer, Modifiers::COMMAND, Key::P);
     until(&mut viewer, "saved again", |viewer| !texts(viewer, "reality-sim-2.png").is_empty());
-    viewer.run();
+    until_still(&mut viewer);
 }
 
 #[test]
 fn nothing_is_drawn_while_nothing_happens() {
     let mut viewer = viewer_of_walk();
-    // This panics if every frame requests another one.
-    viewer.run();
-    for _ in 0..3 {
-        viewer.step();
-        assert!(!viewer.ctx.has_requested_repaint(), "{:?}", viewer.ctx.repaint_causes());
-    }
+    until_still(&mut viewer);
     press(&mut viewer, Modifiers::COMMAND, Key::O);
     press(&mut viewer, Modifiers::NONE, Key::F1);
-    viewer.run();
-    viewer.step();
-    assert!(!viewer.ctx.has_requested_repaint(), "{:?}", viewer.ctx.repaint_causes());
+    until_still(&mut viewer);
 }
 
 #[test]
@@ -443,5 +436,5 @@ fn every_button_has_a_name_and_every_letter_a_glyph() {
     until_label(&mut viewer, "Dismiss");
     press(&mut viewer, Modifiers::COMMAND, Key::O);
     press(&mut viewer, Modifiers::NONE, Key::F1);
-    viewer.run();
+    until_still(&mut viewer);
 }

@@ -18,8 +18,8 @@ use egui_kittest::{SnapshotOptions, image_snapshot_options, kittest::Queryable};
 use image::RgbaImage;
 
 use common::{
-    PATIENCE, SIZE, choose, click, drag, rect_of, shows, until, until_label, until_part, viewer_with,
-    viewer_with_demonstration, walk,
+    PATIENCE, SIZE, choose, click, drag, rect_of, shows, until, until_label, until_part, until_still,
+    viewer_with, viewer_with_demonstration, walk,
 };
 
 type Window = common::Viewer<'static>;
@@ -76,8 +76,7 @@ fn the_first_picture_is_there_with_its_lines_and_nothing_moves() {
     until_part(&mut window, "picture 1 of 60");
     assert!(in_picture(&mut window, POSE) > 500);
     // Nothing changes any more: no frame is requested until something happens.
-    window.run();
-    assert!(!window.ctx.has_requested_repaint());
+    until_still(&mut window);
 }
 
 #[test]

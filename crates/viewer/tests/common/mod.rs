@@ -104,6 +104,24 @@ pub fn until(viewer: &mut Viewer<'_>, what: &str, holds: impl Fn(&Viewer<'_>) ->
     }
 }
 
+/// Draws frames until several in a row ask for no other. A thread that has just answered asks for one at any moment, so a
+/// single late request is no fault; a window that never comes to rest is.
+#[track_caller]
+pub fn until_still(viewer: &mut Viewer<'_>) {
+    const FRAMES_AT_REST: usize = 5;
+    const FRAMES: usize = 1000;
+    let mut at_rest = 0;
+    for _ in 0..FRAMES {
+        viewer.step();
+        at_rest = if viewer.ctx.has_requested_repaint() { 0 } else { at_rest + 1 };
+        if at_rest == FRAMES_AT_REST {
+            return;
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+    panic!("frames are drawn while nothing happens: {:?}", viewer.ctx.repaint_causes());
+}
+
 /// Draws frames until a text is shown.
 #[track_caller]
 pub fn until_label(viewer: &mut Viewer<'_>, label: &str) {

@@ -21,8 +21,8 @@ use reality_sim_gap::{
 use tempfile::TempDir;
 
 use common::{
-    Memory, SIZE, click, drag, press, rect_of, shows, texts, until, until_label, until_part, viewer,
-    viewer_of_walk, viewer_with, walk,
+    Memory, SIZE, click, drag, press, rect_of, shows, texts, until, until_label, until_part, until_still,
+    viewer, viewer_of_walk, viewer_with, walk,
 };
 
 use fixture::{report, write, written};
@@ -37,7 +37,7 @@ fn opened() -> (Window, TempDir) {
     let (folder, path) = written(&report());
     let mut window = viewer(&path);
     until_label(&mut window, "Gap");
-    window.run();
+    until_still(&mut window);
     (window, folder)
 }
 
@@ -179,11 +179,11 @@ fn another_channel_has_other_maps_and_another_unit() {
     assert!(pixels.ends_with(" px"), "{pixels}");
     // The channel is chosen by its row in the table, by the keys, and by the list, whose entries come after that row.
     window.get_by_role_and_label(Role::Button, "Photometry").click();
-    window.run();
+    until_still(&mut window);
     assert!(legend(&window).is_some_and(|legend| !legend.ends_with(" px")), "{:?}", legend(&window));
     assert_ne!(painted(&window, name), geometry);
     press(&mut window, Modifiers::NONE, Key::ArrowLeft);
-    window.run();
+    until_still(&mut window);
     assert_eq!((painted(&window, name), legend(&window).unwrap()), (geometry, pixels));
     window.get_by_role_and_label(Role::ComboBox, "Residuals of").click();
     window.run_steps(4);
@@ -206,7 +206,7 @@ fn a_channel_without_a_map_says_so() {
     let (_folder, path) = written(&empty);
     let mut window = viewer(&path);
     until_label(&mut window, "too few measurements in any place for a map");
-    window.run();
+    until_still(&mut window);
 }
 
 #[test]
@@ -227,7 +227,7 @@ fn the_chosen_effect_shows_all_that_is_known_of_it() {
     let deciding = text::deciding_recordings(tone_curve)[0];
     assert!(shows(&window, &format!("To decide, record: {deciding}")));
     press(&mut window, Modifiers::NONE, Key::ArrowDown);
-    window.run();
+    until_still(&mut window);
     assert!(shows(&window, &because(&all.in_model[0])), "those of the model follow");
     for _ in 0..5 {
         press(&mut window, Modifiers::NONE, Key::ArrowUp);
@@ -325,7 +325,7 @@ fn a_report_without_pictures_says_so_and_shows_the_rest() {
     assert!(shows(&window, "the report has no pictures of this"));
     assert!(shows(&window, "residuals in the picture without the effect"));
     click(&mut window, "Difference");
-    window.run();
+    until_still(&mut window);
 }
 
 #[test]
@@ -346,7 +346,7 @@ fn in_the_smallest_window_every_view_is_on_the_screen() {
     let (_folder, path) = written(&report());
     let mut window = viewer_with(&path, vec2(640.0, 420.0), None);
     until_label(&mut window, WITHOUT);
-    window.run();
+    until_still(&mut window);
     for view in
         [WITHOUT, "residuals in the picture without the effect", "residuals on the field without the effect"]
     {
@@ -377,7 +377,7 @@ fn nothing_is_drawn_again_at_rest() {
     window.remove_cursor();
     let delay =
         |window: &common::Viewer<'_>| window.output().viewport_output[&ViewportId::ROOT].repaint_delay;
-    window.run();
+    until_still(&mut window);
     until(&mut window, "rest", |window| delay(window) == Duration::MAX);
     for _ in 0..3 {
         window.step();
