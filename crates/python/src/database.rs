@@ -99,12 +99,15 @@ impl Database {
                 out.shape()
             )));
         }
+        if !out.is_c_contiguous() {
+            let reason = "out: its memory has gaps or another order: give a C-contiguous array";
+            return Err(PyValueError::new_err(reason));
+        }
         {
             let mut pixels =
                 out.try_readwrite().map_err(|_| PyValueError::new_err("out: is in use, or read-only"))?;
-            let pixels = pixels
-                .as_slice_mut()
-                .map_err(|_| PyValueError::new_err("out: its memory has gaps: give a contiguous array"))?;
+            let pixels =
+                pixels.as_slice_mut().map_err(|_| PyValueError::new_err("out: its memory has gaps"))?;
             py.detach(|| draw(pixels))?;
         }
         Ok(out)

@@ -33,6 +33,8 @@ def test_a_picture_is_drawn_into_memory_of_the_caller(database: reality_sim.Data
         database.render(POSE, out=out[:10])
     with pytest.raises(ValueError, match="contiguous"):
         database.render(POSE, out=np.zeros((480, 1280, 3), np.uint8)[:, ::2])
+    with pytest.raises(ValueError, match="contiguous"):
+        database.render(POSE, out=np.zeros((480, 640, 3), np.uint8, order="F"))
     out.flags.writeable = False
     with pytest.raises(ValueError, match="read-only"):
         database.render(POSE, out=out)

@@ -167,6 +167,52 @@ def test_errors_are_rows(recordings: list[Path], tmp_path: Path) -> None:
     assert right["error"] is None and right["frames"] == 10
 
 
+def test_what_is_no_settings_is_a_row(recordings: list[Path]) -> None:
+    for given in (["tag"], "tag", None, [5], [{1: 2}], {"job": "tag", 1: 2}):
+        rows = reality_sim.study(recordings[0], given).to_pylist()
+        assert len(rows) == 1 and rows[0]["error"] and rows[0]["settings"], given
+
+
+def test_pictures_behind_a_link_count(recordings: list[Path], tmp_path: Path) -> None:
+    copy = shutil.copytree(recordings[0], tmp_path / "copy")
+    (copy / "images").rename(tmp_path / "elsewhere")
+    (copy / "images").symlink_to(tmp_path / "elsewhere")
+    (copy / "itself").symlink_to(copy)
+
+    def key() -> str:
+        return reality_sim.study(copy, FEW).to_pylist()[0]["recording"]
+
+    assert key() == reality_sim.study(recordings[0], FEW).to_pylist()[0]["recording"]
+    before = key()
+    picture = next((tmp_path / "elsewhere").iterdir())
+    picture.write_bytes(picture.read_bytes() + b"\0")
+    assert key() != before
+
+
+def test_a_machine_that_fails_one_job_keeps_the_rows_of_the_others(recordings: list[Path], tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    failing = {"job": "dataset", "out": str(tmp_path / "file" / "pictures"), "dataset": {"count": 1}, "best_effort": True}
+    told = studies.StudyWorker([failing, FEW], tmp_path / "tables").study_one(recordings[0])
+    assert told["error"] and told["written"] == 1, told
+    assert studies.read_tables(tmp_path / "tables").column("job").to_pylist() == ["tag"]
+
+
+def test_an_empty_file_is_no_row(recordings: list[Path], tmp_path: Path) -> None:
+    worker = studies.StudyWorker(FEW, tmp_path)
+    assert worker.study_one(recordings[0])["written"] == 1
+    (file,) = tmp_path.glob("*.parquet")
+    whole = file.read_bytes()
+    file.write_bytes(b"")
+    assert worker.study_one(recordings[0])["written"] == 1 and file.read_bytes() == whole
+
+
+def test_tables_that_cannot_be_written_are_told(recordings: list[Path], tmp_path: Path) -> None:
+    worker = studies.StudyWorker(FEW, tmp_path / "tables")
+    (tmp_path / "tables").write_text("no folder")
+    told = worker.study_one(recordings[0])
+    assert told["error"] and told["written"] == 0
+
+
 def test_what_is_there_is_not_done_again(recordings: list[Path], undisturbed: bytes, tmp_path: Path) -> None:
     worker = studies.StudyWorker(SETTINGS, tmp_path)
     for one in recordings:

@@ -34,12 +34,13 @@ impl Receivers {
         }
     }
 
-    /// Completes the file, and ends the server.
+    /// Completes the file, and then ends the server: a client that has stalled may hold up its end, and costs no file.
     pub fn finish(self) -> anyhow::Result<()> {
+        let finished = self.file.map_or(Ok(()), CameraLog::finish);
         #[cfg(feature = "live")]
         if let Some(server) = self.server {
             server.stop();
         }
-        Ok(self.file.map_or(Ok(()), CameraLog::finish)?)
+        Ok(finished?)
     }
 }

@@ -78,13 +78,14 @@ impl Watchers {
         Ok(())
     }
 
-    /// Completes the file, and ends the server.
+    /// Completes the file, and then ends the server: a client that has stalled may hold up its end, and costs no file.
     pub fn finish(self) -> anyhow::Result<()> {
+        let finished = self.log.map_or(Ok(()), LogFile::finish);
         #[cfg(feature = "live")]
         if let Some(live) = self.live {
             live.stop();
         }
-        Ok(self.log.map_or(Ok(()), LogFile::finish)?)
+        Ok(finished?)
     }
 }
 

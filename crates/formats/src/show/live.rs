@@ -23,6 +23,9 @@ const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 /// Time that a client is given to subscribe to topics after it has connected.
 const SUBSCRIPTION: Duration = Duration::from_millis(500);
 
+/// Time that the last pictures are given to be sent before the server ends, which drops what still waits.
+const LAST_PICTURES: Duration = Duration::from_millis(500);
+
 /// Server that shows pictures as they are made. Clients that come late see what comes after; slow ones miss pictures,
 /// and hold nobody up.
 #[derive(Debug)]
@@ -80,8 +83,11 @@ impl<T: Topics> TopicServer<T> {
         self.topics.log(shot);
     }
 
-    /// Ends the server, after what was shown has been sent.
+    /// Ends the server, after the last pictures have had the time to be sent to clients that keep up.
     pub fn stop(self) {
+        if self.server.client_count() > 0 {
+            thread::sleep(LAST_PICTURES);
+        }
         self.server.stop().wait_blocking();
     }
 }

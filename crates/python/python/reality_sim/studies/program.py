@@ -64,10 +64,7 @@ def _start(settings: Any, out: str, threads: int) -> None:
 
 def _study(uri: str) -> dict[str, Any]:
     assert _worker is not None, "each process begins with one"
-    try:
-        return _worker.study_one(uri)
-    except OSError as error:
-        return {"uri": uri, "written": 0, "present": 0, "error": str(error)}
+    return _worker.study_one(uri)
 
 
 def _report(told: Any, count: int) -> int:

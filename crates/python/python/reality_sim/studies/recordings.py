@@ -40,16 +40,28 @@ def fetched(uri: str | os.PathLike[str]) -> Iterator[Path]:
 def hash_of(path: Path) -> str:
     """Returns the hash of a file, or of all files of a folder with their names: the same wherever they lie (SHA-256).
 
-    Files whose names begin with a dot are no part of a recording.
+    Files and folders whose names begin with a dot are no part of a recording; those behind links are.
     """
     if path.is_file():
         return _hash_of_file(path)
     whole = hashlib.sha256()
-    for name, file in sorted((file.relative_to(path).as_posix(), file) for file in path.rglob("*") if file.is_file()):
-        if any(part.startswith(".") for part in name.split("/")):
-            continue
+    for name, file in sorted((file.relative_to(path).as_posix(), file) for file in _files_of(path)):
         whole.update(f"{name}\0{_hash_of_file(file)}\n".encode())
     return whole.hexdigest()
+
+
+def _files_of(folder: Path, within: frozenset[str] = frozenset()) -> Iterator[Path]:
+    """Finds the files of a folder. A link to a folder that it lies in is not followed."""
+    real = os.path.realpath(folder)
+    if real in within:
+        return
+    for entry in folder.iterdir():
+        if entry.name.startswith("."):
+            continue
+        if entry.is_dir():
+            yield from _files_of(entry, within | {real})
+        elif entry.is_file():
+            yield entry
 
 
 def _hash_of_file(file: Path) -> str:

@@ -34,7 +34,12 @@ class Settings:
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> Settings:
         """Completes settings by the default values. Those that cannot be used have an error; nothing is raised."""
-        text = json.dumps(dict(given), sort_keys=True, default=str)
+        if not isinstance(given, Mapping):
+            text = json.dumps(given, default=str)
+            return cls("", text, _hash(text), f"settings: {text} is no dict: give one with a job")
+        # JSON has no other keys than texts.
+        given = {str(key): value for key, value in given.items()}
+        text = json.dumps(given, sort_keys=True, default=str)
         job = str(given.get("job", ""))
         try:
             complete = json.loads(_native.study_settings(text))
@@ -46,7 +51,8 @@ class Settings:
 
 def all_settings(settings: Mapping[str, Any] | Iterable[Mapping[str, Any]]) -> list[Settings]:
     """Completes the settings of one or of many studies."""
-    many = [settings] if isinstance(settings, Mapping) else list(settings)
+    is_one = isinstance(settings, (Mapping, str)) or not isinstance(settings, Iterable)
+    many = [settings] if is_one else list(settings)
     return [Settings.of(one) for one in many]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import uuid
 from collections.abc import Iterable
@@ -31,17 +32,22 @@ def write_row(row: dict[str, Any], tables: str | os.PathLike[str]) -> None:
     system, folder = _folder_of(tables)
     final = f"{folder}/{key_of(row)}{_ENDING}"
     unfinished = f"{folder}/{_UNFINISHED}{uuid.uuid4().hex}"
-    with system.open_output_stream(unfinished) as stream:
-        pq.write_table(table, stream, compression="snappy")
-    system.move(unfinished, final)
+    try:
+        with system.open_output_stream(unfinished) as stream:
+            pq.write_table(table, stream, compression="snappy")
+        system.move(unfinished, final)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            system.delete_file(unfinished)
+        raise
 
 
 def missing_keys(keys: Iterable[str], tables: str | os.PathLike[str]) -> list[str]:
-    """Returns those of the wanted keys that have no file yet."""
+    """Returns those of the wanted keys that have no file yet. An empty file, which a machine without power may leave, is none."""
     system, folder = _folder_of(tables)
     wanted = list(keys)
     found = system.get_file_info([f"{folder}/{key}{_ENDING}" for key in wanted])
-    return [key for key, info in zip(wanted, found) if info.type != fs.FileType.File]
+    return [key for key, info in zip(wanted, found) if info.type != fs.FileType.File or info.size == 0]
 
 
 def read_tables(tables: str | os.PathLike[str]) -> pa.Table:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import pyarrow as pa
@@ -11,11 +11,15 @@ import pyarrow as pa
 from .. import _native
 from .recordings import fetched, hash_of
 from .rows import key_of
-from .settings import all_settings
+from .settings import Settings, all_settings
 from .study import rows_of
 from .tables import missing_keys, write_row
 
 __all__ = ["StudyWorker"]
+
+#: Tags that share the decoding of a recording's pictures. Each more holds a filter and its result in memory, and saves less of the decoding:
+#: of 16, a sixteenth of one decoding is left to each.
+_TAGS_AT_ONCE = 16
 
 
 class StudyWorker:
@@ -44,7 +48,8 @@ class StudyWorker:
     def study_one(self, uri: str | os.PathLike[str]) -> dict[str, Any]:
         """Studies a recording, and returns how many rows were written, how many there were, and why there are none.
 
-        A recording that cannot be fetched has no rows: it may be there the next time.
+        A recording that cannot be fetched has no rows: it may be there the next time. Rows are written after each portion of the settings, and
+        stay where this process is killed in the next, or the machine fails it.
         """
         told = {"uri": os.fspath(uri), "recording": None, "written": 0, "present": 0, "error": None}
         try:
@@ -56,17 +61,34 @@ class StudyWorker:
                     for one in self._settings
                 }
                 missing = set(missing_keys(key.values(), self._tables))
-                rows = rows_of(folder, recording, [one for one in self._settings if key[one] in missing])
+                told["present"] = len(self._settings) - len(missing)
+                for portion in _portions([one for one in self._settings if key[one] in missing]):
+                    try:
+                        for row in rows_of(folder, recording, portion):
+                            write_row(row, self._tables)
+                            told["written"] += 1
+                    except OSError as error:
+                        told["error"] = _message(error)
         except Exception as error:  # noqa: BLE001 — an address may fail in as many ways as there are file systems
-            return told | {"error": str(error) or type(error).__name__}
-        for row in rows:
-            write_row(row, self._tables)
-        return told | {"written": len(rows), "present": len(self._settings) - len(rows)}
+            told["error"] = _message(error)
+        return told
 
     def __call__(self, batch: pa.Table) -> pa.Table:
         """Studies the recordings of a batch."""
         told = [self.study_one(uri) for uri in batch.column("uri").to_pylist()]
         return pa.Table.from_pylist(told, schema=_TOLD)
+
+
+def _portions(settings: list[Settings]) -> Iterator[list[Settings]]:
+    """Splits settings: tags, which share the decoding of pictures, into some at a time, and all others one by one."""
+    tags = [one for one in settings if one.job == "tag"]
+    for first in range(0, len(tags), _TAGS_AT_ONCE):
+        yield tags[first : first + _TAGS_AT_ONCE]
+    yield from ([one] for one in settings if one.job != "tag")
+
+
+def _message(error: Exception) -> str:
+    return str(error) or type(error).__name__
 
 
 _TOLD = pa.schema(
