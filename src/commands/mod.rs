@@ -22,6 +22,7 @@ mod output;
 mod output_folder;
 mod parameter;
 mod picture_at;
+mod receivers;
 mod remove;
 mod render;
 #[cfg(feature = "live")]

@@ -208,6 +208,22 @@ pub enum DbFault {
     },
 }
 
+impl DbFault {
+    /// Returns whether the disk or the operating system failed, and not the database or what was asked of it: the same may succeed on another
+    /// machine, or later.
+    pub fn is_of_machine(&self) -> bool {
+        matches!(
+            self,
+            Self::CannotOpen { .. }
+                | Self::Locked
+                | Self::ReadOnly
+                | Self::DiskFull
+                | Self::Io { .. }
+                | Self::UnfinishedWrite
+        )
+    }
+}
+
 impl From<rusqlite::Error> for DbFault {
     fn from(error: rusqlite::Error) -> Self {
         let extended = error.sqlite_error().map_or(0, |error| error.extended_code);

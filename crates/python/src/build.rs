@@ -8,7 +8,7 @@ use reality_sim::{
     pipeline::{Event, FilterPlan, Plan, PoseChoice},
 };
 
-use crate::error::failed;
+use crate::{error::failed, interruptible::check_signals};
 
 /// Stores recordings in a database by pose, and returns the number of its pictures.
 #[pyfunction]
@@ -46,11 +46,7 @@ pub fn build(
                 stored = images;
             }
             // Ctrl-C ends the work, and what was stored until then stays.
-            #[expect(
-                clippy::redundant_closure_for_method_calls,
-                reason = "the method is of one lifetime only"
-            )]
-            Python::attach(|py| py.check_signals())?;
+            check_signals()?;
         }
         Ok(stored)
     })

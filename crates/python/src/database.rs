@@ -106,8 +106,7 @@ impl Database {
         {
             let mut pixels =
                 out.try_readwrite().map_err(|_| PyValueError::new_err("out: is in use, or read-only"))?;
-            let pixels =
-                pixels.as_slice_mut().map_err(|_| PyValueError::new_err("out: its memory has gaps"))?;
+            let pixels = pixels.as_slice_mut()?;
             py.detach(|| draw(pixels))?;
         }
         Ok(out)

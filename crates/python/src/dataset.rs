@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use pyo3::{exceptions::PyValueError, prelude::*};
 use reality_sim::dataset::{DatasetSettings, DatasetSource, make};
 
-use crate::{database::Database, error::failed};
+use crate::{database::Database, error::failed, interruptible::interruptible};
 
 /// Makes pictures with labels from a database into a folder, with settings in JSON. Returns the numbers of pictures, of those that were made, of those
 /// that were there, and of annotations.
@@ -21,6 +21,6 @@ pub fn dataset(
     let database = database.get();
     let source =
         DatasetSource::new(&database.path, database.synthesizer.clone()).with_model(database.model.clone());
-    let made = py.detach(|| make(&source, &settings, &out, |_| ())).map_err(failed)?;
+    let made = interruptible(py, move || make(&source, &settings, &out, |_| ()))?.map_err(failed)?;
     Ok((made.pictures, made.written, made.skipped, made.annotations))
 }

@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use numpy::{PyReadonlyArray2, PyReadonlyArray3};
+use numpy::{
+    PyReadonlyArray2, PyReadonlyArray3,
+    ndarray::{ArrayView2, ArrayView3},
+};
 use pyo3::{exceptions::PyValueError, prelude::*};
 use reality_sim::{
     Pose2,
@@ -99,13 +102,15 @@ impl Cube {
     #[new]
     #[pyo3(signature = (pose, faces, objects, occluders = Vec::new()))]
     fn new(
+        py: Python<'_>,
         pose: Vec<f64>,
         faces: Vec<Face<'_>>,
         objects: Vec<(String, String)>,
         occluders: Vec<[f64; 4]>,
     ) -> PyResult<PyClassInitializer<Self>> {
         let pose = camera_pose(&pose, reality_sim::CameraPose::default())?;
-        let faces = faces.iter().map(face).collect::<PyResult<Vec<CubeFace>>>()?;
+        let given = faces.iter().map(GivenFace::new).collect::<PyResult<Vec<_>>>()?;
+        let faces = py.detach(|| given.iter().map(GivenFace::copied).collect());
         let objects = objects.into_iter().map(|(class, name)| Ok((class_named(&class)?, name)));
         let objects = objects.collect::<PyResult<Vec<_>>>()?;
         let Some(mut layer) = CubeLayer::new(pose, faces, objects) else {
@@ -120,25 +125,41 @@ impl Cube {
     }
 }
 
-fn face((side, size, [left, top], srgb, depth_m, objects): &Face<'_>) -> PyResult<CubeFace> {
-    let (srgb, depth_m, objects) = (srgb.as_array(), depth_m.as_array(), objects.as_array());
-    let (rows, columns) = (srgb.shape()[0] as u32, srgb.shape()[1] as u32);
-    let window = PixelBox {
-        left: *left,
-        top: *top,
-        right: left.saturating_add(columns),
-        bottom: top.saturating_add(rows),
-    };
-    let of = |number: &i32| u16::try_from(*number).unwrap_or(NO_CUBE_OBJECT);
-    let colors: Vec<u8> = srgb.iter().copied().collect();
-    Ok(CubeFace {
-        side: side_named(side)?,
-        size: *size,
-        window,
-        srgb: colors.as_chunks().0.to_vec(),
-        depth_m: depth_m.iter().copied().collect(),
-        object_of: objects.iter().map(of).collect(),
-    })
+/// Face whose arrays are Python's memory.
+struct GivenFace<'a> {
+    side: CubeSide,
+    size: u32,
+    window: PixelBox,
+    srgb: ArrayView3<'a, u8>,
+    depth_m: ArrayView2<'a, f32>,
+    objects: ArrayView2<'a, i32>,
+}
+
+impl<'a> GivenFace<'a> {
+    fn new((side, size, [left, top], srgb, depth_m, objects): &'a Face<'_>) -> PyResult<Self> {
+        let (srgb, depth_m, objects) = (srgb.as_array(), depth_m.as_array(), objects.as_array());
+        let (rows, columns) = (srgb.shape()[0] as u32, srgb.shape()[1] as u32);
+        let window = PixelBox {
+            left: *left,
+            top: *top,
+            right: left.saturating_add(columns),
+            bottom: top.saturating_add(rows),
+        };
+        Ok(Self { side: side_named(side)?, size: *size, window, srgb, depth_m, objects })
+    }
+
+    fn copied(&self) -> CubeFace {
+        let of = |number: &i32| u16::try_from(*number).unwrap_or(NO_CUBE_OBJECT);
+        let colors: Vec<u8> = self.srgb.iter().copied().collect();
+        CubeFace {
+            side: self.side,
+            size: self.size,
+            window: self.window,
+            srgb: colors.as_chunks().0.to_vec(),
+            depth_m: self.depth_m.iter().copied().collect(),
+            object_of: self.objects.iter().map(of).collect(),
+        }
+    }
 }
 
 fn side_named(name: &str) -> PyResult<CubeSide> {

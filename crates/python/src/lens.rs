@@ -72,11 +72,13 @@ impl Lens {
             )));
         }
         let mut pixels = Array2::from_elem((points.nrows(), 2), f64::NAN);
-        for (point, mut pixel) in points.rows().into_iter().zip(pixels.rows_mut()) {
-            if let Ok(seen) = self.0.project_unbounded(DVec3::new(point[0], point[1], point[2])) {
-                (pixel[0], pixel[1]) = (seen.x, seen.y);
+        py.detach(|| {
+            for (point, mut pixel) in points.rows().into_iter().zip(pixels.rows_mut()) {
+                if let Ok(seen) = self.0.project_unbounded(DVec3::new(point[0], point[1], point[2])) {
+                    (pixel[0], pixel[1]) = (seen.x, seen.y);
+                }
             }
-        }
+        });
         Ok(PyArray2::from_owned_array(py, pixels))
     }
 
@@ -91,8 +93,9 @@ impl Lens {
             return Err(PyValueError::new_err(format!("pixels: have {} columns: give u, v", pixels.ncols())));
         }
         let ray = |pixel: DVec2| self.0.unproject(pixel).unwrap_or(DVec3::NAN).to_array();
-        let rays: Vec<f64> =
-            pixels.rows().into_iter().flat_map(|pixel| ray(DVec2::new(pixel[0], pixel[1]))).collect();
+        let rays: Vec<f64> = py.detach(|| {
+            pixels.rows().into_iter().flat_map(|pixel| ray(DVec2::new(pixel[0], pixel[1]))).collect()
+        });
         PyArray1::from_vec(py, rays).reshape([pixels.nrows(), 3])
     }
 

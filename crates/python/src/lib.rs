@@ -8,6 +8,7 @@ mod database;
 mod dataset;
 mod error;
 mod gap;
+mod interruptible;
 mod layers;
 mod lens;
 mod pictures;
@@ -42,4 +43,8 @@ mod _native {
     /// Version of the library.
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+    /// Hash of the library's sources.
+    #[pymodule_export]
+    const SOURCES: &str = env!("REALITY_SIM_SOURCES");
 }

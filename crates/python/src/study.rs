@@ -1,15 +1,15 @@
 //! Studies of recordings.
 
-use std::path::PathBuf;
+use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 
-use pyo3::{
-    exceptions::{PyOSError, PyValueError},
-    prelude::*,
-};
+use pyo3::{exceptions::PyValueError, prelude::*};
 use reality_sim::study::{Findings, StudyError, StudySettings, study as study_with};
 use serde_json::json;
 
-use crate::error::{failed, with_causes};
+use crate::{
+    error::{failed, with_causes},
+    interruptible::interruptible,
+};
 
 /// Completes the settings of a study, in JSON, by the default values.
 #[pyfunction]
@@ -18,31 +18,35 @@ pub fn study_settings(settings: &str) -> PyResult<String> {
     serde_json::to_string(&settings).map_err(failed)
 }
 
-/// Studies a recording with each of some settings, in JSON; data sets made from it are in a folder of its `name`. Returns for each what was found, or the error, in JSON, with a JPEG file; raises an error of the
-/// machine, which says nothing of the recording.
+/// Studies a recording with each of some settings, in JSON. Returns for each what was found, or the error and whether it is the machine's, in
+/// JSON, with a JPEG file.
 #[pyfunction]
 pub fn study(
     py: Python<'_>,
     recording: PathBuf,
-    name: &str,
     settings: Vec<String>,
 ) -> PyResult<Vec<(String, Option<Vec<u8>>)>> {
     let settings = settings.iter().map(|settings| parsed(settings)).collect::<PyResult<Vec<_>>>()?;
-    let found = py.detach(|| study_with(&recording, name, &settings));
-    if let Some(error) =
-        found.iter().filter_map(|found| found.as_ref().err()).find(|error| error.is_of_machine())
-    {
-        return Err(PyOSError::new_err(with_causes(error)));
-    }
-    found.into_iter().map(told).collect()
+    let folder = recording.clone();
+    let found = interruptible(py, move || study_with(&folder, &settings))?;
+    found.into_iter().map(|found| told(found, &recording)).collect()
 }
 
 /// Returns findings, or the error, in JSON, and their picture.
-fn told(found: Result<Findings, StudyError>) -> PyResult<(String, Option<Vec<u8>>)> {
+fn told(found: Result<Findings, StudyError>, recording: &Path) -> PyResult<(String, Option<Vec<u8>>)> {
     match found {
         Ok(findings) => Ok((serde_json::to_string(&findings).map_err(failed)?, findings.picture)),
-        Err(error) => Ok((json!({ "error": with_causes(&error) }).to_string(), None)),
+        Err(error) => {
+            let message = within(&with_causes(&error), recording);
+            Ok((json!({ "error": message, "is_of_machine": error.is_of_machine() }).to_string(), None))
+        }
     }
+}
+
+/// Names the files of a recording as they are named in it: a message is the same wherever the recording lies.
+fn within(message: &str, recording: &Path) -> String {
+    let folder = recording.display().to_string();
+    message.replace(&format!("{folder}{MAIN_SEPARATOR}"), "").replace(&format!("{folder}:"), "the recording:")
 }
 
 /// Sets how many threads work at once. Returns false if another number was set, or used, before.

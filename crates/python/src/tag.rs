@@ -9,7 +9,7 @@ use reality_sim::{
     tagging::{TagSettings, Tagged, TaggedPose, covariance_rows, tag as tag_with},
 };
 
-use crate::{error::failed, pose::numbers};
+use crate::{error::failed, interruptible::interruptible, pose::numbers};
 
 /// Poses of the pictures of a recording.
 #[pyclass(frozen, get_all, module = "reality_sim")]
@@ -43,13 +43,13 @@ pub struct TagErrors {
 pub fn tag(py: Python<'_>, recording: PathBuf, settings: &str) -> PyResult<Tags> {
     let settings: TagSettings = serde_json::from_str(settings)
         .map_err(|error| PyValueError::new_err(format!("settings: {error}")))?;
-    let (sequence, tagged) = py.detach(|| {
+    let (sequence, tagged) = interruptible(py, move || {
         let sequence = Sequence::open(&recording).map_err(failed)?;
         sequence.check_pictures().map_err(failed)?;
         let mut tagged = tag_with(&sequence, &[settings]).map_err(failed)?;
         // One for each of the settings.
         PyResult::Ok((sequence, tagged.remove(0)))
-    })?;
+    })??;
     Tags::of(py, &sequence, &tagged)
 }
 

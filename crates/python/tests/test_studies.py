@@ -82,7 +82,7 @@ def test_a_row_tells_what_was_found_and_what_it_was_found_with() -> None:
     assert isinstance(batch, pa.RecordBatch) and batch.schema == studies.SCHEMA
     (row,) = batch.to_pylist()
     tags = reality_sim.tag(WALK)
-    assert row["error"] is None and row["job"] == "tag" and row["version"] == reality_sim.__version__
+    assert row["error"] is None and row["job"] == "tag" and row["version"].startswith(f"{reality_sim.__version__}+")
     assert row["name"] == "walk" and row["robot"] is None and row["day"] is None
     assert row["frames"] == 60 and row["mean_m"] == tags.error.mean_m and row["gap_before"] is None
     assert json.loads(row["settings_json"])["particles"] == 800
@@ -111,12 +111,13 @@ def test_pictures_with_labels_are_made_of_each_recording(recordings: list[Path],
     for row, one in zip(rows, recordings):
         assert row["error"] is None and (row["pictures"], row["images"]) == (2, 10)
         folder = Path(json.loads(row["report"])["folder"])
-        assert folder == tmp_path / studies.hash_of(one)
+        assert folder == tmp_path / studies.key_of(row) and row["recording"] == studies.hash_of(one)
         assert len(json.loads((folder / "annotations.json").read_text())["images"]) == 2
     # What is there counts, and is the same row.
     assert reality_sim.study(recordings[0], settings).to_pylist() == rows[:1]
     other = settings | {"dataset": {"count": 2, "seed": 4}}
-    assert "another seed" in reality_sim.study(recordings[0], other).to_pylist()[0]["error"]
+    (another,) = reality_sim.study(recordings[0], other).to_pylist()
+    assert another["error"] is None and len(list(tmp_path.iterdir())) == 3
 
 
 def test_the_key_is_that_of_the_content(recordings: list[Path], tmp_path: Path) -> None:
@@ -195,6 +196,53 @@ def test_a_machine_that_fails_one_job_keeps_the_rows_of_the_others(recordings: l
     told = studies.StudyWorker([failing, FEW], tmp_path / "tables").study_one(recordings[0])
     assert told["error"] and told["written"] == 1, told
     assert studies.read_tables(tmp_path / "tables").column("job").to_pylist() == ["tag"]
+    # Without tables they are rows, of which one is no recording's.
+    failed, tag = reality_sim.study(recordings[0], [failing, FEW]).to_pylist()
+    assert failed["error"] and failed["recording"] == ""
+    assert tag["error"] is None and tag["recording"] == studies.hash_of(recordings[0])
+
+
+def test_a_database_that_cannot_be_written_is_the_machines_fault(recordings: list[Path], tmp_path: Path) -> None:
+    # No file may be larger than what a database begins with, as on a full disk.
+    script = f"""
+import resource, signal
+from reality_sim import studies
+
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+worker = studies.StudyWorker([{{"job": "evaluate"}}, {{"job": "tag", "particles": 60, "iterations": 2}}], {str(tmp_path)!r})
+resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+told = worker.study_one({str(recordings[0])!r})
+assert told["written"] == 1 and "recording.db" in told["error"], told
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert studies.read_tables(tmp_path).column("job").to_pylist() == ["tag"]
+
+
+def test_a_message_is_the_same_wherever_the_recording_lies(recordings: list[Path], tmp_path: Path) -> None:
+    rows = []
+    for where in ("here", "elsewhere"):
+        broken = shutil.copytree(recordings[0], tmp_path / where)
+        picture = min((broken / "images").iterdir())
+        picture.write_bytes(picture.read_bytes()[:1000])
+        settings = [{"job": "tag"}, {"job": "gap"}, {"job": "evaluate"}, {"job": "dataset", "out": str(tmp_path / "pictures")}]
+        rows.append(reality_sim.study(broken, settings).to_pylist())
+    assert rows[0] == rows[1]
+    assert all(row["error"] and "here" not in row["error"] for row in rows[0])
+
+
+def test_ctrl_c_ends_a_long_study(tmp_path: Path) -> None:
+    script = f"""
+import _thread, threading, time, reality_sim
+
+threading.Timer(1.0, _thread.interrupt_main).start()
+try:
+    reality_sim.tag({str(WALK)!r}, particles=200_000)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=300)
+    assert done.stdout == "interrupted\n" and done.returncode == 0, done.stderr
 
 
 def test_an_empty_file_is_no_row(recordings: list[Path], tmp_path: Path) -> None:

@@ -1,7 +1,6 @@
 //! `reality-sim stream`: what a camera sees along a path, as messages of ROS 2.
 
 mod options;
-mod receivers;
 
 use std::{sync::Arc, time::Instant};
 
@@ -14,13 +13,13 @@ use reality_sim::{
     sequence::read_tum,
     simulator::{Ball, Camera, Frame, Layer, SeenObject},
 };
-use reality_sim_formats::ros2::{CameraShot, ObjectBox, PixelLabels};
+use reality_sim_formats::ros2::{CameraShot, CameraTopics, ObjectBox, PixelLabels};
 
 pub use self::options::StreamArgs;
-use self::receivers::Receivers;
 use super::{
     model_file::Use,
     output::{aligned, check_output_file, frame_progress, print, print_json},
+    receivers::Receivers,
     wanted_ball::WantedBall,
 };
 
@@ -69,7 +68,10 @@ pub fn run(args: &StreamArgs) -> anyhow::Result<()> {
 fn send(args: &StreamArgs, camera: &mut Camera, poses: &[StampedPose]) -> anyhow::Result<f64> {
     let balls: Vec<Ball> = args.ball.iter().map(WantedBall::layer).collect();
     let layers: Vec<&dyn Layer> = balls.iter().map(|ball| ball as &dyn Layer).collect();
-    let mut receivers = Receivers::start(args)?;
+    let receivers = Receivers::of_file(args.out.as_deref())?;
+    #[cfg(feature = "live")]
+    let receivers = receivers.and_server(&args.serving)?;
+    let mut receivers = receivers;
     let progress = frame_progress(poses.len())?;
     let mut frame = Frame::default();
     let mut times_ms = Vec::new();
@@ -91,7 +93,7 @@ fn send(args: &StreamArgs, camera: &mut Camera, poses: &[StampedPose]) -> anyhow
     Ok(percentile(&times_ms, 0.5).unwrap_or_default())
 }
 
-fn send_frame(receivers: &mut Receivers, camera: &Camera, frame: &Frame, timestamp_s: f64) {
+fn send_frame(receivers: &mut Receivers<CameraTopics>, camera: &Camera, frame: &Frame, timestamp_s: f64) {
     let labels = &frame.labels;
     let classes = labels.class_picture();
     let is_labelled = !labels.classes.is_empty();

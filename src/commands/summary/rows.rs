@@ -88,12 +88,16 @@ pub fn read(tables: &[PathBuf]) -> anyhow::Result<Vec<StudyRow>> {
     Ok(newest(rows))
 }
 
-/// Returns the rows in the order of their keys, of each recording with the same settings only that of the newest version.
+/// Returns the rows in the order of their keys, of each recording with the same settings only that of the newest version. Of two builds of one
+/// version, which differ in what follows its `+`, that of the table named last counts.
 pub fn newest(mut rows: Vec<StudyRow>) -> Vec<StudyRow> {
     let study = |row: &StudyRow| (row.recording.clone(), row.settings.clone());
     let version = |row: &StudyRow| -> Vec<u64> {
-        row.version.split(['.', '-', '+']).map_while(|part| part.parse().ok()).collect()
+        let (numbers, _build) = row.version.split_once('+').unwrap_or((&row.version, ""));
+        numbers.split(['.', '-']).map_while(|part| part.parse().ok()).collect()
     };
+    // Sorting keeps the order of rows that are alike.
+    rows.reverse();
     rows.sort_by_cached_key(|row| (study(row), std::cmp::Reverse(version(row))));
     rows.dedup_by_key(|row| study(row));
     rows

@@ -76,6 +76,10 @@ fn of_two_versions_the_newest_counts() {
     };
     let rows = newest(vec![of("0.9.0", Some(1.0)), of("0.10.0", None), of("0.2.0", Some(1.0))]);
     assert_eq!(rows.iter().map(|row| row.version.as_str()).collect::<Vec<_>>(), ["0.10.0"]);
+    for builds in [["0.10.0+9", "0.10.0+10"], ["0.10.0+10", "0.10.0+9"]] {
+        let rows = newest(vec![of(builds[0], None), of("0.9.0+11", None), of(builds[1], None)]);
+        assert_eq!(rows.iter().map(|row| row.version.as_str()).collect::<Vec<_>>(), [builds[1]]);
+    }
 }
 
 #[test]

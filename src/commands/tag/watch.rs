@@ -9,21 +9,16 @@ use reality_sim::{
     sequence::write_atomically,
     tagging::{TaggedPose, covariance_rows},
 };
-#[cfg(feature = "live")]
-use reality_sim_formats::show::LiveView;
 use reality_sim_formats::{
     frame_table::{FrameTable, PictureFacts},
-    show::{LogFile, Shot},
+    show::{FoxgloveTopics, LogFile, Shot},
 };
 
 use super::options::TagArgs;
+use crate::commands::receivers::Receivers;
 
 /// Watchers of one run.
-pub struct Watchers {
-    log: Option<LogFile>,
-    #[cfg(feature = "live")]
-    live: Option<LiveView>,
-}
+pub struct Watchers(Receivers<FoxgloveTopics>);
 
 /// Returns whether a file is an MCAP file by its ending.
 pub fn is_log(path: &Path) -> bool {
@@ -38,20 +33,11 @@ impl Watchers {
     /// Begins the file and starts the server that the options name.
     pub fn start(args: &TagArgs) -> anyhow::Result<Self> {
         // Smoothed poses are known only at the end, by `write_log`.
-        let log = args.out.as_ref().filter(|out| is_log(out) && !args.smooth);
-        Ok(Self {
-            log: log.map(|path| LogFile::create(path)).transpose()?,
-            #[cfg(feature = "live")]
-            live: args.serving.start()?,
-        })
-    }
-
-    fn is_idle(&self) -> bool {
+        let log = args.out.as_deref().filter(|out| is_log(out) && !args.smooth);
+        let receivers = Receivers::of_file(log)?;
         #[cfg(feature = "live")]
-        let has_live = self.live.is_some();
-        #[cfg(not(feature = "live"))]
-        let has_live = false;
-        self.log.is_none() && !has_live
+        let receivers = receivers.and_server(&args.serving)?;
+        Ok(Self(receivers))
     }
 
     /// Shows a picture with its pose and the particles.
@@ -62,30 +48,18 @@ impl Watchers {
         frame: &LocalizedFrame,
         localizer: &Localizer,
     ) -> anyhow::Result<()> {
-        if self.is_idle() {
+        if self.0.is_empty() {
             return Ok(());
         }
         let picture = read_picture(sequence, index)?;
         let particles = localizer.particles()?;
-        let shot = shot(sequence, index, &picture, frame.pose, &particles);
-        if let Some(log) = &self.log {
-            log.log(&shot);
-        }
-        #[cfg(feature = "live")]
-        if let Some(live) = &mut self.live {
-            live.show(&shot);
-        }
+        self.0.send(&shot(sequence, index, &picture, frame.pose, &particles));
         Ok(())
     }
 
-    /// Completes the file, and then ends the server: a client that has stalled may hold up its end, and costs no file.
+    /// Completes what they got.
     pub fn finish(self) -> anyhow::Result<()> {
-        let finished = self.log.map_or(Ok(()), LogFile::finish);
-        #[cfg(feature = "live")]
-        if let Some(live) = self.live {
-            live.stop();
-        }
-        Ok(finished?)
+        self.0.finish()
     }
 }
 

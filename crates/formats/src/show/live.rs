@@ -3,7 +3,7 @@
 use std::{
     net::SocketAddr,
     path::PathBuf,
-    sync::Arc,
+    sync::{Arc, mpsc},
     thread,
     time::{Duration, Instant},
 };
@@ -25,6 +25,9 @@ const SUBSCRIPTION: Duration = Duration::from_millis(500);
 
 /// Time that the last pictures are given to be sent before the server ends, which drops what still waits.
 const LAST_PICTURES: Duration = Duration::from_millis(500);
+
+/// Time that clients are given to take their leave. One that has stalled does not, and its connection ends with the program.
+const LEAVE: Duration = Duration::from_secs(2);
 
 /// Server that shows pictures as they are made. Clients that come late see what comes after; slow ones miss pictures,
 /// and hold nobody up.
@@ -88,6 +91,13 @@ impl<T: Topics> TopicServer<T> {
         if self.server.client_count() > 0 {
             thread::sleep(LAST_PICTURES);
         }
-        self.server.stop().wait_blocking();
+        let stopping = self.server.stop();
+        let (sender, receiver) = mpsc::sync_channel(1);
+        thread::spawn(move || {
+            stopping.wait_blocking();
+            // Nobody listens any more where it took too long.
+            let _ = sender.send(());
+        });
+        let _ = receiver.recv_timeout(LEAVE);
     }
 }

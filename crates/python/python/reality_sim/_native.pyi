@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 VERSION: str
+SOURCES: str
 #: Mark in :attr:`Frame.object_of` of a pixel that shows no object.
 NO_OBJECT: int
 
@@ -328,12 +329,11 @@ def study_settings(settings: str) -> str:
       ValueError: for settings that there are not.
     """
 
-def study(recording: str | PathLike[str], name: str, settings: list[str]) -> list[tuple[str, bytes | None]]:
-    """Studies a recording with each of some settings, in JSON; data sets made from it are in a folder of its ``name``. Returns for each what was found, or the error, in JSON, and a JPEG file, if there is one.
+def study(recording: str | PathLike[str], settings: list[str]) -> list[tuple[str, bytes | None]]:
+    """Studies a recording with each of some settings, in JSON. Returns for each what was found, or the error and whether it is the machine's, in JSON, and a JPEG file, if there is one.
 
     Raises:
       ValueError: for settings that there are not.
-      OSError: where the machine fails.
     """
 
 def use_threads(threads: int) -> bool:

@@ -2,7 +2,7 @@
 
 use std::{io, path::PathBuf};
 
-use reality_sim_core::sequence::{Fault, SequenceError};
+use reality_sim_core::sequence::SequenceError;
 use reality_sim_sensor::ModelError;
 use reality_sim_simulator::LookError;
 
@@ -115,15 +115,4 @@ pub enum DatasetError {
     /// The camera failed.
     #[error(transparent)]
     Look(#[from] LookError),
-}
-
-impl DatasetError {
-    /// Returns whether a file or folder cannot be written.
-    pub fn is_of_disk(&self) -> bool {
-        match self {
-            Self::Folder { .. } => true,
-            Self::File(error) => matches!(error.fault, Fault::Unwritable(_)),
-            _ => false,
-        }
-    }
 }

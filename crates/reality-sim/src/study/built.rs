@@ -1,6 +1,6 @@
 //! Database of one recording alone, for as long as it is needed.
 
-use std::{path::PathBuf, sync::Arc};
+use std::sync::Arc;
 
 use reality_sim_core::{
     localization::LocalizerConfig, observation::ObservationKind, pose::CameraPose, sequence::Sequence,
@@ -13,8 +13,8 @@ use super::StudyError;
 /// Bytes of decoded pictures that are kept.
 pub(super) const CACHE_BYTES: usize = 512 << 20;
 
-/// Name of the database's file, which a data set made of it tells.
-const FILE: &str = "recording.db";
+/// Name of the database's file, by which data sets and messages call it: that of its folder is another one each time.
+pub(super) const FILE: &str = "recording.db";
 
 /// How a recording becomes a database.
 #[derive(Debug, Clone, Copy)]
@@ -34,7 +34,8 @@ pub(super) struct Built {
     pub archive: Arc<Archive>,
     /// Pictures that were left out, with their poses.
     pub held_back: Vec<(usize, CameraPose)>,
-    folder: tempfile::TempDir,
+    /// Holds the file until the archive is no longer needed.
+    _folder: tempfile::TempDir,
 }
 
 impl Built {
@@ -58,11 +59,6 @@ impl Built {
             }
         }
         let archive = Arc::new(Archive::open(&file, CACHE_BYTES)?);
-        Ok(Self { archive, held_back, folder })
-    }
-
-    /// Returns the path of the database's file.
-    pub(super) fn file(&self) -> PathBuf {
-        self.folder.path().join(FILE)
+        Ok(Self { archive, held_back, _folder: folder })
     }
 }

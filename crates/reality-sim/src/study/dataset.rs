@@ -1,6 +1,9 @@
 //! Data sets made from recordings.
 
-use std::{path::PathBuf, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use reality_sim_core::{
     sequence::Sequence,
@@ -12,7 +15,7 @@ use serde_json::json;
 
 use super::{
     About, Findings, StudyError,
-    built::{Building, Built},
+    built::{Building, Built, FILE},
 };
 use crate::dataset::{DatasetSettings, DatasetSource, make};
 
@@ -20,7 +23,7 @@ use crate::dataset::{DatasetSettings, DatasetSource, make};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PictureSetSettings {
-    /// Folder in which each recording gets a folder of its own, named by the recording's name in the study.
+    /// Folder of the data set: of this recording with these settings alone.
     pub out: PathBuf,
     /// Whether the filter finds the poses even if the recording has reference poses.
     pub tag: bool,
@@ -54,7 +57,6 @@ impl Default for PictureSetSettings {
 pub(super) fn make_pictures(
     about: About,
     sequence: &Sequence,
-    name: &str,
     settings: &PictureSetSettings,
 ) -> Result<Findings, StudyError> {
     sequence.check_pictures()?;
@@ -68,14 +70,13 @@ pub(super) fn make_pictures(
     let lens = sequence.setup.camera.clone();
     let synthesizer =
         Synthesizer::with(built.archive.clone(), lens, Arc::new(CpuWarper), config).with_clean(clean);
-    let source = DatasetSource::new(&built.file(), synthesizer).with_threads(rayon::current_num_threads());
-    let folder = settings.out.join(name);
-    let made = make(&source, &settings.dataset, &folder, |_| ())?;
+    let source = DatasetSource::new(Path::new(FILE), synthesizer).with_threads(rayon::current_num_threads());
+    let made = make(&source, &settings.dataset, &settings.out, |_| ())?;
     let figures = [
         ("images", built.archive.images().len() as f64),
         ("pictures", f64::from(made.pictures)),
         ("annotations", made.annotations as f64),
     ];
     let figures = figures.map(|(name, value)| (name.to_owned(), Some(value)));
-    Ok(Findings::new(about, figures, json!({ "folder": folder })))
+    Ok(Findings::new(about, figures, json!({ "folder": settings.out })))
 }

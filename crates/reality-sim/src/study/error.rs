@@ -1,9 +1,9 @@
 //! Reasons why a recording has no findings.
 
-use std::{any::Any, sync::Arc};
+use std::{any::Any, error::Error, io, iter, sync::Arc};
 
 use reality_sim_core::sequence::SequenceError;
-use reality_sim_db::DbError;
+use reality_sim_db::{DbError, DbFault};
 use reality_sim_pipeline::PipelineError;
 use reality_sim_synthesis::SynthesisError;
 
@@ -47,7 +47,7 @@ pub enum StudyError {
     },
     /// The files that a database is built in cannot be written.
     #[error("no temporary folder can be made ({0}): check the disk")]
-    Temporary(Arc<std::io::Error>),
+    Temporary(Arc<io::Error>),
     /// The library failed where it must not.
     #[error("a defect of the library, which its authors would like to hear of: {words}")]
     Defect {
@@ -57,13 +57,15 @@ pub enum StudyError {
 }
 
 impl StudyError {
-    /// Returns whether the machine failed, and the same study may succeed on another one.
+    /// Returns whether the machine failed, and the same study may succeed on another one, or later: its operating system refused
+    /// something, or a database that only this study uses could not be written. That a file does not exist is no such failure.
     pub fn is_of_machine(&self) -> bool {
-        match self {
-            Self::Temporary(_) => true,
-            Self::PictureSet(error) => error.is_of_disk(),
-            _ => false,
-        }
+        let of_system = |cause: &(dyn Error + 'static)| {
+            let refused = cause.downcast_ref::<io::Error>().is_some_and(is_refusal);
+            refused || cause.downcast_ref::<DbFault>().is_some_and(DbFault::is_of_machine)
+        };
+        matches!(self, Self::Temporary(_))
+            || iter::successors(self.source(), |&cause| cause.source()).any(of_system)
     }
 
     /// Makes an error of what a panic left.
@@ -72,6 +74,12 @@ impl StudyError {
         let words = text.or_else(|| panic.downcast_ref::<String>().cloned());
         Self::Defect { words: words.unwrap_or_else(|| "without a message".to_owned()) }
     }
+}
+
+/// Returns whether an operating system refused something that another one may do. Names that are too long are so everywhere.
+fn is_refusal(error: &io::Error) -> bool {
+    let is_same_everywhere = matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::InvalidFilename);
+    error.raw_os_error().is_some() && !is_same_everywhere
 }
 
 macro_rules! from_shared {
@@ -93,5 +101,5 @@ from_shared!(
     Pictures(SynthesisError),
     Probing(ProbingError),
     PictureSet(DatasetError),
-    Temporary(std::io::Error),
+    Temporary(io::Error),
 );

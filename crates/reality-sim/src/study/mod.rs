@@ -10,7 +10,7 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let settings = [r#"{"job": "tag", "particles": 200}"#, r#"{"job": "gap", "frames": [0, 5]}"#];
 //! let settings = settings.map(serde_json::from_str::<StudySettings>).into_iter().collect::<Result<Vec<_>, _>>()?;
-//! let found = study(Path::new("../../assets/pitch"), "pitch", &settings);
+//! let found = study(Path::new("../../assets/pitch"), &settings);
 //! assert!(found[0].as_ref().is_ok_and(|tags| tags.figures["lines_within_10px"] > 0.9));
 //! assert!(found[1].as_ref().is_err_and(|error| error.to_string().contains("5 frames")));
 //! # Ok(())

@@ -14,9 +14,8 @@ use crate::{
 };
 
 /// Studies a recording, the folder of a sequence, with each of the settings, on the processor. Returns what was found, or why nothing was,
-/// for each of the settings in their order. Pictures are decoded once for all settings of `tag`. `name` tells the recording from others: data
-/// sets made from it are in a folder of this name.
-pub fn study(recording: &Path, name: &str, settings: &[StudySettings]) -> Vec<Result<Findings, StudyError>> {
+/// for each of the settings in their order. Pictures are decoded once for all settings of `tag`.
+pub fn study(recording: &Path, settings: &[StudySettings]) -> Vec<Result<Findings, StudyError>> {
     let opened = defended(|| {
         let sequence = Sequence::open(recording)?;
         let about = About::new(&sequence)?;
@@ -36,7 +35,7 @@ pub fn study(recording: &Path, name: &str, settings: &[StudySettings]) -> Vec<Re
             defended(|| evaluate::evaluate(about.clone(), &sequence, settings))
         }
         StudySettings::Dataset(settings) => {
-            defended(|| dataset::make_pictures(about.clone(), &sequence, name, settings))
+            defended(|| dataset::make_pictures(about.clone(), &sequence, settings))
         }
     };
     settings.iter().map(one).collect()

@@ -48,7 +48,7 @@ FIGURES = (
 #: Columns of every table.
 SCHEMA = pa.schema(
     [
-        # Hashes, and the version of the library.
+        # Hashes, and the version of the library with that of its sources.
         pa.field("recording", pa.string()),
         pa.field("settings", pa.string()),
         pa.field("version", pa.string()),

@@ -12,10 +12,13 @@ import pyarrow as pa
 
 from .. import _native
 from .recordings import fetched, hash_of
-from .rows import batch_of
+from .rows import batch_of, key_of
 from .settings import Settings, all_settings
 
-__all__ = ["rows_of", "study"]
+__all__ = ["VERSION", "message_of", "rows_of", "study"]
+
+#: Version of the library, and hash of the sources that it was built from: two of one version may find other things.
+VERSION = f"{_native.VERSION}+{_native.SOURCES}"
 
 #: Times of robots that know no date begin with the robot: such a day is none.
 _FIRST_DAY = datetime(2000, 1, 1, tzinfo=timezone.utc).timestamp()
@@ -30,7 +33,7 @@ def study(
     Each of the settings is a dict: ``job`` is ``tag``, ``gap``, ``evaluate`` or ``dataset``, and the other keys have the names of the program's options; what
     is left out has their default values. For each there is one row. A row depends on nothing but the recording, the settings and the version of
     the library, whose hashes are its key: neither on the machine nor on the number of its threads. Errors are rows, too, with a message in the
-    column ``error``; nothing is raised.
+    column ``error``; nothing is raised. Those of a machine, as of a full disk, say nothing of the recording: their column ``recording`` is empty.
 
     >>> batch = reality_sim.study("walk", [{"job": "tag"}, {"job": "tag", "observation": "gauss"}])
     >>> batch.column("mean_m")
@@ -40,26 +43,41 @@ def study(
         with fetched(recording_uri) as folder:
             return batch_of(rows_of(folder, hash_of(folder), complete))
     except Exception as error:  # noqa: BLE001 — an address may fail in as many ways as there are file systems
-        message = str(error) or type(error).__name__
-        return batch_of([_row("", one, {"error": message}) for one in complete])
+        return batch_of([_row("", one, {"error": message_of(error)}) for one in complete])
 
 
 def rows_of(folder: os.PathLike[str], recording: str, settings: list[Settings]) -> list[dict[str, Any]]:
-    """Studies a folder of this machine, whose hash is given."""
+    """Studies a folder of this machine, whose hash is given. Rows of what the machine failed have an empty hash."""
     usable = [one for one in settings if one.error is None]
-    found = iter(_native.study(folder, recording, [one.json for one in usable]))
+    found = iter(_native.study(folder, [_with_folder(one, recording) for one in usable]))
     rows = []
     for one in settings:
         told, picture = next(found) if one.error is None else (json.dumps({"error": one.error}), None)
-        rows.append(_row(recording, one, json.loads(told)) | {"picture": picture})
+        told = json.loads(told)
+        rows.append(_row("" if told.get("is_of_machine") else recording, one, told) | {"picture": picture})
     return rows
+
+
+def message_of(error: Exception) -> str:
+    """Returns what an exception says; the name of its class where it says nothing."""
+    return str(error) or type(error).__name__
+
+
+def _with_folder(settings: Settings, recording: str) -> str:
+    """Returns settings in JSON. A data set gets a folder of its own, named by the row's key: whoever makes it completes the same one."""
+    complete = json.loads(settings.json)
+    if settings.job == "dataset":
+        complete["out"] = os.path.join(complete["out"], key_of(_key(recording, settings)))
+    return json.dumps(complete)
+
+
+def _key(recording: str, settings: Settings) -> dict[str, str]:
+    return {"recording": recording, "settings": settings.hash, "version": VERSION}
 
 
 def _row(recording: str, settings: Settings, found: dict[str, Any]) -> dict[str, Any]:
     row = {
-        "recording": recording,
-        "settings": settings.hash,
-        "version": _native.VERSION,
+        **_key(recording, settings),
         "job": settings.job,
         "settings_json": settings.json,
         "error": found.get("error"),

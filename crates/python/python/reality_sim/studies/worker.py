@@ -12,7 +12,7 @@ from .. import _native
 from .recordings import fetched, hash_of
 from .rows import key_of
 from .settings import Settings, all_settings
-from .study import rows_of
+from .study import VERSION, message_of, rows_of
 from .tables import missing_keys, write_row
 
 __all__ = ["StudyWorker"]
@@ -57,7 +57,7 @@ class StudyWorker:
                 recording = hash_of(folder)
                 told["recording"] = recording
                 key = {
-                    one: key_of({"recording": recording, "settings": one.hash, "version": _native.VERSION})
+                    one: key_of({"recording": recording, "settings": one.hash, "version": VERSION})
                     for one in self._settings
                 }
                 missing = set(missing_keys(key.values(), self._tables))
@@ -65,12 +65,15 @@ class StudyWorker:
                 for portion in _portions([one for one in self._settings if key[one] in missing]):
                     try:
                         for row in rows_of(folder, recording, portion):
-                            write_row(row, self._tables)
-                            told["written"] += 1
+                            if row["recording"]:
+                                write_row(row, self._tables)
+                                told["written"] += 1
+                            else:
+                                told["error"] = row["error"]
                     except OSError as error:
-                        told["error"] = _message(error)
+                        told["error"] = message_of(error)
         except Exception as error:  # noqa: BLE001 — an address may fail in as many ways as there are file systems
-            told["error"] = _message(error)
+            told["error"] = message_of(error)
         return told
 
     def __call__(self, batch: pa.Table) -> pa.Table:
@@ -85,10 +88,6 @@ def _portions(settings: list[Settings]) -> Iterator[list[Settings]]:
     for first in range(0, len(tags), _TAGS_AT_ONCE):
         yield tags[first : first + _TAGS_AT_ONCE]
     yield from ([one] for one in settings if one.job != "tag")
-
-
-def _message(error: Exception) -> str:
-    return str(error) or type(error).__name__
 
 
 _TOLD = pa.schema(
