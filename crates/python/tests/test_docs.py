@@ -61,7 +61,7 @@ def test_stubs_name_what_there_is() -> None:
     stub = ast.parse((Path(_native.__file__).parent / "_native.pyi").read_text())
     classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
     functions = {node.name for node in stub.body if isinstance(node, ast.FunctionDef)}
-    constants = {"VERSION", "NO_OBJECT"}
+    constants = {node.target.id for node in stub.body if isinstance(node, ast.AnnAssign)}
     native = {name for name in dir(_native) if not name.startswith("__")}
     assert native == set(classes) | functions | constants
     for name, node in classes.items():
