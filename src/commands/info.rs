@@ -147,6 +147,9 @@ impl Report {
         let sequences = database.sequences()?;
         let cameras = database.cameras()?;
         let pose_sources = database.pose_sources()?;
+        let mut by_pose_source: BTreeMap<i64, usize> = BTreeMap::new();
+        database
+            .each_details(|_, details| *by_pose_source.entry(details.pose_source_id).or_default() += 1)?;
         Ok(Self {
             database: args.database.display().to_string(),
             schema_version: SCHEMA_VERSION,
@@ -175,7 +178,7 @@ impl Report {
                 .map(|(id, source)| PoseSourceReport {
                     kind: source.kind(),
                     description: source.description().to_owned(),
-                    images: count(&|image| image.pose_source_id == *id),
+                    images: by_pose_source.get(id).copied().unwrap_or_default(),
                 })
                 .collect(),
             coverage: coverage.map(CoverageReport::new),

@@ -1,7 +1,7 @@
 //! Opening and reading of a database.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     fs,
     path::{self, Path, PathBuf},
     sync::{Mutex, PoisonError},
@@ -19,7 +19,7 @@ use rusqlite::{Connection, OpenFlags, OptionalExtension, Row, Transaction, Trans
 
 use crate::{
     error::{DbError, DbFault},
-    record::{IMAGE_COLUMNS, ImageRecord, PoseSource},
+    record::{DETAIL_COLUMNS, IMAGE_COLUMNS, IMAGE_WIDTH, ImageDetails, ImageRecord, PoseSource},
     schema,
     work_limit::WorkLimit,
 };
@@ -62,15 +62,38 @@ impl Database {
     /// Returns the records of all images, in the order of their ids.
     pub fn images(&self) -> Result<Vec<ImageRecord>, DbError> {
         self.read(|transaction| {
-            let query = format!("SELECT {IMAGE_COLUMNS} FROM images ORDER BY id");
-            let images: Vec<ImageRecord> = all(transaction, &query, ImageRecord::from_row)?;
-            for image in &images {
-                if let Some(problem) = image.problem() {
+            let known = References::read(transaction)?;
+            let query = format!("SELECT {IMAGE_COLUMNS}, pose_source_id FROM images ORDER BY id");
+            let mut statement = transaction.prepare(&query)?;
+            let mut rows = statement.query([])?;
+            let mut images = Vec::new();
+            while let Some(row) = rows.next()? {
+                let image = ImageRecord::from_row(row)?;
+                let problem = image.problem().or_else(|| known.missing(&image, row.get(IMAGE_WIDTH).ok()));
+                if let Some(problem) = problem {
                     return Err(DbFault::BadRow { table: "image", id: image.id, problem });
                 }
+                images.push(image);
             }
-            check_references(transaction)?;
+            images.shrink_to_fit();
             Ok(images)
+        })
+    }
+
+    /// Hands over the details of all images with their ids, in the order of these.
+    pub fn each_details(&self, mut take: impl FnMut(i64, ImageDetails)) -> Result<(), DbError> {
+        self.read(|transaction| {
+            let query = format!("SELECT id, {DETAIL_COLUMNS} FROM images ORDER BY id");
+            let mut statement = transaction.prepare(&query)?;
+            let mut rows = statement.query([])?;
+            while let Some(row) = rows.next()? {
+                let (id, details) = (row.get(0)?, ImageDetails::from_row(row, 1)?);
+                if let Some(problem) = details.problem() {
+                    return Err(DbFault::BadRow { table: "image", id, problem });
+                }
+                take(id, details);
+            }
+            Ok(())
         })
     }
 
@@ -278,19 +301,39 @@ fn connect(path: &Path, flags: OpenFlags) -> Result<(Connection, WorkLimit), DbF
     Ok((connection, work_limit))
 }
 
-/// Refuses images whose sequence, camera, field or pose source does not exist.
-fn check_references(transaction: &Transaction<'_>) -> Result<(), DbFault> {
-    let query = "SELECT rowid, parent FROM pragma_foreign_key_check('images')";
-    let row = |row: &Row<'_>| Ok((row.get(0)?, row.get(1)?));
-    let broken: Option<(i64, String)> = transaction.query_row(query, [], row).optional()?;
-    let Some((id, parent)) = broken else { return Ok(()) };
-    let problem = match parent.as_str() {
-        "sequences" => "its sequence is missing",
-        "cameras" => "its camera is missing",
-        "fields" => "its field is missing",
-        _ => "its pose source is missing",
-    };
-    Err(DbFault::BadRow { table: "image", id, problem })
+/// Ids that images refer to.
+struct References {
+    sequences: BTreeSet<i64>,
+    cameras: BTreeSet<i64>,
+    fields: BTreeSet<i64>,
+    pose_sources: BTreeSet<i64>,
+}
+
+impl References {
+    fn read(transaction: &Transaction<'_>) -> Result<Self, DbFault> {
+        let ids = |table: &str| all(transaction, &format!("SELECT id FROM {table}"), |row| row.get(0));
+        Ok(Self {
+            sequences: ids("sequences")?,
+            cameras: ids("cameras")?,
+            fields: ids("fields")?,
+            pose_sources: ids("pose_sources")?,
+        })
+    }
+
+    /// Returns which of those of an image does not exist, if any.
+    fn missing(&self, image: &ImageRecord, pose_source_id: Option<i64>) -> Option<&'static str> {
+        if !self.sequences.contains(&image.sequence_id) {
+            Some("its sequence is missing")
+        } else if !self.cameras.contains(&image.camera_id) {
+            Some("its camera is missing")
+        } else if !self.fields.contains(&image.field_id) {
+            Some("its field is missing")
+        } else if pose_source_id.is_none_or(|id| !self.pose_sources.contains(&id)) {
+            Some("its pose source is missing")
+        } else {
+            None
+        }
+    }
 }
 
 /// Reads pairs of an id and a text.

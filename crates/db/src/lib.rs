@@ -4,7 +4,8 @@
 //! |---|---|
 //! | [`Database`] | the file: [`Database::ingest`] adds recordings, [`Database::insert`] an image, [`Database::remove`] removes some, other methods read |
 //! | [`Recording`], [`NewImage`] | an image to be stored, and what it shares with others |
-//! | [`ImageRecord`] | an image without its pixels: pose, covariance, time, camera, field |
+//! | [`ImageRecord`] | an image without its pixels: pose, time, camera, field |
+//! | [`ImageDetails`] | what else is known of it: covariance, source of the pose, file |
 //! | [`PoseEstimate`], [`PoseSource`] | a pose to be stored, and where poses come from |
 //! | [`Ground`], [`ImageMask`] | the clean stage: the carpet without what stood on it, and where images show such things |
 //! | [`metric::PixelMetric`] | distance between two poses: how far the picture moves between them, pixels |
@@ -64,7 +65,7 @@ pub use self::{
     ground::Ground,
     image_mask::ImageMask,
     ingest::IngestReport,
-    record::{ImageRecord, PoseEstimate, PoseSource},
+    record::{ImageDetails, ImageRecord, PoseEstimate, PoseSource},
     recording::{Insertion, NewImage, Recording},
     schema::SCHEMA_VERSION,
 };

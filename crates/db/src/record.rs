@@ -51,8 +51,7 @@ impl PoseEstimate {
 
     /// Whether a camera can have this pose, and the covariance contains neither NaN nor infinity.
     pub(crate) fn is_possible(&self) -> bool {
-        let covariance = self.covariance.iter().flat_map(Matrix6::iter);
-        self.pose.is_possible() && covariance.copied().all(f64::is_finite)
+        self.pose.is_possible() && is_finite(self.covariance.as_ref())
     }
 }
 
@@ -118,7 +117,8 @@ impl PoseSource {
     }
 }
 
-/// Everything about an image except its bytes.
+/// What an image is found and drawn by. Of a million images these are a hundred megabytes in memory; [`ImageDetails`] are read when they are
+/// asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImageRecord {
     /// Id of the image in the database; later images have larger ids.
@@ -131,23 +131,33 @@ pub struct ImageRecord {
     pub camera_id: i64,
     /// Id of its field in [`crate::Database::fields`].
     pub field_id: i64,
-    /// Id of the source of its pose in [`crate::Database::pose_sources`].
-    pub pose_source_id: i64,
     /// Time at which it was taken, by its sequence's clock, seconds.
     pub timestamp_s: f64,
+    /// Pose of the camera when it was taken.
+    pub pose: CameraPose,
+}
+
+/// What else is known of an image except its bytes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImageDetails {
+    /// Id of the source of its pose in [`crate::Database::pose_sources`].
+    pub pose_source_id: i64,
     /// Path of its original file, relative to its sequence's folder.
     pub file_name: String,
     /// Length of its JPEG or PNG file, bytes.
     pub byte_length: u64,
-    /// Pose of the camera when it was taken.
-    pub pose: CameraPose,
     /// Covariance of x, y, yaw, height, pitch and roll, in metres and radians, where it is known.
     pub covariance: Option<Matrix6<f64>>,
 }
 
 /// Columns of a record, in the order in which [`ImageRecord::from_row`] takes them.
-pub(crate) const IMAGE_COLUMNS: &str = "id, sequence_id, frame_index, camera_id, field_id, pose_source_id, \
-     timestamp_s, file_name, byte_length, x_m, y_m, yaw_rad, height_m, pitch_rad, roll_rad, covariance";
+pub(crate) const IMAGE_COLUMNS: &str = "id, sequence_id, frame_index, camera_id, field_id, timestamp_s, x_m, y_m, yaw_rad, height_m, pitch_rad, roll_rad";
+
+/// Number of [`IMAGE_COLUMNS`].
+pub(crate) const IMAGE_WIDTH: usize = 12;
+
+/// Columns of details, in the order in which [`ImageDetails::from_row`] takes them.
+pub(crate) const DETAIL_COLUMNS: &str = "pose_source_id, file_name, byte_length, covariance";
 
 impl ImageRecord {
     /// Reads a record from [`IMAGE_COLUMNS`]. Its numbers may be infinite.
@@ -158,19 +168,14 @@ impl ImageRecord {
             frame_index: unsigned(row, 2)?,
             camera_id: row.get(3)?,
             field_id: row.get(4)?,
-            pose_source_id: row.get(5)?,
-            timestamp_s: row.get(6)?,
-            file_name: row.get(7)?,
-            byte_length: unsigned(row, 8)?,
-            pose: pose_from_row(row, 9)?,
-            covariance: covariance(row, 15)?,
+            timestamp_s: row.get(5)?,
+            pose: pose_from_row(row, 6)?,
         })
     }
 
     /// Returns what is wrong with its numbers, if anything.
     pub(crate) fn problem(&self) -> Option<&'static str> {
-        let estimate = PoseEstimate { pose: self.pose, covariance: self.covariance };
-        if !estimate.is_possible() {
+        if !self.pose.is_possible() {
             Some("no camera can have its pose")
         } else if !self.timestamp_s.is_finite() {
             Some("its time is not a finite number")
@@ -178,6 +183,27 @@ impl ImageRecord {
             None
         }
     }
+}
+
+impl ImageDetails {
+    /// Reads details from [`DETAIL_COLUMNS`], which begin at `first`. Numbers of the covariance may be infinite.
+    pub(crate) fn from_row(row: &Row<'_>, first: usize) -> rusqlite::Result<Self> {
+        Ok(Self {
+            pose_source_id: row.get(first)?,
+            file_name: row.get(first + 1)?,
+            byte_length: unsigned(row, first + 2)?,
+            covariance: covariance(row, first + 3)?,
+        })
+    }
+
+    /// Returns what is wrong with its numbers, if anything.
+    pub(crate) fn problem(&self) -> Option<&'static str> {
+        (!is_finite(self.covariance.as_ref())).then_some("its covariance is not of finite numbers")
+    }
+}
+
+fn is_finite(covariance: Option<&Matrix6<f64>>) -> bool {
+    covariance.into_iter().flat_map(Matrix6::iter).copied().all(f64::is_finite)
 }
 
 /// Reads a pose from six columns in the order of [`IMAGE_COLUMNS`], starting at `first`.

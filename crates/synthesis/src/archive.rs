@@ -40,6 +40,8 @@ pub struct Archive {
     field: FieldDimensions,
     proxy: ProxyGeometry,
     index: PoseIndex,
+    /// Medians over all images, which take long to find among a million.
+    usual_pose: CameraPose,
     cache: PictureCache,
     shading: Option<Shading>,
     corrected_by: Option<String>,
@@ -82,7 +84,8 @@ impl Archive {
         let setup = setups.remove(&camera_id).ok_or_else(empty)?;
         let corrected_by = database.models()?.remove(&camera_id);
         let poses: Vec<CameraPose> = images.iter().map(|image| image.pose).collect();
-        let metric = PixelMetric::new(&setup.camera, usual_pose(&poses), &field)
+        let usual_pose = usual_pose(&poses);
+        let metric = PixelMetric::new(&setup.camera, usual_pose, &field)
             .ok_or_else(|| SynthesisError::BlindCamera { database: database.path().display().to_string() })?;
         let hall = database.halls()?.remove(&field_id).unwrap_or_else(|| Hall::usual(&field));
         let proxy = ProxyGeometry::new(&hall, &field);
@@ -99,6 +102,7 @@ impl Archive {
             field,
             proxy,
             index,
+            usual_pose,
             cache,
             shading,
             corrected_by,
@@ -172,7 +176,7 @@ impl Archive {
 
     /// Returns a pose with the camera's usual height, pitch and roll: the medians over all images.
     pub fn usual_pose(&self) -> CameraPose {
-        usual_pose(self.index.poses())
+        self.usual_pose
     }
 
     /// Returns whether the database holds what pictures without people, robots and balls need, see

@@ -129,15 +129,23 @@ impl Source {
         let ids = records.iter().map(|record| record.id).collect();
         let inputs = vec![database.path().to_path_buf()];
         let names = database.sequences()?;
-        let facts = records.iter().map(|record| PictureFacts {
-            sequence: names.get(&record.sequence_id).cloned().unwrap_or_default(),
-            image: PathBuf::from(&record.file_name),
-            covariance: record
-                .covariance
-                .map(|matrix| array::from_fn(|a| array::from_fn(|b| matrix[(a, b)]))),
-            quality: None,
-        });
-        let facts = facts.collect();
+        let mut facts = Vec::new();
+        let mut of_records = records.iter();
+        // Both are in the order of their ids.
+        database.each_details(|id, details| {
+            let Some(record) = of_records.find(|record| record.id == id) else { return };
+            facts.push(PictureFacts {
+                sequence: names.get(&record.sequence_id).cloned().unwrap_or_default(),
+                image: PathBuf::from(&details.file_name),
+                covariance: details
+                    .covariance
+                    .map(|matrix| array::from_fn(|a| array::from_fn(|b| matrix[(a, b)]))),
+                quality: None,
+            });
+        })?;
+        if facts.len() < records.len() {
+            bail!("{}: was changed while it was read: export it again", database.path().display());
+        }
         let posed = PosedPictures { cameras, field, pictures };
         Ok(Self { posed, without_pose: 0, inputs, facts, origin: Origin::Database(Box::new(database), ids) })
     }

@@ -10,6 +10,7 @@ mod neighbour;
 mod sector;
 
 use glam::DVec2;
+use rayon::prelude::*;
 use reality_sim_core::pose::CameraPose;
 
 pub use self::neighbour::{ImageIndex, Neighbour, NoNeighbours};
@@ -44,8 +45,10 @@ impl PoseIndex {
     /// Builds an index of images taken at these poses. Poses with numbers that are not finite are never found.
     pub fn new(metric: PixelMetric, poses: Vec<CameraPose>) -> Self {
         let spot_m = metric.reach_m(SPOT_PX);
-        let sectors = (0..SECTORS).map(|number| Sector::new(number, &poses, spot_m)).collect();
-        let tree = NearestTree::new(&metric, &poses);
+        let (tree, sectors) = rayon::join(
+            || NearestTree::new(&metric, &poses),
+            || (0..SECTORS).into_par_iter().map(|number| Sector::new(number, &poses, spot_m)).collect(),
+        );
         Self { metric, poses, sectors, tree }
     }
 

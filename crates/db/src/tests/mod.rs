@@ -10,7 +10,7 @@ mod reading;
 mod removing;
 mod sharing;
 
-use std::{fs, path::Path, path::PathBuf};
+use std::{collections::BTreeMap, fs, path::Path, path::PathBuf};
 
 use nalgebra::Matrix6;
 use reality_sim_core::{pose::CameraPose, sequence::Sequence};
@@ -93,9 +93,16 @@ fn read_all(path: &Path) -> Result<usize, DbError> {
         database.ground(field_id)?;
         database.image_masks(field_id)?;
     }
-    let images = database.images()?;
+    let (images, details) = (database.images()?, details_of(&database)?);
     for image in &images {
-        assert_eq!(database.image_bytes(image.id)?.len() as u64, image.byte_length);
+        assert_eq!(database.image_bytes(image.id)?.len() as u64, details[&image.id].byte_length);
     }
     Ok(images.len())
+}
+
+/// Reads the details of all images, by their ids.
+fn details_of(database: &Database) -> Result<BTreeMap<i64, ImageDetails>, DbError> {
+    let mut details = BTreeMap::new();
+    database.each_details(|id, of_image| drop(details.insert(id, of_image)))?;
+    Ok(details)
 }

@@ -12,14 +12,15 @@ fn images_come_out_as_they_went_in() {
     let images = database.images().unwrap();
     assert_eq!(images.len(), sequence.frames.len());
     assert!(images.is_sorted_by(|a, b| a.id < b.id));
+    let details = details_of(&database).unwrap();
     for (index, image) in images.iter().enumerate() {
-        let file = fs::read(sequence.image_path(index).unwrap()).unwrap();
+        let (file, details) = (fs::read(sequence.image_path(index).unwrap()).unwrap(), &details[&image.id]);
         assert_eq!(database.image_bytes(image.id).unwrap(), file);
-        assert_eq!(image.byte_length, file.len() as u64);
+        assert_eq!(details.byte_length, file.len() as u64);
         assert_eq!(image.frame_index, index);
         assert_eq!(image.timestamp_s, sequence.frames[index].timestamp_s);
-        assert_eq!(Path::new(&image.file_name), sequence.frames[index].image);
-        let estimate = PoseEstimate { pose: image.pose, covariance: image.covariance };
+        assert_eq!(Path::new(&details.file_name), sequence.frames[index].image);
+        let estimate = PoseEstimate { pose: image.pose, covariance: details.covariance };
         assert_eq!(Some(estimate), estimates(&sequence)[index]);
     }
     let image = &images[17];
@@ -27,7 +28,7 @@ fn images_come_out_as_they_went_in() {
     assert_eq!(database.sequences().unwrap()[&image.sequence_id], sequence.name);
     assert_eq!(database.cameras().unwrap()[&image.camera_id], sequence.setup);
     assert_eq!(database.fields().unwrap()[&image.field_id], sequence.field);
-    assert_eq!(database.pose_sources().unwrap()[&image.pose_source_id], PoseSource::GroundTruth);
+    assert_eq!(database.pose_sources().unwrap()[&details[&image.id].pose_source_id], PoseSource::GroundTruth);
 }
 
 #[test]
@@ -46,11 +47,11 @@ fn every_kind_of_pose_source_and_no_covariance_come_out_as_they_went_in() {
         poses[index] = Some(PoseEstimate { pose, covariance: None });
         database.ingest(&sequence, &poses, source).unwrap();
     }
-    let images = database.images().unwrap();
+    let details = details_of(&database).unwrap();
     let stored = database.pose_sources().unwrap();
-    let found: Vec<&PoseSource> = images.iter().map(|image| &stored[&image.pose_source_id]).collect();
+    let found: Vec<&PoseSource> = details.values().map(|details| &stored[&details.pose_source_id]).collect();
     assert_eq!(found, sources.iter().collect::<Vec<_>>());
-    assert!(images.iter().all(|image| image.covariance.is_none()));
+    assert!(details.values().all(|details| details.covariance.is_none()));
 }
 
 #[test]
@@ -99,7 +100,8 @@ fn nonsense_in_a_row_is_an_error_that_names_the_row() {
     ] {
         fs::copy(&path, &fresh).unwrap();
         tamper(&fresh, sql);
-        let error = Database::open(&fresh).unwrap().images().expect_err(sql);
+        let database = Database::open(&fresh).unwrap();
+        let error = database.images().and_then(|_| details_of(&database)).expect_err(sql);
         assert_message(&error, &fresh, &["is damaged", part, "build it again"]);
     }
     fs::copy(&path, &fresh).unwrap();
@@ -107,10 +109,11 @@ fn nonsense_in_a_row_is_an_error_that_names_the_row() {
         &fresh,
         "UPDATE images SET covariance = CAST(zeroblob(280) || x'000000000000f07f' AS BLOB) WHERE id = 2",
     );
+    let database = Database::open(&fresh).unwrap();
     assert_message(
-        &Database::open(&fresh).unwrap().images().unwrap_err(),
+        &details_of(&database).unwrap_err(),
         &fresh,
-        &["image 2: no camera can have its pose"],
+        &["image 2: its covariance is not of finite"],
     );
 }
 

@@ -3,6 +3,7 @@
 use std::{io, path::PathBuf};
 
 use reality_sim_core::sequence::SequenceError;
+use reality_sim_db::DbError;
 use reality_sim_sensor::ModelError;
 use reality_sim_simulator::LookError;
 
@@ -59,6 +60,9 @@ pub enum DatasetError {
     /// A file cannot be written.
     #[error(transparent)]
     File(#[from] SequenceError),
+    /// The database cannot be read.
+    #[error(transparent)]
+    Database(#[from] DbError),
     /// A picture cannot be encoded as PNG.
     #[error("{}: cannot be encoded: {cause}", file.display())]
     Encoding {

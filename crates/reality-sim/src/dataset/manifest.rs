@@ -1,6 +1,7 @@
 //! What a data set was made with, so that a later run goes on only with the same.
 
 use reality_sim_core::sequence::CameraSetup;
+use reality_sim_db::DbError;
 use reality_sim_sensor::Model;
 use reality_sim_synthesis::Archive;
 use serde::Serialize;
@@ -51,7 +52,7 @@ impl Manifest {
             program: env!("CARGO_PKG_VERSION"),
             database: source.name(),
             images: archive.images().len(),
-            records: format!("{:016x}", hash_of_records(archive)),
+            records: format!("{:016x}", hash_of_records(archive)?),
             seed: settings.seed,
             method: settings.method.name(),
             backend: source.device(),
@@ -86,20 +87,23 @@ impl Manifest {
 
 /// Returns a hash of what is known of the images: their files' names and lengths, and their poses (FNV-1a, 64 bits: a fingerprint
 /// that stays the same in all versions, not a defence).
-fn hash_of_records(archive: &Archive) -> u64 {
+fn hash_of_records(archive: &Archive) -> Result<u64, DbError> {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut add = |bytes: &[u8]| {
         for byte in bytes {
             hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
         }
     };
-    for image in archive.images() {
-        add(image.file_name.as_bytes());
-        add(&image.byte_length.to_le_bytes());
+    // Both are in the order of their ids; the archive has those of one field only.
+    let mut images = archive.images().iter().peekable();
+    archive.database().each_details(|id, details| {
+        let Some(image) = images.next_if(|image| image.id == id) else { return };
+        add(details.file_name.as_bytes());
+        add(&details.byte_length.to_le_bytes());
         let pose = image.pose;
         for value in [pose.x_m, pose.y_m, pose.yaw_rad, pose.height_m, pose.pitch_rad, pose.roll_rad] {
             add(&value.to_le_bytes());
         }
-    }
-    hash
+    })?;
+    Ok(hash)
 }
