@@ -5,23 +5,21 @@
 //!
 //! A counting allocator measures the memory: what is allocated once an index is built, and the peak until then.
 
+#[path = "../benches/counting.rs"]
+mod counting;
 #[path = "../benches/kd_tree.rs"]
 mod kd_tree;
 #[path = "../benches/poses.rs"]
 mod poses;
 
-use std::{
-    alloc::{GlobalAlloc, Layout, System},
-    io::Write,
-    path::Path,
-    sync::atomic::{AtomicUsize, Ordering::Relaxed},
-};
+use std::{io::Write, path::Path};
 
 use anyhow::Context;
 use reality_sim::Sequence;
 use reality_sim::db::index::PoseIndex;
 
 use crate::{
+    counting::measured,
     kd_tree::KdIndex,
     poses::{metric, random_poses},
 };
@@ -29,39 +27,6 @@ use crate::{
 const IMAGES: [usize; 3] = [300, 10_000, 1_000_000];
 const QUERIES: usize = 1000;
 const CANDIDATES: [usize; 3] = [1, 16, 64];
-
-/// System allocator that counts.
-struct Counting;
-
-static HELD_BYTES: AtomicUsize = AtomicUsize::new(0);
-static MOST_BYTES: AtomicUsize = AtomicUsize::new(0);
-
-// SAFETY: every call is passed on to the system allocator; the counters decide nothing.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        let held = HELD_BYTES.fetch_add(layout.size(), Relaxed) + layout.size();
-        MOST_BYTES.fetch_max(held, Relaxed);
-        // SAFETY: the caller keeps the promises that the system allocator requires.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
-        HELD_BYTES.fetch_sub(layout.size(), Relaxed);
-        // SAFETY: the system allocator returned this pointer for this layout.
-        unsafe { System.dealloc(place, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
-/// Returns the result of `make`, the bytes that it holds, and the peak while it was made.
-fn measured<T>(make: impl FnOnce() -> T) -> (T, usize, usize) {
-    let before = HELD_BYTES.load(Relaxed);
-    MOST_BYTES.store(before, Relaxed);
-    let made = make();
-    (made, HELD_BYTES.load(Relaxed) - before, MOST_BYTES.load(Relaxed) - before)
-}
 
 fn main() -> anyhow::Result<()> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/walk");

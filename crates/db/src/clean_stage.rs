@@ -163,7 +163,8 @@ impl StoredGround {
 
 /// Forgets the ground of a field, and the masks of its images: they were found together.
 pub(crate) fn forget_clean_stage(transaction: &Transaction<'_>, field_id: i64) -> rusqlite::Result<()> {
-    let masks = "DELETE FROM image_masks WHERE image_id IN (SELECT id FROM images WHERE field_id = ?1)";
+    // It goes through the masks, of which there are none while a recording is stored, and never through all images.
+    let masks = "DELETE FROM image_masks WHERE (SELECT field_id FROM images WHERE id = image_id) = ?1";
     transaction.execute(masks, [field_id])?;
     transaction.execute("DELETE FROM grounds WHERE field_id = ?1", [field_id]).map(drop)
 }

@@ -220,7 +220,7 @@ impl Database {
         work: impl FnOnce(&Transaction<'_>) -> Result<T, DbFault>,
     ) -> Result<T, DbError> {
         let connection = self.connection.lock().unwrap_or_else(PoisonError::into_inner);
-        self.work_limit.renew();
+        self.work_limit.renew(file_bytes(&self.path));
         let transaction =
             connection.unchecked_transaction().map_err(|error| DbError::new(&self.path, error))?;
         work(&transaction).map_err(|fault| DbError::new(&self.path, fault))
@@ -236,7 +236,7 @@ impl Database {
             return Err(fail(DbFault::OpenedForReading));
         }
         let connection = self.connection.get_mut().unwrap_or_else(PoisonError::into_inner);
-        self.work_limit.renew();
+        self.work_limit.renew(file_bytes(&self.path));
         let transaction = connection
             .transaction_with_behavior(TransactionBehavior::Immediate)
             .map_err(|error| fail(error.into()))?;
@@ -288,13 +288,17 @@ struct StoredImage {
     camera: String,
 }
 
+/// Returns the length of a file, bytes; 0 where there is none yet.
+fn file_bytes(path: &Path) -> u64 {
+    fs::metadata(path).map_or(0, |metadata| metadata.len())
+}
+
 fn connect(path: &Path, flags: OpenFlags) -> Result<(Connection, WorkLimit), DbFault> {
-    let file_bytes = fs::metadata(path).map_or(0, |metadata| metadata.len());
     // An absolute path is never one of the special names that SQLite does not treat as a file.
     let mut connection =
         Connection::open_with_flags(path::absolute(path)?, flags | OpenFlags::SQLITE_OPEN_NO_MUTEX)?;
     connection.busy_timeout(BUSY_TIMEOUT)?;
-    let work_limit = WorkLimit::new(&mut connection, file_bytes)?;
+    let work_limit = WorkLimit::new(&mut connection, file_bytes(path))?;
     // Somebody else may have made the file.
     connection.pragma_update(None, "trusted_schema", false)?;
     connection.pragma_update(None, "cell_size_check", true)?;

@@ -22,14 +22,13 @@ const PER_BYTE: u64 = 4;
 #[derive(Debug, Clone)]
 pub(crate) struct WorkLimit {
     left: Arc<AtomicU64>,
-    most: u64,
 }
 
 impl WorkLimit {
     /// Limits the work of a connection to a file of this length, bytes. A transaction that takes more fails.
     pub fn new(connection: &mut Connection, file_bytes: u64) -> rusqlite::Result<Self> {
-        let most = LEAST.saturating_add(PER_BYTE.saturating_mul(file_bytes));
-        let limit = Self { left: Arc::new(AtomicU64::new(most)), most };
+        let limit = Self { left: Arc::default() };
+        limit.renew(file_bytes);
         let left = limit.left.clone();
         let is_spent = move || {
             let before = left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
@@ -41,9 +40,9 @@ impl WorkLimit {
         Ok(limit)
     }
 
-    /// Begins a transaction, which may take as much as any other.
-    pub fn renew(&self) {
-        self.left.store(self.most, Ordering::Relaxed);
+    /// Begins a transaction, which may take as much as the file's present length, bytes, allows: a writer's file grows.
+    pub fn renew(&self, file_bytes: u64) {
+        self.left.store(LEAST.saturating_add(PER_BYTE.saturating_mul(file_bytes)), Ordering::Relaxed);
     }
 }
 
@@ -62,7 +61,19 @@ mod tests {
             connection.query_row(query, [], |row| row.get::<_, i64>(0)).map_err(DbFault::from)
         };
         assert!(matches!(count(&connection, ENDLESS), Err(DbFault::TooMuchWork)));
-        limit.renew();
+        limit.renew(1000);
         assert_eq!(count(&connection, "SELECT 2").unwrap(), 2);
+    }
+
+    #[test]
+    fn a_transaction_may_take_more_work_once_its_file_has_grown() {
+        const LONG: &str = "WITH RECURSIVE endless(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM endless)
+            SELECT count(*) FROM (SELECT n FROM endless LIMIT 2000000)";
+        let mut connection = Connection::open_in_memory().unwrap();
+        let limit = WorkLimit::new(&mut connection, 0).unwrap();
+        let count = || connection.query_row(LONG, [], |row| row.get::<_, i64>(0)).map_err(DbFault::from);
+        assert!(matches!(count(), Err(DbFault::TooMuchWork)));
+        limit.renew(1 << 30);
+        assert_eq!(count().unwrap(), 2_000_000);
     }
 }
