@@ -8,6 +8,8 @@
 
 #[path = "../benches/counting.rs"]
 mod counting;
+#[path = "shared/curves.rs"]
+mod curves;
 #[path = "../benches/poses.rs"]
 #[expect(dead_code, reason = "the metric of poses is for others")]
 mod poses;
@@ -22,7 +24,7 @@ use std::{
 };
 
 use anyhow::Context;
-use plotters::prelude::*;
+use plotters::prelude::SeriesLabelPosition;
 use reality_sim::{
     Archive, CameraPose, Sequence, Synthesizer,
     db::{Database, PoseEstimate, PoseSource, coverage::Coverage},
@@ -32,7 +34,7 @@ use reality_sim::{
     synthesis::MethodKind,
 };
 
-use crate::{counting::measured, poses::random_poses};
+use crate::{counting::measured, curves::Axes, poses::random_poses};
 
 const IMAGES: [usize; 5] = [300, 3000, 30_000, 300_000, 1_000_000];
 /// Number of pictures that are drawn of each database.
@@ -147,39 +149,19 @@ fn write_table(rows: &[Row]) -> anyhow::Result<()> {
     fs::write(&file, text).with_context(|| format!("{file}: cannot be written"))
 }
 
-/// Plots the times over the number of pictures, both axes logarithmic.
+/// Plots the times over the number of pictures.
 fn plot(rows: &[Row]) -> anyhow::Result<()> {
-    let path = format!("{OUT}/database_size.svg");
     type Value = fn(&Row) -> f64;
-    let curves: [(&str, RGBColor, Value); 3] = [
-        ("opening", RGBColor(214, 96, 77), |row| milliseconds(row.opening)),
-        ("a picture", RGBColor(67, 147, 195), |row| row.picture_ms),
-        ("coverage", RGBColor(27, 120, 55), |row| milliseconds(row.coverage)),
+    let of: [(&str, Value); 3] = [
+        ("opening", |row| milliseconds(row.opening)),
+        ("a picture", |row| row.picture_ms),
+        ("coverage", |row| milliseconds(row.coverage)),
     ];
-    let values = || rows.iter().flat_map(|row| curves.map(|(_, _, value)| value(row)));
-    let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
-    let root = SVGBackend::new(&path, (640, 420)).into_drawing_area();
-    root.fill(&WHITE)?;
-    let mut chart = ChartBuilder::on(&root)
-        .margin(12)
-        .x_label_area_size(40)
-        .y_label_area_size(64)
-        .build_cartesian_2d((250.0..1_200_000.0).log_scale(), (0.7 * low..1.5 * high).log_scale())?;
-    chart.configure_mesh().x_desc("pictures").y_desc("milliseconds").light_line_style(WHITE).draw()?;
-    for (name, color, value) in curves {
-        let points = rows.iter().map(|row| (row.images as f64, value(row)));
-        chart
-            .draw_series(LineSeries::new(points, color.stroke_width(2)).point_size(3))?
-            .label(name)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2)));
-    }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
-        .background_style(WHITE)
-        .border_style(BLACK)
-        .draw()?;
-    root.present().with_context(|| format!("{path}: cannot be written"))
+    let curves =
+        of.map(|(name, value)| (name, rows.iter().map(|row| (row.images as f64, value(row))).collect()));
+    let axes = Axes { x: "pictures", y: "milliseconds", x_range: 250.0..1_200_000.0 };
+    let file = Path::new(OUT).join("database_size.svg");
+    curves::plot(&file, axes, &curves, &[], SeriesLabelPosition::UpperLeft)
 }
 
 fn milliseconds(time: Duration) -> f64 {

@@ -1,13 +1,13 @@
 //! The paper's Table 2 and Fig. 9.
 
-use std::fmt::Write;
+use std::{fmt::Write, path::Path};
 
-use anyhow::Context;
-use plotters::prelude::*;
+use plotters::prelude::SeriesLabelPosition;
 use reality_sim::{LocalizerConfig, ObservationKind};
 
 use crate::{
     OUT,
+    curves::{self, Axes, Named},
     recording::{Model, Recording, Runs},
 };
 
@@ -122,8 +122,8 @@ fn figure_9(recording: &Recording, seeds: u64, text: &mut String) -> anyhow::Res
     )
 }
 
-/// Plots a curve for each model over the number of particles, both axes logarithmic, with the paper's values for its
-/// Gauss-based and its distance-based model with 800 particles.
+/// Plots a curve for each model over the number of particles, with the paper's values for its Gauss-based and its distance-based
+/// model with 800 particles.
 fn plot(
     file: &str,
     label: &str,
@@ -132,51 +132,12 @@ fn plot(
     paper: [f64; 2],
     legend: SeriesLabelPosition,
 ) -> anyhow::Result<()> {
-    let path = format!("{OUT}/{file}");
-    let points: Vec<Vec<(f64, f64)>> =
-        curves.iter().map(|curve| curve.iter().map(|(x, runs)| (*x, value(runs))).collect()).collect();
-    let values = || points.iter().flatten().map(|(_, y)| *y).chain(paper);
-    let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
-    let root = SVGBackend::new(&path, (640, 420)).into_drawing_area();
-    root.fill(&WHITE)?;
-    let mut chart = ChartBuilder::on(&root)
-        .margin(12)
-        .x_label_area_size(40)
-        .y_label_area_size(56)
-        .build_cartesian_2d((45.0..130_000.0).log_scale(), (0.8 * low..1.3 * high).log_scale())?;
-    chart
-        .configure_mesh()
-        .x_desc("particles")
-        .y_desc(label)
-        .x_label_formatter(&tick)
-        .y_label_formatter(&tick)
-        .light_line_style(WHITE)
-        .draw()?;
-    let colors =
-        [RGBColor(214, 96, 77), RGBColor(67, 147, 195), RGBColor(27, 120, 55), RGBColor(244, 165, 130)];
-    for ((value, kind), color) in paper.into_iter().zip(ObservationKind::ALL).zip(colors) {
-        chart
-            .draw_series([Cross::new((800.0, value), 5, color.stroke_width(2))])?
-            .label(format!("the paper, {kind}"))
-            .legend(move |(x, y)| Cross::new((x + 9, y), 5, color.stroke_width(2)));
-    }
-    for ((points, (_, name)), color) in points.iter().zip(CURVES).zip(colors) {
-        chart
-            .draw_series(LineSeries::new(points.iter().copied(), color.stroke_width(2)).point_size(3))?
-            .label(name)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2)));
-    }
-    chart.configure_series_labels().position(legend).background_style(WHITE).border_style(BLACK).draw()?;
-    root.present().with_context(|| format!("{path}: cannot be written"))
-}
-
-/// Formats ticks of a logarithmic axis: 1, 2 and 5 in every decade, so that none covers another.
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "the form that the plotting library calls")]
-fn tick(value: &f64) -> String {
-    let decade = 10_f64.powf(value.log10().floor());
-    match (value / decade).round() as u32 {
-        1 | 2 | 5 if *value >= 1.0 => format!("{value:.0}"),
-        1 | 2 | 5 => format!("{value:.2}"),
-        _ => String::new(),
-    }
+    let points = |curve: &Vec<(f64, Runs)>| curve.iter().map(|(x, runs)| (*x, value(runs))).collect();
+    let curves = CURVES.iter().zip(curves).map(|((_, name), curve)| (*name, points(curve)));
+    let curves: Vec<Named> = curves.collect();
+    let names = ObservationKind::ALL.map(|kind| format!("the paper, {kind}"));
+    let crosses: Vec<Named> =
+        names.iter().zip(paper).map(|(name, value)| (name.as_str(), vec![(800.0, value)])).collect();
+    let axes = Axes { x: "particles", y: label, x_range: 45.0..130_000.0 };
+    curves::plot(&Path::new(OUT).join(file), axes, &curves, &crosses, legend)
 }

@@ -6,6 +6,8 @@
 //!
 //! FRAMES is the largest number of pictures used of each sequence. `scripts/figures` makes the recordings, too.
 
+#[path = "../shared/curves.rs"]
+mod curves;
 mod figures;
 mod recording;
 mod sweep;

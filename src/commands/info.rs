@@ -148,8 +148,7 @@ impl Report {
         let cameras = database.cameras()?;
         let pose_sources = database.pose_sources()?;
         let mut by_pose_source: BTreeMap<i64, usize> = BTreeMap::new();
-        database
-            .each_details(|_, details| *by_pose_source.entry(details.pose_source_id).or_default() += 1)?;
+        database.each_image(|_, details| *by_pose_source.entry(details.pose_source_id).or_default() += 1)?;
         Ok(Self {
             database: args.database.display().to_string(),
             schema_version: SCHEMA_VERSION,

@@ -47,7 +47,7 @@ fn poses_come_from_the_file_given_or_from_the_filter() {
         assert!((image.pose.x_m - truth.x_m).hypot(image.pose.y_m - truth.y_m) < 0.02);
     }
     let mut sigmas_m = Vec::new();
-    database.each_details(|_, details| sigmas_m.push(details.covariance.unwrap()[(0, 0)].sqrt())).unwrap();
+    database.each_image(|_, details| sigmas_m.push(details.covariance.unwrap()[(0, 0)].sqrt())).unwrap();
     assert_eq!(sigmas_m.len(), images.len());
     assert!(sigmas_m.iter().all(|sigma_m| (1e-6..0.05).contains(sigma_m)), "{sigmas_m:?}");
     let report = json(&["info", shown(&by_filter)]);

@@ -62,38 +62,27 @@ impl Database {
     /// Returns the records of all images, in the order of their ids.
     pub fn images(&self) -> Result<Vec<ImageRecord>, DbError> {
         self.read(|transaction| {
-            let known = References::read(transaction)?;
-            let query = format!("SELECT {IMAGE_COLUMNS}, pose_source_id FROM images ORDER BY id");
-            let mut statement = transaction.prepare(&query)?;
-            let mut rows = statement.query([])?;
             let mut images = Vec::new();
-            while let Some(row) = rows.next()? {
-                let image = ImageRecord::from_row(row)?;
-                let problem = image.problem().or_else(|| known.missing(&image, row.get(IMAGE_WIDTH).ok()));
-                if let Some(problem) = problem {
-                    return Err(DbFault::BadRow { table: "image", id: image.id, problem });
-                }
+            each_record(transaction, "pose_source_id", |image, _| {
                 images.push(image);
-            }
+                Ok(())
+            })?;
             images.shrink_to_fit();
             Ok(images)
         })
     }
 
-    /// Hands over the details of all images with their ids, in the order of these.
-    pub fn each_details(&self, mut take: impl FnMut(i64, ImageDetails)) -> Result<(), DbError> {
+    /// Hands over all images with their details, in the order of their ids.
+    pub fn each_image(&self, mut take: impl FnMut(ImageRecord, ImageDetails)) -> Result<(), DbError> {
         self.read(|transaction| {
-            let query = format!("SELECT id, {DETAIL_COLUMNS} FROM images ORDER BY id");
-            let mut statement = transaction.prepare(&query)?;
-            let mut rows = statement.query([])?;
-            while let Some(row) = rows.next()? {
-                let (id, details) = (row.get(0)?, ImageDetails::from_row(row, 1)?);
+            each_record(transaction, DETAIL_COLUMNS, |image, row| {
+                let details = ImageDetails::from_row(row, IMAGE_WIDTH)?;
                 if let Some(problem) = details.problem() {
-                    return Err(DbFault::BadRow { table: "image", id, problem });
+                    return Err(DbFault::BadRow { table: "image", id: image.id, problem });
                 }
-                take(id, details);
-            }
-            Ok(())
+                take(image, details);
+                Ok(())
+            })
         })
     }
 
@@ -305,6 +294,28 @@ fn connect(path: &Path, flags: OpenFlags) -> Result<(Connection, WorkLimit), DbF
     Ok((connection, work_limit))
 }
 
+/// Hands over the checked records of all images, each with its row, in which `further` columns follow those of the record. The first of them is
+/// the id of the pose's source.
+fn each_record(
+    transaction: &Transaction<'_>,
+    further: &str,
+    mut take: impl FnMut(ImageRecord, &Row<'_>) -> Result<(), DbFault>,
+) -> Result<(), DbFault> {
+    let known = References::read(transaction)?;
+    let mut statement =
+        transaction.prepare(&format!("SELECT {IMAGE_COLUMNS}, {further} FROM images ORDER BY id"))?;
+    let mut rows = statement.query([])?;
+    while let Some(row) = rows.next()? {
+        let image = ImageRecord::from_row(row)?;
+        let pose_source_id = row.get(IMAGE_WIDTH)?;
+        if let Some(problem) = image.problem().or_else(|| known.missing(&image, pose_source_id)) {
+            return Err(DbFault::BadRow { table: "image", id: image.id, problem });
+        }
+        take(image, row)?;
+    }
+    Ok(())
+}
+
 /// Ids that images refer to.
 struct References {
     sequences: BTreeSet<i64>,
@@ -325,14 +336,14 @@ impl References {
     }
 
     /// Returns which of those of an image does not exist, if any.
-    fn missing(&self, image: &ImageRecord, pose_source_id: Option<i64>) -> Option<&'static str> {
+    fn missing(&self, image: &ImageRecord, pose_source_id: i64) -> Option<&'static str> {
         if !self.sequences.contains(&image.sequence_id) {
             Some("its sequence is missing")
         } else if !self.cameras.contains(&image.camera_id) {
             Some("its camera is missing")
         } else if !self.fields.contains(&image.field_id) {
             Some("its field is missing")
-        } else if pose_source_id.is_none_or(|id| !self.pose_sources.contains(&id)) {
+        } else if !self.pose_sources.contains(&pose_source_id) {
             Some("its pose source is missing")
         } else {
             None

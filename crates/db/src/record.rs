@@ -156,7 +156,7 @@ pub(crate) const IMAGE_COLUMNS: &str = "id, sequence_id, frame_index, camera_id,
 /// Number of [`IMAGE_COLUMNS`].
 pub(crate) const IMAGE_WIDTH: usize = 12;
 
-/// Columns of details, in the order in which [`ImageDetails::from_row`] takes them.
+/// Columns of details, in the order in which [`ImageDetails::from_row`] takes them; the first is checked with the record.
 pub(crate) const DETAIL_COLUMNS: &str = "pose_source_id, file_name, byte_length, covariance";
 
 impl ImageRecord {

@@ -1,6 +1,6 @@
 //! What is exported: a sequence with its poses, or a database.
 
-use std::{array, collections::BTreeMap, error::Error, path::PathBuf};
+use std::{collections::BTreeMap, error::Error, path::PathBuf};
 
 use anyhow::bail;
 
@@ -8,6 +8,7 @@ use reality_sim::{
     Camera, CameraPose, FieldDimensions, Sequence,
     db::{Database, ImageRecord},
     sequence::{counted, match_poses, read_tum},
+    tagging::covariance_rows,
 };
 use reality_sim_formats::{
     PictureFiles, PosedPicture, PosedPictures, frame_table::PictureFacts, posed::CameraIndex,
@@ -105,7 +106,17 @@ impl Source {
     }
 
     fn of_database(database: Database) -> anyhow::Result<Self> {
-        let records = database.images()?;
+        let names = database.sequences()?;
+        let (mut records, mut facts) = (Vec::new(), Vec::new());
+        database.each_image(|record, details| {
+            facts.push(PictureFacts {
+                sequence: names.get(&record.sequence_id).cloned().unwrap_or_default(),
+                image: PathBuf::from(details.file_name),
+                covariance: details.covariance.as_ref().map(covariance_rows),
+                quality: None,
+            });
+            records.push(record);
+        })?;
         let field = only_field(&database, &records)?;
         let mut cameras: Vec<Camera> = Vec::new();
         let mut indices = BTreeMap::new();
@@ -128,24 +139,6 @@ impl Source {
         let pictures = records.iter().enumerate().map(picture).collect();
         let ids = records.iter().map(|record| record.id).collect();
         let inputs = vec![database.path().to_path_buf()];
-        let names = database.sequences()?;
-        let mut facts = Vec::new();
-        let mut of_records = records.iter();
-        // Both are in the order of their ids.
-        database.each_details(|id, details| {
-            let Some(record) = of_records.find(|record| record.id == id) else { return };
-            facts.push(PictureFacts {
-                sequence: names.get(&record.sequence_id).cloned().unwrap_or_default(),
-                image: PathBuf::from(&details.file_name),
-                covariance: details
-                    .covariance
-                    .map(|matrix| array::from_fn(|a| array::from_fn(|b| matrix[(a, b)]))),
-                quality: None,
-            });
-        })?;
-        if facts.len() < records.len() {
-            bail!("{}: was changed while it was read: export it again", database.path().display());
-        }
         let posed = PosedPictures { cameras, field, pictures };
         Ok(Self { posed, without_pose: 0, inputs, facts, origin: Origin::Database(Box::new(database), ids) })
     }

@@ -68,10 +68,7 @@ pub fn run(args: &StreamArgs) -> anyhow::Result<()> {
 fn send(args: &StreamArgs, camera: &mut Camera, poses: &[StampedPose]) -> anyhow::Result<f64> {
     let balls: Vec<Ball> = args.ball.iter().map(WantedBall::layer).collect();
     let layers: Vec<&dyn Layer> = balls.iter().map(|ball| ball as &dyn Layer).collect();
-    let receivers = Receivers::of_file(args.out.as_deref())?;
-    #[cfg(feature = "live")]
-    let receivers = receivers.and_server(&args.serving)?;
-    let mut receivers = receivers;
+    let mut receivers = receivers(args)?;
     let progress = frame_progress(poses.len())?;
     let mut frame = Frame::default();
     let mut times_ms = Vec::new();
@@ -91,6 +88,14 @@ fn send(args: &StreamArgs, camera: &mut Camera, poses: &[StampedPose]) -> anyhow
     receivers.finish()?;
     times_ms.sort_by(f64::total_cmp);
     Ok(percentile(&times_ms, 0.5).unwrap_or_default())
+}
+
+/// Begins the file and starts the server that the options name.
+fn receivers(args: &StreamArgs) -> anyhow::Result<Receivers<CameraTopics>> {
+    let receivers = Receivers::of_file(args.out.as_deref())?;
+    #[cfg(feature = "live")]
+    let receivers = receivers.and_server(&args.serving)?;
+    Ok(receivers)
 }
 
 fn send_frame(receivers: &mut Receivers<CameraTopics>, camera: &Camera, frame: &Frame, timestamp_s: f64) {

@@ -21,6 +21,7 @@ fn read_all(path: &Path) -> Result<(), DbError> {
         database.image_masks(field_id)?;
     }
     database.fields_without_ground()?;
+    details_of(&database)?;
     for image in database.images()? {
         database.picture(image.id)?;
     }

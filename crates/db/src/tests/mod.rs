@@ -103,6 +103,6 @@ fn read_all(path: &Path) -> Result<usize, DbError> {
 /// Reads the details of all images, by their ids.
 fn details_of(database: &Database) -> Result<BTreeMap<i64, ImageDetails>, DbError> {
     let mut details = BTreeMap::new();
-    database.each_details(|id, of_image| drop(details.insert(id, of_image)))?;
+    database.each_image(|image, of_image| drop(details.insert(image.id, of_image)))?;
     Ok(details)
 }

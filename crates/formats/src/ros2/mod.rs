@@ -1,5 +1,6 @@
 //! What a simulator's camera sees as messages of ROS 2, encoded in CDR with their definitions: an MCAP file that `ros2 bag play` plays, or
-//! Foxglove's websocket, to which its bridges and panels connect.
+//! Foxglove's websocket, to which its bridges and panels connect: a [`TopicFile`](crate::show::TopicFile) or a
+//! [`TopicServer`](crate::show) of [`CameraTopics`].
 //!
 //! | topic | type | contents |
 //! |---|---|---|
@@ -17,9 +18,7 @@ mod topics;
 
 use reality_sim_core::{camera::Camera, pose::CameraPose};
 
-#[cfg(feature = "live")]
-pub use self::topics::CameraServer;
-pub use self::topics::{CameraLog, CameraTopics};
+pub use self::topics::CameraTopics;
 
 /// Picture of a simulator's camera, with what is known of it.
 #[derive(Debug, Clone, Copy)]

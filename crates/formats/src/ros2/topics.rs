@@ -12,19 +12,7 @@ use super::{
     depth::AxisShares,
     messages::{CameraInfo, Detection2DArray, Image, TfMessage, Time},
 };
-#[cfg(feature = "live")]
-use crate::show::TopicServer;
-use crate::{
-    schema::ros2_definition,
-    show::{TopicFile, Topics},
-};
-
-/// MCAP file of what a simulator's camera sees.
-pub type CameraLog = TopicFile<CameraTopics>;
-
-/// Server that sends what a simulator's camera sees.
-#[cfg(feature = "live")]
-pub type CameraServer = TopicServer<CameraTopics>;
+use crate::{schema::ros2_definition, show::Topics};
 
 /// The four bytes before a message that name its encoding: plain CDR, little-endian.
 const PLAIN_LITTLE_ENDIAN: [u8; 4] = [0, 1, 0, 0];

@@ -94,10 +94,12 @@ fn hash_of_records(archive: &Archive) -> Result<u64, DbError> {
             hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
         }
     };
-    // Both are in the order of their ids; the archive has those of one field only.
-    let mut images = archive.images().iter().peekable();
-    archive.database().each_details(|id, details| {
-        let Some(image) = images.next_if(|image| image.id == id) else { return };
+    // An archive has the images of one field only.
+    let field_id = archive.images().first().map(|image| image.field_id);
+    archive.database().each_image(|image, details| {
+        if Some(image.field_id) != field_id {
+            return;
+        }
         add(details.file_name.as_bytes());
         add(&details.byte_length.to_le_bytes());
         let pose = image.pose;
