@@ -15,10 +15,10 @@ from .recordings import fetched, hash_of
 from .rows import batch_of, key_of
 from .settings import Settings, all_settings
 
-__all__ = ["VERSION", "message_of", "rows_of", "study"]
+__all__ = ["key_columns", "message_of", "rows_of", "study"]
 
 #: Version of the library, and hash of the sources that it was built from: two of one version may find other things.
-VERSION = f"{_native.VERSION}+{_native.SOURCES}"
+_VERSION = f"{_native.VERSION}+{_native.SOURCES}"
 
 #: Times of robots that know no date begin with the robot: such a day is none.
 _FIRST_DAY = datetime(2000, 1, 1, tzinfo=timezone.utc).timestamp()
@@ -67,17 +67,18 @@ def _with_folder(settings: Settings, recording: str) -> str:
     """Returns settings in JSON. A data set gets a folder of its own, named by the row's key: whoever makes it completes the same one."""
     complete = json.loads(settings.json)
     if settings.job == "dataset":
-        complete["out"] = os.path.join(complete["out"], key_of(_key(recording, settings)))
+        complete["out"] = os.path.join(complete["out"], key_of(key_columns(recording, settings)))
     return json.dumps(complete)
 
 
-def _key(recording: str, settings: Settings) -> dict[str, str]:
-    return {"recording": recording, "settings": settings.hash, "version": VERSION}
+def key_columns(recording: str, settings: Settings) -> dict[str, str]:
+    """Returns the columns by which the row of a recording, whose hash is given, is found."""
+    return {"recording": recording, "settings": settings.hash, "version": _VERSION}
 
 
 def _row(recording: str, settings: Settings, found: dict[str, Any]) -> dict[str, Any]:
     row = {
-        **_key(recording, settings),
+        **key_columns(recording, settings),
         "job": settings.job,
         "settings_json": settings.json,
         "error": found.get("error"),

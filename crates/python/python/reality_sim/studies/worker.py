@@ -12,7 +12,7 @@ from .. import _native
 from .recordings import fetched, hash_of
 from .rows import key_of
 from .settings import Settings, all_settings
-from .study import VERSION, message_of, rows_of
+from .study import key_columns, message_of, rows_of
 from .tables import missing_keys, write_row
 
 __all__ = ["StudyWorker"]
@@ -56,10 +56,7 @@ class StudyWorker:
             with fetched(uri) as folder:
                 recording = hash_of(folder)
                 told["recording"] = recording
-                key = {
-                    one: key_of({"recording": recording, "settings": one.hash, "version": VERSION})
-                    for one in self._settings
-                }
+                key = {one: key_of(key_columns(recording, one)) for one in self._settings}
                 missing = set(missing_keys(key.values(), self._tables))
                 told["present"] = len(self._settings) - len(missing)
                 for portion in _portions([one for one in self._settings if key[one] in missing]):
