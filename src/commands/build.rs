@@ -1,14 +1,17 @@
-//! `reality-sim build`: stores recordings with their poses in a database.
+//! `reality-sim build`: stores recordings with their poses, and the pictures of other databases, in a database.
 
-use std::{path::PathBuf, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
-use anyhow::anyhow;
+use anyhow::{anyhow, bail};
 use clap::Args;
 use serde::Serialize;
 
 use reality_sim::{
     Sequence,
-    db::IngestReport,
+    db::{Database, IngestReport},
     pipeline::{CleanStageSummary, Event, PipelineError, Plan, PoseChoice},
     sequence::counted,
     warp::Hall,
@@ -25,8 +28,8 @@ use super::{
 /// Options of `build`.
 #[derive(Debug, Args)]
 pub struct BuildArgs {
-    /// Folders of the sequences, which contain sequence.toml, or robots' logs
-    #[arg(required = true)]
+    /// Folders of the sequences, which contain sequence.toml, robots' logs, or databases, whose pictures are added
+    #[arg(required = true, value_name = "SEQUENCE|DATABASE")]
     sequences: Vec<PathBuf>,
     /// Database to add to, created if it does not exist; pictures that it contains are not added again
     #[arg(long, value_name = "DATABASE")]
@@ -65,6 +68,9 @@ pub struct BuildArgs {
 struct Report {
     database: String,
     sequences: Vec<SequenceReport>,
+    /// Databases whose pictures were added.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    databases: Vec<DatabaseReport>,
     /// Number of images now in the database.
     images: usize,
     /// The hall, if it was measured in this run.
@@ -99,6 +105,14 @@ struct CleanReport {
 }
 
 #[derive(Serialize)]
+struct DatabaseReport {
+    database: String,
+    added: usize,
+    replaced: usize,
+    already_there: usize,
+}
+
+#[derive(Serialize)]
 struct SequenceReport {
     name: String,
     /// Source of the poses: `groundtruth`, `file` or `filter`.
@@ -128,22 +142,28 @@ impl BuildArgs {
 pub fn run(args: &BuildArgs) -> anyhow::Result<()> {
     let model = args.model.read()?;
     let field = args.field.as_deref();
+    let (databases, sequences) = args.databases_and_sequences()?;
     let recordings: Vec<Recording> =
-        args.sequences.iter().map(|path| Recording::open(path, field)).collect::<Result<_, _>>()?;
+        sequences.iter().map(|path| Recording::open(path, field)).collect::<Result<_, _>>()?;
     let open = |recording: &Recording| open_corrected(recording.folder(), model.as_ref()).map(Arc::new);
     let sequences: Vec<Arc<Sequence>> = recordings.iter().map(open).collect::<Result<_, _>>()?;
     let mut inputs: Vec<PathBuf> = sequences.iter().flat_map(|sequence| sequence.files.clone()).collect();
-    inputs.extend(args.model.model.clone());
+    inputs.extend(databases.iter().cloned().chain(args.model.model.clone()));
     check_output_file(&args.out, &inputs)?;
     let corrections =
         model.map(|model| model.words(&sequences[0].setup, &sequences[0].field, Use::Recording));
     let mut report = Report { database: args.out.display().to_string(), corrections, ..Report::default() };
     let mut sources: Vec<&'static str> = Vec::new();
     let mut progress = StageProgress::default();
-    for event in args.plan(&sequences).start() {
+    for event in args.plan(&sequences).with_databases(databases.clone()).start() {
         match event.map_err(with_options).inspect_err(|_| progress.finish())? {
             Event::LocalizationStarted { frames, .. } | Event::StorageStarted { frames, .. } => {
                 progress.begin(frames)?;
+            }
+            Event::CopyingStarted { images, .. } => progress.begin(images)?,
+            Event::Copied { done, .. } => progress.set(done),
+            Event::DatabaseAdded { database, report: added } => {
+                report.databases.push(DatabaseReport::new(&databases[database], added));
             }
             Event::Localized { index, .. } => progress.set(index + 1),
             Event::Stored { done, .. } => progress.set(done),
@@ -167,6 +187,19 @@ pub fn run(args: &BuildArgs) -> anyhow::Result<()> {
 }
 
 impl BuildArgs {
+    /// Tells databases from all else that is given. What they hold was corrected, and has its poses.
+    fn databases_and_sequences(&self) -> anyhow::Result<(Vec<PathBuf>, Vec<PathBuf>)> {
+        let (databases, sequences): (Vec<_>, Vec<_>) =
+            self.sequences.iter().cloned().partition(|path| Database::is_at(path));
+        if let (Some(database), Some(_)) = (databases.first(), &self.model.model) {
+            bail!(
+                "{}: is a database: --model corrects recordings only, before they are stored: add databases in a call without it",
+                database.display()
+            );
+        }
+        Ok((databases, sequences))
+    }
+
     fn plan(&self, sequences: &[Arc<Sequence>]) -> Plan {
         let poses = match &self.poses {
             Some(file) => PoseChoice::File(file.clone()),
@@ -201,6 +234,13 @@ impl SequenceReport {
     }
 }
 
+impl DatabaseReport {
+    fn new(path: &Path, report: IngestReport) -> Self {
+        let IngestReport { added, replaced, already_there, .. } = report;
+        Self { database: path.display().to_string(), added, replaced, already_there }
+    }
+}
+
 impl HallReport {
     fn new(hall: &Hall) -> Self {
         let Hall { min_m, max_m, ceiling_m, goal_depth_m } = *hall;
@@ -225,6 +265,11 @@ impl CleanReport {
 impl Report {
     fn text(&self) -> String {
         let mut lines = Vec::new();
+        for DatabaseReport { database, added, replaced, already_there } in &self.databases {
+            let added = counted(*added, "picture");
+            lines.push(("pictures", format!("of {database}: {added} added, {already_there} already there")));
+            lines.extend(replaced_line(*replaced));
+        }
         for sequence in &self.sequences {
             let SequenceReport { name, poses, added, replaced, already_there, without_pose, .. } = sequence;
             let poses = match *poses {
@@ -239,9 +284,7 @@ impl Report {
                     counted(*added, "picture")
                 ),
             ));
-            if *replaced > 0 {
-                lines.push(("", format!("{replaced} replaced, which could not be decoded any more")));
-            }
+            lines.extend(replaced_line(*replaced));
             if *without_pose > 0 {
                 lines.push((
                     "",
@@ -267,4 +310,9 @@ impl Report {
         lines.push(("database", format!("{}, {}", self.database, counted(self.images, "picture"))));
         aligned(&lines)
     }
+}
+
+/// Says how many pictures were replaced, if any.
+fn replaced_line(replaced: usize) -> Option<(&'static str, String)> {
+    (replaced > 0).then(|| ("", format!("{replaced} replaced, which could not be decoded any more")))
 }

@@ -28,6 +28,7 @@ mod render;
 #[cfg(feature = "live")]
 mod serving;
 mod shell;
+mod split;
 mod stream;
 mod summary;
 mod tag;
@@ -46,7 +47,7 @@ pub enum Command {
     Tag(Box<tag::TagArgs>),
     /// Find the camera's lens and mount from the lines of the field
     Calibrate(calibrate::CalibrateArgs),
-    /// Store recordings with their poses in a database
+    /// Store recordings with their poses, or the pictures of other databases, in a database
     Build(build::BuildArgs),
     /// Make a sequence of a robot's log, or of another program's model
     Import(Box<import::ImportArgs>),
@@ -62,6 +63,8 @@ pub enum Command {
     Info(info::InfoArgs),
     /// Remove a sequence's pictures, or some of them, from a database
     Remove(remove::RemoveArgs),
+    /// Split a database by field, one database each
+    Split(split::SplitArgs),
     /// Write poses and pictures in the formats of other programs
     Export(export::ExportArgs),
     /// Find the effect that a camera model lacks, add it, and measure what that brings
@@ -95,6 +98,7 @@ impl Command {
             | Self::Import(_)
             | Self::Info(_)
             | Self::Remove(_)
+            | Self::Split(_)
             | Self::Summary(_)
             | Self::Completions(_)
             | Self::Man(_) => Ok(()),
@@ -120,6 +124,7 @@ impl Command {
             Self::Export(args) => export::run(args),
             Self::Info(args) => info::run(args),
             Self::Remove(args) => remove::run(args),
+            Self::Split(args) => split::run(args),
             Self::Gap(args) => gap::run(args),
             Self::Summary(args) => summary::run(args),
             #[cfg(feature = "gpu")]

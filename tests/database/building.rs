@@ -57,6 +57,46 @@ fn poses_come_from_the_file_given_or_from_the_filter() {
 }
 
 #[test]
+fn databases_are_merged_and_split_by_field() {
+    let own = tempfile::tempdir().unwrap();
+    let [a, b, both, parts] = ["a.db", "b.db", "both.db", "parts"].map(|name| own.path().join(name));
+    let walk = part_of_walk(own.path(), "here", 0..12);
+    let elsewhere = part_of_walk(own.path(), "there", 12..20);
+    let field = elsewhere.join("field.toml");
+    let text = fs::read_to_string(&field).unwrap();
+    let renamed: Vec<&str> = text.lines().filter(|line| !line.starts_with("name")).collect();
+    fs::write(&field, format!("name = \"Hall 2\"\n{}\n", renamed.join("\n"))).unwrap();
+    for (recording, database) in [(&walk, &a), (&elsewhere, &b)] {
+        json(&["build", shown(recording), "--out", shown(database)]);
+    }
+    let report = json(&["build", shown(&a), shown(&b), "--out", shown(&both)]);
+    assert_eq!((&report["images"], &report["databases"][1]["added"]), (&20.into(), &8.into()));
+    // Databases and recordings together, of which it has all.
+    let again = json(&["build", shown(&b), shown(&walk), "--out", shown(&both)]);
+    assert_eq!((&again["images"], &again["databases"][0]["already_there"]), (&20.into(), &8.into()));
+    assert_eq!(again["sequences"][0]["already_there"], 12);
+
+    let report = json(&["split", shown(&both), "--out", shown(&parts)]);
+    assert_eq!(report["parts"].as_array().unwrap().len(), 2);
+    for (part, original) in report["parts"].as_array().unwrap().iter().zip([&a, &b]) {
+        let path = Path::new(part["database"].as_str().unwrap());
+        let (part, original) = (Database::open(path).unwrap(), Database::open(original).unwrap());
+        assert_eq!(part.images().unwrap().len(), original.images().unwrap().len());
+        assert_eq!(
+            part.halls().unwrap().into_values().next(),
+            original.halls().unwrap().into_values().next()
+        );
+        let bytes = |database: &Database| database.image_bytes(database.images().unwrap()[3].id).unwrap();
+        assert_eq!(bytes(&part), bytes(&original));
+    }
+    assert!(parts.join("hall-2.db").is_file());
+    assert_fails(&["build", shown(&a), "--out", shown(&a)], &["a.db", "is an input"]);
+    let missing = own.path().join("missing.db");
+    assert_fails(&["split", shown(&missing), "--out", shown(&parts)], &["missing.db", "no such file"]);
+    assert_fails(&["split", shown(&parts.join("hall-2.db")), "--out", shown(&parts)], &["holds the input"]);
+}
+
+#[test]
 fn info_counts_the_images_and_draws_their_coverage() {
     let own = tempfile::tempdir().unwrap();
     let chart = own.path().join("coverage.svg");

@@ -54,6 +54,11 @@ impl Database {
         Self::try_create_or_open(path).map_err(|fault| DbError::new(path, fault))
     }
 
+    /// Returns whether a file bears the mark of an image database, of whatever version. Whether it is whole shows when it is opened.
+    pub fn is_at(path: &Path) -> bool {
+        schema::is_marked(path)
+    }
+
     /// Returns the path of the file.
     pub fn path(&self) -> &Path {
         &self.path
@@ -352,11 +357,12 @@ impl References {
 }
 
 /// Reads pairs of an id and a text.
-fn texts(transaction: &Transaction<'_>, query: &str) -> Result<BTreeMap<i64, String>, DbFault> {
+pub(crate) fn texts(transaction: &Transaction<'_>, query: &str) -> Result<BTreeMap<i64, String>, DbFault> {
     all(transaction, query, |row| Ok((row.get(0)?, row.get(1)?)))
 }
 
-fn all<T, C: FromIterator<T>>(
+/// Reads all rows of a query.
+pub(crate) fn all<T, C: FromIterator<T>>(
     transaction: &Transaction<'_>,
     query: &str,
     row: impl FnMut(&Row<'_>) -> rusqlite::Result<T>,

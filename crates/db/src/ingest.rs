@@ -15,7 +15,7 @@ use crate::{
 pub(crate) const BATCH_FRAMES: usize = 64;
 
 /// Size at which a transaction is committed, bytes: until then all of it stays in the writer's memory.
-const BATCH_BYTES: usize = 16 << 20;
+pub(crate) const BATCH_BYTES: usize = 16 << 20;
 
 /// Numbers of a sequence's frames by what happened to them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -36,7 +36,7 @@ impl IngestReport {
         self.added + self.replaced + self.already_there
     }
 
-    fn count(&mut self, insertion: Insertion) {
+    pub(crate) fn count(&mut self, insertion: Insertion) {
         match insertion {
             Insertion::Added => self.added += 1,
             Insertion::Replaced => self.replaced += 1,

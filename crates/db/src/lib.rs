@@ -2,7 +2,7 @@
 //!
 //! | type | purpose |
 //! |---|---|
-//! | [`Database`] | the file: [`Database::ingest`] adds recordings, [`Database::insert`] an image, [`Database::remove`] removes some, other methods read |
+//! | [`Database`] | the file: [`Database::ingest`] adds recordings, [`Database::insert`] an image, [`Database::copy_from`] those of another database, [`Database::remove`] removes some, other methods read |
 //! | [`Recording`], [`NewImage`] | an image to be stored, and what it shares with others |
 //! | [`ImageRecord`] | an image without its pixels: pose, time, camera, field |
 //! | [`ImageDetails`] | what else is known of it: covariance, source of the pose, file |
@@ -43,6 +43,7 @@
 //! ```
 
 mod clean_stage;
+mod copying;
 pub mod coverage;
 mod database;
 mod error;

@@ -232,7 +232,8 @@ fn covariance(row: &Row<'_>, column: usize) -> rusqlite::Result<Option<Matrix6<f
     Ok(Some(Matrix6::from_row_iterator(numbers.iter().map(|number| f64::from_le_bytes(*number)))))
 }
 
-fn unsigned<T: TryFrom<i64>>(row: &Row<'_>, column: usize) -> rusqlite::Result<T> {
+/// Reads a number that is not negative.
+pub(crate) fn unsigned<T: TryFrom<i64>>(row: &Row<'_>, column: usize) -> rusqlite::Result<T> {
     let value: i64 = row.get(column)?;
     T::try_from(value).map_err(|_| rusqlite::Error::IntegralValueOutOfRange(column, value))
 }

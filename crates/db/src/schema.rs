@@ -1,6 +1,10 @@
 //! Tables of the database, marks that identify its files, and migration of older versions.
 
-use std::{fs, path::Path};
+use std::{
+    fs::{self, File},
+    io::Read,
+    path::Path,
+};
 
 use rusqlite::{Connection, Transaction, TransactionBehavior};
 
@@ -91,6 +95,16 @@ const VERSION_2: &str = "
         runs BLOB NOT NULL
     ) STRICT;
 ";
+
+/// Returns whether a file's header is that of an SQLite database with this application id: bytes 68 to 71,
+/// <https://www.sqlite.org/fileformat.html>.
+pub(crate) fn is_marked(path: &Path) -> bool {
+    let mut header = [0; 72];
+    let is_read = File::open(path).and_then(|mut file| file.read_exact(&mut header)).is_ok();
+    is_read
+        && header.starts_with(b"SQLite format 3\0")
+        && header[68..] == (APPLICATION_ID as u32).to_be_bytes()
+}
 
 /// Refuses a file that is not a complete database of a version that can be read. Changes nothing.
 pub(crate) fn check(connection: &Connection, path: &Path) -> Result<(), DbFault> {

@@ -55,17 +55,26 @@ pub struct ReferenceErrors {
     pub constant_rad: DVec3,
 }
 
+impl ReferenceErrors {
+    /// Poses are the true ones.
+    pub const NONE: Self = Self {
+        white_m: 0.0,
+        white_rad: 0.0,
+        slow_m: 0.0,
+        slow_rad: 0.0,
+        decay_s: 1.0,
+        constant_m: DVec3::ZERO,
+        constant_rad: DVec3::ZERO,
+    };
+}
+
 impl Errors {
     /// Errors of good motion capture, and of a small humanoid's odometry and IMU.
     pub const STANDARD: Self = Self {
         reference: ReferenceErrors {
             white_m: 0.003,
             white_rad: 0.14_f64.to_radians(),
-            slow_m: 0.0,
-            slow_rad: 0.0,
-            decay_s: 1.0,
-            constant_m: DVec3::ZERO,
-            constant_rad: DVec3::ZERO,
+            ..ReferenceErrors::NONE
         },
         imu_rad: 0.17_f64.to_radians(),
         odometry_m: 0.003,

@@ -4,6 +4,7 @@ use crate::{
     drawn::{self, Given},
     effect::Hidden,
     error::Error,
+    log::ReferenceErrors,
     random::Random,
     setting::Setting,
     sights,
@@ -49,6 +50,8 @@ pub struct Recipe {
     pub given: Option<Given>,
     /// Number of reference poses per second; none is one for each picture.
     pub reference_rate_hz: Option<f64>,
+    /// Whether the reference poses are the true ones, without the errors of motion capture.
+    pub exact_references: bool,
 }
 
 impl Recipe {
@@ -63,6 +66,7 @@ impl Recipe {
             world: World::Standard,
             given: None,
             reference_rate_hz: None,
+            exact_references: false,
         }
     }
 
@@ -72,10 +76,14 @@ impl Recipe {
     }
 
     pub(crate) fn setting(&self) -> Setting {
-        match self.world {
+        let mut setting = match self.world {
             World::Standard => Setting::standard(self.seed, self.size),
             World::Drawn => drawn::setting(self.seed, self.size, self.given),
+        };
+        if self.exact_references {
+            setting.errors.reference = ReferenceErrors::NONE;
         }
+        setting
     }
 
     /// Draws the path; in drawn worlds one from which lines are seen.

@@ -2,7 +2,9 @@
 
 use std::{fs, path::Path};
 
+use glam::DVec2;
 use rayon::prelude::*;
+use reality_sim_core::pose::Pose2;
 use reality_sim_core::sequence::{FrameRecord, Photometry, Sequence, StampedPose, write_tum};
 
 use crate::{
@@ -19,7 +21,7 @@ use crate::{
     recipe::{Recipe, World},
     scene::Scene,
     setting::Setting,
-    trajectory::Trajectory,
+    trajectory::{Ground, Trajectory},
     truth::Truth,
 };
 
@@ -58,6 +60,32 @@ impl Recipe {
         self.check()?;
         let takes = Takes::without_light(self);
         takes.write(&takes.plan(&self.effects), &self.effects, folder)
+    }
+
+    /// Writes a sequence folder of pictures that the recipe's camera takes in its world at these places, where its robot need not have
+    /// passed: the camera stands still, upright, as high and pitched as the robot carries it at rest. There is no odometry.
+    ///
+    /// # Panics
+    ///
+    /// Panics if there are no places.
+    pub fn visit(&self, places: &[Pose2], folder: &Path) -> Result<Sequence, Error> {
+        assert!(!places.is_empty(), "a visit needs a place");
+        self.check()?;
+        let takes = Takes::without_light(self);
+        let mut plan = takes.plan(&self.effects);
+        plan.clock = Clock::of_pictures(takes.setting.rate_hz, places.len(), &plan.all);
+        let ground =
+            |place: &Pose2| Ground { position: DVec2::new(place.x_m, place.y_m), yaw_rad: place.yaw_rad };
+        let places: Vec<Ground> = places.iter().map(ground).collect();
+        // What stands in the hall stands clear of the robot's own path.
+        let stage = takes.stage(&plan);
+        let visit = Takes { trajectory: takes.trajectory.through(&places, plan.clock.period_s()), ..takes };
+        let mut sequence = visit.write_with(&plan, Some(&stage), folder)?;
+        sequence.name.push_str("-visited");
+        sequence.start = None;
+        sequence.frames.iter_mut().for_each(|frame| frame.odometry = None);
+        sequence.write(folder)?;
+        Ok(Sequence::open(folder)?)
     }
 
     /// Takes the pictures of the recipe's world, with nothing hidden and not yet developed, for several recordings. They
@@ -140,14 +168,24 @@ impl Takes {
         let is_new = self.recipe.world == World::Standard && !effects.is_empty();
         let needs_rays = is_new || effects.iter().any(|effect| self.needs_rays(effect));
         let keeps = !self.light.is_empty() && !needs_rays;
+        let stage = (!keeps).then(|| self.stage(plan));
+        self.write_with(plan, stage.as_ref(), folder)
+    }
+
+    /// Writes a sequence folder of pictures taken on this stage, or, without one, of the light there is.
+    fn write_with(
+        &self,
+        plan: &Plan,
+        stage: Option<&(Scene, Exposer)>,
+        folder: &Path,
+    ) -> Result<Sequence, Error> {
         let images = folder.join("images");
         fs::create_dir_all(&images).map_err(|source| Error::Unwritable { path: images.clone(), source })?;
-        let stage = (!keeps).then(|| self.stage(plan));
         let film = self.film(plan);
         let ending = self.setting.storage.ending();
         (0..plan.clock.frames()).into_par_iter().try_for_each(|frame| {
             let take = plan.clock.take_of(frame);
-            let fresh = stage.as_ref().map(|(scene, exposer)| self.expose(plan, scene, exposer, take));
+            let fresh = stage.map(|(scene, exposer)| self.expose(plan, scene, exposer, take));
             let light = fresh.as_ref().unwrap_or_else(|| &self.light[take]);
             let noise = &mut Random::stream(self.recipe.seed, "noise", take as u64);
             let picture = film.develop(light, take, plan.clock.nominal_s(take), noise);

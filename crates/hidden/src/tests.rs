@@ -2,8 +2,10 @@
 
 use glam::{DMat3, DQuat, DVec2, DVec3, Mat3, Vec3};
 
+use reality_sim_core::pose::{Pose2, wrap_angle};
+
 use crate::{
-    Hidden, Recipe,
+    Hidden, Recipe, Walk,
     exposure::Exposer,
     lens::Bend,
     nominal::Nominal,
@@ -191,4 +193,36 @@ fn a_hidden_mount_turns_and_raises_the_camera() {
         .filter_map(|(center, across)| edge_error_px(&pitched, &light[1], station, center, across))
         .collect();
     assert!(errors.len() > 10 && errors.iter().all(|error| error.abs() < 0.3), "{errors:?}");
+}
+
+#[test]
+fn exact_reference_poses_are_the_true_ones() {
+    let recipe = Recipe { frames: 3, size: [32, 24], exact_references: true, ..Recipe::new(5) };
+    let folder = tempfile::tempdir().unwrap();
+    let sequence = recipe.record(folder.path()).unwrap();
+    let trajectory = recipe.trajectory(&recipe.setting());
+    for frame in &sequence.frames {
+        let (pose, station) = (frame.reference_pose.unwrap(), trajectory.station(frame.timestamp_s));
+        assert!((pose.position_in_world() - station.position).length() < 1e-6);
+    }
+}
+
+#[test]
+fn a_visited_place_looks_as_it_does_to_the_robot_that_stands_there() {
+    let recipe =
+        Recipe { frames: 1, size: [64, 48], walk: Walk::Standing, exact_references: true, ..Recipe::new(6) };
+    let (robot, visitor) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let stands = recipe.record(robot.path()).unwrap();
+    let place = stands.frames[0].reference_pose.unwrap().planar();
+    let elsewhere = Pose2::new(-place.x_m, 0.5, place.yaw_rad + 1.0);
+    let visits = recipe.visit(&[place, elsewhere, place], visitor.path()).unwrap();
+    for (frame, expected) in visits.frames.iter().zip([place, elsewhere, place]) {
+        let found = frame.reference_pose.unwrap().planar();
+        assert!((found.x_m - expected.x_m).abs() < 1e-6 && (found.y_m - expected.y_m).abs() < 1e-6);
+        assert!(wrap_angle(found.yaw_rad - expected.yaw_rad).abs() < 1e-6);
+        assert_eq!(frame.odometry, None);
+    }
+    // The noise of the first pictures is the same.
+    assert_eq!(visits.load_image(0).unwrap(), stands.load_image(0).unwrap());
+    assert_ne!(visits.load_image(1).unwrap(), stands.load_image(0).unwrap());
 }

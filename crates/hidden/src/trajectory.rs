@@ -104,6 +104,23 @@ impl Trajectory {
         Self { points, height_m, pitch_rad, gait, sway, phase_rad }
     }
 
+    /// Returns the path of a camera that is put at one place after the other, for a period each, seconds: it stands still there, as
+    /// high and pitched as this one at rest. The middle of the period of the first place is one period after 0.
+    pub fn through(&self, places: &[Ground], period_s: f64) -> Self {
+        let place_at = |step: usize| {
+            let time_s = step as f64 * STEP_S - LEAD_S;
+            let number = (time_s / period_s).round() as usize;
+            places[number.clamp(1, places.len()) - 1]
+        };
+        let count = (((places.len() + 1) as f64 * period_s + 2.0 * LEAD_S) / STEP_S) as usize;
+        Self {
+            points: (0..count).map(place_at).collect(),
+            sway: 0.0,
+            gait: Gait { scan_rad: 0.0, ..self.gait },
+            ..*self
+        }
+    }
+
     /// Returns the pose on the ground at a time, seconds.
     pub fn ground(&self, time_s: f64) -> Ground {
         let place = ((time_s + LEAD_S) / STEP_S).clamp(0.0, (self.points.len() - 1) as f64);

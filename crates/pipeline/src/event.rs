@@ -41,6 +41,29 @@ pub enum Event {
         /// Poses of the recording.
         poses: FoundPoses,
     },
+    /// The images of a database start to be added.
+    CopyingStarted {
+        /// Number of the database in the plan, from 0.
+        database: usize,
+        /// Number of its images.
+        images: usize,
+    },
+    /// Images of a database have been added, or were there.
+    Copied {
+        /// Number of the database.
+        database: usize,
+        /// Number of images so far.
+        done: usize,
+        /// Number of the database's images.
+        of: usize,
+    },
+    /// All images of a database are there.
+    DatabaseAdded {
+        /// Number of the database.
+        database: usize,
+        /// Numbers of its images by what happened to them.
+        report: IngestReport,
+    },
     /// Storage of a recording with this many frames starts.
     StorageStarted {
         /// Number of the recording.

@@ -2,7 +2,7 @@
 //!
 //! | type | purpose |
 //! |---|---|
-//! | [`Plan`] | which recordings, where their poses come from, and what is done with them |
+//! | [`Plan`] | which recordings and databases, where their poses come from, and what is done with them |
 //! | [`Pipeline`] | a running plan: an iterator of [`Event`]s, cancelled by dropping it |
 //! | [`PoseChoice`], [`FilterPlan`] | where poses come from |
 //!

@@ -10,7 +10,7 @@ use crate::{
     outbox::{Outbox, Stop},
     plan::Plan,
     poses::PoseFinder,
-    storage::{store, store_clean_stage, store_hall},
+    storage::{store, store_clean_stage, store_hall, store_images_of},
 };
 
 /// Largest number of events that wait for the listener.
@@ -46,6 +46,9 @@ fn work(plan: &Plan, outbox: &Outbox) -> Result<(), Stop> {
         // Whether the file can be a database is checked before the filter works for an hour.
         drop(Database::create_or_open(path)?);
     }
+    for path in &plan.databases {
+        drop(Database::open(path)?);
+    }
     if plan.database.is_some() {
         plan.recordings.iter().try_for_each(|sequence| sequence.check_pictures())?;
     }
@@ -64,6 +67,9 @@ fn work(plan: &Plan, outbox: &Outbox) -> Result<(), Stop> {
 
 fn store_all(plan: &Plan, path: &Path, poses: &[FoundPoses], outbox: &Outbox) -> Result<(), Stop> {
     let mut database = Database::create_or_open(path)?;
+    for (number, path) in plan.databases.iter().enumerate() {
+        store_images_of(&mut database, number, &Database::open(path)?, outbox)?;
+    }
     for (recording, (sequence, poses)) in plan.recordings.iter().zip(poses).enumerate() {
         store(&mut database, recording, sequence, poses, outbox)?;
     }

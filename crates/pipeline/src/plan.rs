@@ -19,7 +19,9 @@ use reality_sim_core::{
 pub struct Plan {
     /// Recordings, in the order in which they are stored.
     pub recordings: Vec<Arc<Sequence>>,
-    /// Source of their poses.
+    /// Databases whose images are added before the recordings, in this order.
+    pub databases: Vec<PathBuf>,
+    /// Source of the recordings' poses.
     pub poses: PoseChoice,
     /// Configuration of the filter, where it is used.
     pub filter: FilterPlan,
@@ -88,6 +90,7 @@ impl Plan {
         let filter = FilterPlan::default();
         Self {
             recordings,
+            databases: Vec::new(),
             poses,
             filter,
             database: None,
@@ -95,6 +98,11 @@ impl Plan {
             finds_clean_stage: true,
             hold_back: None,
         }
+    }
+
+    /// Sets the databases whose images are added.
+    pub fn with_databases(self, databases: Vec<PathBuf>) -> Self {
+        Self { databases, ..self }
     }
 
     /// Sets the configuration of the filter.

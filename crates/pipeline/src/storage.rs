@@ -16,6 +16,26 @@ use crate::{
     outbox::{Outbox, Stop},
 };
 
+/// Adds the images of another database.
+pub(crate) fn store_images_of(
+    database: &mut Database,
+    number: usize,
+    other: &Database,
+    outbox: &Outbox,
+) -> Result<(), Stop> {
+    let of = other.images_by_field()?.into_values().sum();
+    outbox.send(Event::CopyingStarted { database: number, images: of })?;
+    let mut is_wanted = true;
+    let report = database.copy_from(other, None, |done| {
+        is_wanted = outbox.send(Event::Copied { database: number, done, of }).is_ok();
+        is_wanted
+    })?;
+    if !is_wanted {
+        return Err(Stop::Cancelled);
+    }
+    outbox.send(Event::DatabaseAdded { database: number, report })
+}
+
 /// Stores a recording with its poses.
 pub(crate) fn store(
     database: &mut Database,

@@ -5,6 +5,7 @@ use std::{path::PathBuf, sync::Arc};
 use pyo3::prelude::*;
 use reality_sim::{
     LocalizerConfig, ObservationKind, Sequence,
+    db::Database,
     pipeline::{Event, FilterPlan, Plan, PoseChoice},
 };
 
@@ -26,6 +27,8 @@ pub fn build(
 ) -> PyResult<usize> {
     py.detach(|| {
         let open = |folder: &PathBuf| Sequence::open(folder).map(Arc::new).map_err(failed);
+        let (databases, recordings): (Vec<_>, Vec<_>) =
+            recordings.into_iter().partition(|path| Database::is_at(path));
         let recordings = recordings.iter().map(open).collect::<PyResult<Vec<_>>>()?;
         let poses = match poses {
             Some(file) => PoseChoice::File(file),
@@ -36,6 +39,7 @@ pub fn build(
             .with_config(LocalizerConfig::new(ObservationKind::Contrast).with_seed(seed))
             .with_program(concat!("reality_sim for Python ", env!("CARGO_PKG_VERSION")));
         let plan = Plan::new(recordings, poses)
+            .with_databases(databases)
             .with_filter(filter)
             .with_database(&out)
             .with_hall(hall)

@@ -161,12 +161,15 @@ fn places(camera: &KernelCamera, [x, y, z]: &[Lanes; 3], inverse: &Lanes, cos: &
     let (mut u, mut v) = ([0.0_f32; LANES], [0.0_f32; LANES]);
     match &camera.lens {
         Lens::Radial { coefficients, scale, offset } => {
+            let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10] = *coefficients;
             for i in 0..LANES {
                 let t = cos[i] * scale + offset;
-                let mut h = coefficients[coefficients.len() - 1];
-                for &c in coefficients[..coefficients.len() - 1].iter().rev() {
-                    h = h * t + c;
-                }
+                // Estrin's scheme: Horner's makes every step wait for the one before, and scoring takes a fifth longer.
+                let (t2, t4) = (t * t, t * t * (t * t));
+                let low = (c0 + c1 * t) + (c2 + c3 * t) * t2;
+                let middle = (c4 + c5 * t) + (c6 + c7 * t) * t2;
+                let high = (c8 + c9 * t) + c10 * t2;
+                let h = low + t4 * (middle + t4 * high);
                 let s = h * inverse[i];
                 u[i] = camera.fx * (x[i] * s) + camera.cx;
                 v[i] = camera.fy * (y[i] * s) + camera.cy;

@@ -126,13 +126,8 @@ pub(crate) fn sample_block(texture: &Texture, pixels: &Pixels) -> Lanes {
         let (column, row) = (column.to_bits() & INTEGER_BITS, row.to_bits() & INTEGER_BITS);
         index[i] = row.wrapping_mul(texture.width).wrapping_add(column);
     }
-    // The number of texels is a power of two: a mask costs less than a bounds test for each load, and makes the index
-    // of a point that is not seen harmless.
-    let mask = texture.texels.len() - 1;
-    let mut texel = [0u32; LANES];
-    for i in 0..LANES {
-        texel[i] = texture.texels[index[i] as usize & mask];
-    }
+    // The index of a point that is not seen may be any number; what is read there is not used.
+    let texel = texture.gather(index);
     let mut value = [0.0_f32; LANES];
     for i in 0..LANES {
         let p00 = (texel[i] & 255) as f32;

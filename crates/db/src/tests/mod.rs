@@ -1,6 +1,7 @@
 //! Round trips of the demonstration walk through the database, and the faults that can occur.
 
 mod cleaning;
+mod copying;
 mod hostile;
 mod ingesting;
 mod inserting;

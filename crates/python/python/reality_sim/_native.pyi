@@ -39,7 +39,7 @@ def build(
     """Stores recordings in a database by pose; one that is there is extended. Returns the number of its pictures.
 
     Args:
-      recordings: folders of sequences.
+      recordings: folders of sequences, and databases, whose pictures are added.
       out: file of the database.
       poses: TUM file with the poses of the only recording.
       tag: whether the particle filter finds the poses even where a recording has reference poses.
