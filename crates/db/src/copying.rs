@@ -40,7 +40,8 @@ impl Database {
             let images = other.read(|transaction| batch(transaction, field_id, last))?;
             let Some(end) = images.last() else { break };
             last = end.record.id;
-            let recordings = other.read(|_| origins.recordings(&images))?;
+            let recordings =
+                origins.recordings(&images).map_err(|fault| DbError::new(other.path(), fault))?;
             self.write(|transaction| {
                 let mut shared = BTreeMap::new();
                 for (ids, recording) in &recordings {
@@ -121,14 +122,14 @@ impl Database {
 type OriginIds = [i64; 4];
 
 /// Image with everything that is stored of it.
-struct StoredImage {
+struct CopiedImage {
     record: ImageRecord,
     details: ImageDetails,
     estimate: PoseEstimate,
     bytes: Vec<u8>,
 }
 
-impl StoredImage {
+impl CopiedImage {
     /// Reads an image from [`IMAGE_COLUMNS`], [`DETAIL_COLUMNS`] and its bytes.
     fn from_row(row: &Row<'_>) -> Result<Self, DbFault> {
         let record = ImageRecord::from_row(row)?;
@@ -164,7 +165,7 @@ fn batch(
     transaction: &Transaction<'_>,
     field_id: Option<i64>,
     last: i64,
-) -> Result<Vec<StoredImage>, DbFault> {
+) -> Result<Vec<CopiedImage>, DbFault> {
     let query = format!(
         "SELECT {IMAGE_COLUMNS}, {DETAIL_COLUMNS}, bytes FROM images LEFT JOIN image_bytes ON image_id = id
             WHERE id > ?1 AND (?2 IS NULL OR field_id = ?2) ORDER BY id"
@@ -176,7 +177,7 @@ fn batch(
         && held_bytes < BATCH_BYTES
         && let Some(row) = rows.next()?
     {
-        let image = StoredImage::from_row(row)?;
+        let image = CopiedImage::from_row(row)?;
         held_bytes += image.bytes.len();
         images.push(image);
     }
@@ -213,7 +214,7 @@ impl Origins {
     }
 
     /// Returns what these images belong to.
-    fn recordings(&self, images: &[StoredImage]) -> Result<BTreeMap<OriginIds, Recording>, DbFault> {
+    fn recordings(&self, images: &[CopiedImage]) -> Result<BTreeMap<OriginIds, Recording>, DbFault> {
         let mut recordings = BTreeMap::new();
         for image in images {
             if let Entry::Vacant(place) = recordings.entry(image.origin()) {
@@ -223,7 +224,7 @@ impl Origins {
         Ok(recordings)
     }
 
-    fn recording(&self, image: &StoredImage) -> Result<Recording, DbFault> {
+    fn recording(&self, image: &CopiedImage) -> Result<Recording, DbFault> {
         let [sequence_id, camera_id, field_id, source_id] = image.origin();
         let bad = |problem| DbFault::BadRow { table: "image", id: image.record.id, problem };
         let (name, first_frame) = self.sequences.get(&sequence_id).ok_or(bad("its sequence is missing"))?;
