@@ -1,8 +1,7 @@
 //! Warping by cells: inside one surface, the map from the picture that is drawn to a recorded one is smooth, so it is computed
 //! at sixteen pixels of every cell of 16 × 16, and interpolated between them.
 //!
-//! The map is a bicubic polynomial through four by four nodes. A source's third differences tell whether that is good
-//! enough. Where borders of surfaces cross a cell, it has one map for each of them. Where maps are no polynomials, and wherever
+//! The map is a bicubic polynomial through four by four nodes. Sixteen pixels in between tell whether that is good enough. Where borders of surfaces cross a cell, it has one map for each of them. Where maps are no polynomials, and wherever
 //! something may hide part of a cell from a source, every pixel is computed as in [`super::blend`], of which this is a faster
 //! form.
 
@@ -10,7 +9,7 @@ use super::{
     BlendWeights, MAX_SOURCES, Source, Target,
     blend::{draw_bands, form, say},
     faces::{Faces, MOST_FACES, on_face},
-    kernel::{ProxyPoints, proxy_points},
+    kernel::{ProxyPoints, directions, proxy_points},
     mix::{Opinions, SETTLED},
     origin::Origin,
     rays::RayBlock,
@@ -101,22 +100,25 @@ impl<'a> Cell<'a> {
         let mut cell = Self { target, sources, weights, column, top, faces: None, views };
         let is_whole = rows == CELL && (column + 1) * CELL <= target.rays.width as usize;
         if is_whole {
-            let rays = node_rays(target, column, top);
-            cell.ask_nodes(&proxy_points(target.proxy, &target.placement, &rays));
+            let nodes = rays_of(target, column, top, |lane| [NODES[lane / 4], NODES[lane % 4]]);
+            let checks = rays_of(target, column, top, smooth::checked_pixel);
+            cell.ask_nodes(&proxy_points(target.proxy, &target.placement, &nodes), &checks);
         }
         cell
     }
 
     #[inline(always)]
-    fn ask_nodes(&mut self, nodes: &ProxyPoints) {
+    fn ask_nodes(&mut self, nodes: &ProxyPoints, checks: &RayBlock) {
         self.faces = Faces::new(self.target, nodes);
         let Some(faces) = &self.faces else { return };
+        let checks = directions(&self.target.placement, checks);
         for (views, &face) in self.views.iter_mut().zip(faces.all()) {
-            let Some(points) = on_face(self.target.proxy, &self.target.placement, nodes, face) else {
+            let on_face = |directions| on_face(self.target.proxy, &self.target.placement, directions, face);
+            let (Some(points), Some(checks)) = (on_face(&nodes.direction), on_face(&checks)) else {
                 continue;
             };
             for (view, source) in views.iter_mut().zip(self.sources) {
-                *view = smooth::view(self.target, source, self.weights, &points);
+                *view = smooth::view(self.target, source, self.weights, &points, &checks);
             }
         }
     }
@@ -258,19 +260,18 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// Returns the rays of a cell's nodes, row by row.
+/// Returns the rays of sixteen of a cell's pixels, given by row and column in it.
 #[inline(always)]
-fn node_rays(target: &Target, column: usize, top: usize) -> RayBlock {
-    let mut nodes = [[0.0; LANES]; 3];
-    for (j, v) in NODES.into_iter().enumerate() {
-        let block = &target.rays.row(top + v)[column];
-        for (i, u) in NODES.into_iter().enumerate() {
-            for axis in 0..3 {
-                nodes[axis][4 * j + i] = block[axis][u];
-            }
+fn rays_of(target: &Target, column: usize, top: usize, pixel: impl Fn(usize) -> [usize; 2]) -> RayBlock {
+    let mut rays = [[0.0; LANES]; 3];
+    for lane in 0..LANES {
+        let [row, u] = pixel(lane);
+        let block = &target.rays.row(top + row)[column];
+        for axis in 0..3 {
+            rays[axis][lane] = block[axis][u];
         }
     }
-    nodes
+    rays
 }
 
 #[cfg(test)]

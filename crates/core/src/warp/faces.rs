@@ -22,13 +22,16 @@ pub(crate) struct Faces {
 }
 
 impl Faces {
-    /// Finds the surfaces that the nodes see, and the goals that may stand between them; `None` if there are too many, or if a
-    /// node sees nothing.
+    /// Finds the surfaces that the nodes see, and those that may lie between them; `None` if there are too many, if a node sees
+    /// nothing, or if what lies behind a goal is seen by no node.
     #[inline(always)]
     pub fn new(target: &Target, nodes: &ProxyPoints) -> Option<Self> {
         let mut faces = Self { numbers: [nodes.surface[0]; MOST_FACES], count: 1 };
         for number in nodes.surface {
             faces.add(number)?;
+        }
+        if let [side] = *faces.all() {
+            faces.add_beside(target.proxy, nodes, side)?;
         }
         for (index, billboard) in target.proxy.billboards.iter().enumerate() {
             let x = billboard.x_m as f32 - target.placement.position_in_world[0];
@@ -38,7 +41,27 @@ impl Faces {
                 Crossing::EdgeOn => return None,
             }
         }
-        Some(faces)
+        let is_goal_alone = faces.count == 1 && nodes.surface[0] >= FIRST_BILLBOARD as f32;
+        (!is_goal_alone).then_some(faces)
+    }
+
+    /// Adds the sides of the box that meet this one within a cell all of whose nodes see it: a corner may lie between the nodes.
+    #[inline(always)]
+    fn add_beside(&mut self, proxy: &ProxyGeometry, nodes: &ProxyPoints, side: f32) -> Option<()> {
+        for axis in 0..3 {
+            let [least, most] = range(&nodes.place[axis]);
+            let is_own = side as usize % 3 == axis;
+            if side as usize >= FIRST_BILLBOARD || is_own {
+                continue;
+            }
+            if least < proxy.min_in_world[axis] as f32 {
+                self.add(axis as f32)?;
+            }
+            if most > proxy.max_in_world[axis] as f32 {
+                self.add((axis + 3) as f32)?;
+            }
+        }
+        Some(())
     }
 
     #[inline(always)]
@@ -100,12 +123,12 @@ fn crossing(edges: &Edges, x: f32, eye: &Placement, nodes: &ProxyPoints) -> Cros
     }
 }
 
-/// Returns where the nodes' rays meet the plane of a surface, beyond its borders too; `None` if one of them does not.
+/// Returns where rays in these directions, world axes, meet the plane of a surface, beyond its borders too; `None` if one of them does not.
 #[inline(always)]
 pub(crate) fn on_face(
     proxy: &ProxyGeometry,
     eye: &Placement,
-    nodes: &ProxyPoints,
+    direction: &[Lanes; 3],
     face: f32,
 ) -> Option<ProxyPoints> {
     let number = face as usize;
@@ -115,19 +138,18 @@ pub(crate) fn on_face(
         _ => (0, proxy.billboards[number - FIRST_BILLBOARD].x_m),
     };
     let ahead = at as f32 - eye.position_in_world[axis];
-    let mut points = *nodes;
+    let (mut distance, mut place) = ([0.0_f32; LANES], [[0.0_f32; LANES]; 3]);
     let mut met = 0u32;
     for i in 0..LANES {
-        points.distance[i] = ahead / nodes.direction[axis][i];
-        met += u32::from(points.distance[i] > 0.0 && points.distance[i] < f32::INFINITY);
+        distance[i] = ahead / direction[axis][i];
+        met += u32::from(distance[i] > 0.0 && distance[i] < f32::INFINITY);
     }
     for axis in 0..3 {
         for i in 0..LANES {
-            points.place[axis][i] =
-                eye.position_in_world[axis] + points.distance[i] * nodes.direction[axis][i];
+            place[axis][i] = eye.position_in_world[axis] + distance[i] * direction[axis][i];
         }
     }
-    points.on_ground = [if face == GROUND { 1.0 } else { 0.0 }; LANES];
-    points.surface = [face; LANES];
+    let on_ground = [if face == GROUND { 1.0 } else { 0.0 }; LANES];
+    let points = ProxyPoints { place, direction: *direction, distance, on_ground, surface: [face; LANES] };
     (met as usize == LANES).then_some(points)
 }

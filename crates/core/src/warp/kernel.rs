@@ -62,16 +62,14 @@ pub(crate) struct ProxyPoints {
 /// Follows rays from a camera inside the proxy geometry.
 #[inline(always)]
 pub(crate) fn proxy_points(proxy: &ProxyGeometry, from: &Placement, rays: &RayBlock) -> ProxyPoints {
-    let axes = &from.axes_in_world;
-    let mut direction = [[0.0_f32; LANES]; 3];
+    let direction = directions(from, rays);
     let mut distance = [f32::INFINITY; LANES];
     let mut surface = [f32::NAN; LANES];
     for axis in 0..3 {
         let low = proxy.min_in_world[axis] as f32 - from.position_in_world[axis];
         let high = proxy.max_in_world[axis] as f32 - from.position_in_world[axis];
         for i in 0..LANES {
-            let d = axes[0][axis] * rays[0][i] + axes[1][axis] * rays[1][i] + axes[2][axis] * rays[2][i];
-            direction[axis][i] = d;
+            let d = direction[axis][i];
             let end = if d < 0.0 { low } else { high };
             let to_wall = end / d;
             let is_nearer = to_wall < distance[i];
@@ -107,6 +105,20 @@ pub(crate) fn proxy_points(proxy: &ProxyGeometry, from: &Placement, rays: &RayBl
         on_ground[i] = if surface[i] == GROUND { 1.0 } else { 0.0 };
     }
     ProxyPoints { place, direction, distance, on_ground, surface }
+}
+
+/// Returns the directions of rays, world axes.
+#[inline(always)]
+pub(crate) fn directions(from: &Placement, rays: &RayBlock) -> [Lanes; 3] {
+    let axes = &from.axes_in_world;
+    let mut direction = [[0.0_f32; LANES]; 3];
+    for axis in 0..3 {
+        for i in 0..LANES {
+            direction[axis][i] =
+                axes[0][axis] * rays[0][i] + axes[1][axis] * rays[1][i] + axes[2][axis] * rays[2][i];
+        }
+    }
+    direction
 }
 
 /// Projects the points into another camera; `None` if it sees none of them.
