@@ -4,16 +4,14 @@
 //! [`ProxyGeometry`]. Coordinate descent varies one dimension after the other to minimise the mean difference, first in
 //! coarse steps, then in finer ones. Differences are clipped, so that objects in front of the walls do not decide.
 
-use std::sync::Arc;
-
-use image::imageops::{FilterType, resize};
 use rayon::prelude::*;
-use reality_sim_core::{
-    camera::KernelCamera,
-    warp::{BlendWeights, Hall, Look, Picture, Placement, ProxyGeometry, RayTable, Source, Target},
-};
+use reality_sim_core::warp::{BlendWeights, Hall, Look, ProxyGeometry, Source, Target};
 
-use crate::{Archive, SynthesisError, select::select, smaller_camera::smaller};
+use crate::{
+    Archive, SynthesisError,
+    select::select,
+    shrunk::{ShrunkCameras, ShrunkPicture},
+};
 
 /// Number of pictures used of a recording.
 const PICTURES: usize = 120;
@@ -23,8 +21,6 @@ const TARGET_STEP: usize = 2;
 const PARTNERS: usize = 3;
 /// Smallest distance to a partner, metres: from a single place, walls at all distances look alike.
 const BASELINE_M: f64 = 0.5;
-/// Largest width at which pictures are compared, pixels: smaller pictures have less noise and need less memory.
-const WIDTH: u32 = 320;
 /// Value at which differences of colour are clipped, grey levels.
 const CUT: f32 = 40.0;
 /// Smallest number of compared places for a measurement.
@@ -44,7 +40,8 @@ const MOST_M: f64 = 12.0;
 /// Measures the hall around an archive's field. `None` if the pictures are too few, or all were taken at one place.
 pub fn measure_hall(archive: &Archive) -> Result<Option<Hall>, SynthesisError> {
     let usual = Hall::usual(archive.field());
-    let pairs = PicturePairs::new(archive, &usual)?;
+    let cameras = ShrunkCameras::new(archive);
+    let pairs = PicturePairs::new(archive, &cameras, &usual)?;
     if pairs.difference(&usual).places < LEAST_PLACES {
         return Ok(None);
     }
@@ -69,20 +66,6 @@ const MEASURES: [fn(&mut Hall) -> &mut f64; 6] = [
     |hall| &mut hall.goal_depth_m,
 ];
 
-/// Small picture with its camera and pose.
-struct SmallPicture {
-    camera: KernelCamera,
-    rays: RayTable,
-    placement: Placement,
-    picture: Arc<Picture>,
-}
-
-impl SmallPicture {
-    fn source(&self) -> Source<'_> {
-        Source { camera: &self.camera, placement: self.placement, picture: &self.picture, gain: [1.0; 3] }
-    }
-}
-
 /// Difference between pictures.
 struct Difference {
     /// Mean difference, grey levels.
@@ -94,17 +77,17 @@ struct Difference {
 /// Pictures spread over a recording, and the pairs that are compared.
 struct PicturePairs<'a> {
     archive: &'a Archive,
-    pictures: Vec<SmallPicture>,
+    pictures: Vec<ShrunkPicture<'a>>,
     /// Pairs of a picture and one that shows much of the same from elsewhere.
     pairs: Vec<[usize; 2]>,
 }
 
 impl<'a> PicturePairs<'a> {
-    fn new(archive: &'a Archive, usual: &Hall) -> Result<Self, SynthesisError> {
+    fn new(archive: &'a Archive, cameras: &'a ShrunkCameras, usual: &Hall) -> Result<Self, SynthesisError> {
         let (count, wanted) = (archive.images().len(), archive.images().len().min(PICTURES));
         let chosen =
-            (0..wanted).into_par_iter().with_max_len(1).map(|i| small_picture(archive, i * count / wanted));
-        let pictures: Vec<SmallPicture> = chosen.collect::<Result<_, _>>()?;
+            (0..wanted).into_par_iter().with_max_len(1).map(|i| cameras.read(archive, i * count / wanted));
+        let pictures: Vec<ShrunkPicture> = chosen.collect::<Result<_, _>>()?;
         let proxy = ProxyGeometry::new(usual, archive.field());
         let targets = (0..pictures.len()).step_by(TARGET_STEP);
         let pairs = targets.flat_map(|target| partners(&pictures, target, &proxy)).collect();
@@ -116,7 +99,7 @@ impl<'a> PicturePairs<'a> {
         let proxy = ProxyGeometry::new(hall, self.archive.field());
         let sums = self.pairs.par_iter().map(|&[target, partner]| {
             let [own, other] = [target, partner].map(|index| &self.pictures[index]);
-            let target = Target { rays: &own.rays, placement: own.placement, proxy: &proxy };
+            let target = Target { rays: &own.camera.rays, placement: own.placement, proxy: &proxy };
             let look = Look::new(&target);
             let colors = look.colors(&own.source()).into_iter().zip(look.colors(&other.source()));
             let differences = colors.filter_map(|(a, b)| Some(color_difference(a?, b?)));
@@ -165,35 +148,17 @@ impl<'a> PicturePairs<'a> {
     }
 }
 
-/// Reads an image at small size. It does not stay in the archive's cache.
-fn small_picture(archive: &Archive, image: usize) -> Result<SmallPicture, SynthesisError> {
-    let record = &archive.images()[image];
-    let picture = archive.database().picture(record.id)?;
-    let camera = archive.camera_of(image as u32);
-    let shrink = f64::from(camera.width.div_ceil(WIDTH));
-    let [width, height] =
-        [camera.width, camera.height].map(|size| (f64::from(size) / shrink).round().max(1.0) as u32);
-    let small = smaller(camera, [width, height]);
-    let picture = if shrink > 1.0 { resize(&picture, width, height, FilterType::Triangle) } else { picture };
-    Ok(SmallPicture {
-        camera: KernelCamera::new(&small),
-        rays: RayTable::new(&small),
-        placement: Placement::new(record.pose),
-        picture: Arc::new(Picture::from(&picture)),
-    })
-}
-
 /// Pairs a picture with those that show much of the same from elsewhere.
-fn partners(pictures: &[SmallPicture], target: usize, proxy: &ProxyGeometry) -> Vec<[usize; 2]> {
+fn partners(pictures: &[ShrunkPicture], target: usize, proxy: &ProxyGeometry) -> Vec<[usize; 2]> {
     let own = &pictures[target];
-    let distance_m = |other: &SmallPicture| {
+    let distance_m = |other: &ShrunkPicture| {
         let [a, b] = [own, other].map(|one| glam::Vec3::from_array(one.placement.position_in_world));
         f64::from(a.distance(b))
     };
     let others: Vec<usize> =
         (0..pictures.len()).filter(|&other| distance_m(&pictures[other]) > BASELINE_M).collect();
     let sources: Vec<Source> = others.iter().map(|&other| pictures[other].source()).collect();
-    let wanted = Target { rays: &own.rays, placement: own.placement, proxy };
+    let wanted = Target { rays: &own.camera.rays, placement: own.placement, proxy };
     let chosen = select(&Look::new(&wanted), &sources, &BlendWeights::default(), PARTNERS);
     chosen.into_iter().map(|index| [target, others[index]]).collect()
 }

@@ -77,7 +77,7 @@ mod quadratic;
 pub mod quality;
 mod reconstruction;
 mod select;
-mod smaller_camera;
+mod shrunk;
 mod synthesizer;
 
 pub use self::{

@@ -1,6 +1,6 @@
 //! Samples along the field's lines: evenly spaced on the ground for scoring, evenly in the picture for measuring.
 
-use glam::{DMat3, DVec2};
+use glam::{DMat3, DVec2, DVec3};
 
 use super::{Curve, FieldDimensions, GoalPost};
 use crate::{camera::Camera, pose::CameraPose};
@@ -84,12 +84,13 @@ pub fn visible_samples(
     let posts: Vec<GoalPost> = field.goals().iter().flat_map(|goal| goal.posts).collect();
     let mut kept: Vec<VisibleSample> = Vec::new();
     for &sample in samples {
-        let Some(visible) = placed.see(sample, field.line_width_m) else { continue };
-        let too_dense = kept.last().is_some_and(|last| {
-            last.sample.curve == sample.curve && last.pixel.distance(visible.pixel) < spacing_px
-        });
+        let Ok(pixel) = camera.project(placed.in_camera(sample.point_in_world)) else { continue };
+        // Most samples are too dense: this is asked first.
+        let too_dense = kept
+            .last()
+            .is_some_and(|last| last.sample.curve == sample.curve && last.pixel.distance(pixel) < spacing_px);
         if !too_dense && !posts.iter().any(|post| hides(post, pose, sample.point_in_world)) {
-            kept.push(visible);
+            kept.extend(placed.see(sample, field.line_width_m));
         }
     }
     kept
@@ -103,14 +104,18 @@ struct PlacedCamera<'a> {
 }
 
 impl PlacedCamera<'_> {
+    /// Returns a point on the ground in the camera's axes, metres.
+    fn in_camera(&self, point_in_world: DVec2) -> DVec3 {
+        self.camera_from_world * (point_in_world.extend(0.0) - self.pose.position_in_world())
+    }
+
     /// Projects a sample of a line of this width; `None` if it is out of view.
     fn see(&self, sample: LineSample, line_width_m: f64) -> Option<VisibleSample> {
-        let in_camera =
-            |point: DVec2| self.camera_from_world * (point.extend(0.0) - self.pose.position_in_world());
-        let (pixel, [du, dv]) = self.camera.project_with_gradients(in_camera(sample.point_in_world)).ok()?;
+        let (pixel, [du, dv]) =
+            self.camera.project_with_gradients(self.in_camera(sample.point_in_world)).ok()?;
         let half_width = sample.normal_in_world() * (line_width_m / 2.0);
-        let left = self.camera.project(in_camera(sample.point_in_world + half_width)).ok()?;
-        let right = self.camera.project(in_camera(sample.point_in_world - half_width)).ok()?;
+        let left = self.camera.project(self.in_camera(sample.point_in_world + half_width)).ok()?;
+        let right = self.camera.project(self.in_camera(sample.point_in_world - half_width)).ok()?;
         let tangent_in_camera = self.camera_from_world * sample.tangent_in_world.extend(0.0);
         let along = DVec2::new(du.dot(tangent_in_camera), dv.dot(tangent_in_camera)).try_normalize()?;
         let across = along.perp() * along.perp().dot(left - right).signum();

@@ -64,10 +64,11 @@ impl Texture {
     pub fn sample(&self, u: f32, v: f32) -> f32 {
         let u = u.clamp(0.0, (self.width - 1) as f32);
         let v = v.clamp(0.0, (self.height - 1) as f32);
-        let (column, row) = (u.floor(), v.floor());
-        let texel = self.texels[row as usize * self.width as usize + column as usize];
+        // Neither is negative: cutting off their fractions is cheaper than rounding down, for which some processors have no instruction.
+        let (column, row) = (u as usize, v as usize);
+        let texel = self.texels[row * self.width as usize + column];
         let [p00, p10, p01, p11] = texel.to_le_bytes().map(f32::from);
-        let (fu, fv) = (u - column, v - row);
+        let (fu, fv) = (u - column as f32, v - row as f32);
         let (top, bottom) = (p00 + fu * (p10 - p00), p01 + fu * (p11 - p01));
         top + fv * (bottom - top)
     }

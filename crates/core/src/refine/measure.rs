@@ -36,7 +36,7 @@ pub fn measure_offsets(
     samples: &[VisibleSample],
     config: MeasureConfig,
 ) -> Vec<LineOffset> {
-    let mut profile = Vec::new();
+    let mut profile = Profile::default();
     samples.iter().filter_map(|sample| measure(texture, sample, config, &mut profile)).collect()
 }
 
@@ -44,20 +44,18 @@ fn measure(
     texture: &Texture,
     sample: &VisibleSample,
     config: MeasureConfig,
-    profile: &mut Vec<f64>,
+    profile: &mut Profile,
 ) -> Option<LineOffset> {
     // Blur by lens and pixels keeps any line from looking narrower than this.
     let half_width_px = sample.half_width_px.max(0.6);
     let flank_px = half_width_px.clamp(1.0, 4.0) + 1.0;
     let reach_px = config.search_px + half_width_px + flank_px;
     let steps = (reach_px / STEP_PX).ceil() as i32;
-    profile.clear();
-    for step in -steps..=steps {
-        profile.push(value_at(texture, sample.pixel + f64::from(step) * STEP_PX * sample.normal_in_image)?);
-    }
+    profile.read(texture, sample, steps)?;
     let place = |index: f64| (index - f64::from(steps)) * STEP_PX;
-    let peak = best_match(profile, half_width_px / STEP_PX, flank_px / STEP_PX, config.min_contrast)?;
-    let (left, right) = edges(profile, peak, half_width_px / STEP_PX, flank_px / STEP_PX)?;
+    let bar = Bar { half_width: half_width_px / STEP_PX, flank: flank_px / STEP_PX };
+    let peak = bar.best_match(profile, config.min_contrast)?;
+    let (left, right) = bar.edges(profile, peak)?;
     let offset_px = 0.5 * (place(left) + place(right));
     let width_ratio = (place(right) - place(left)) / (2.0 * half_width_px);
     // The measured width of a thin line is that of the blur.
@@ -69,62 +67,119 @@ fn measure(
     })
 }
 
-fn value_at(texture: &Texture, pixel: DVec2) -> Option<f64> {
-    let inside = pixel.x >= 0.0
-        && pixel.y >= 0.0
-        && pixel.x <= f64::from(texture.width) - 1.0
-        && pixel.y <= f64::from(texture.height) - 1.0;
-    inside.then(|| f64::from(texture.sample(pixel.x as f32, pixel.y as f32)))
+/// Values across a line, and their sums, which give the mean of any run of them.
+#[derive(Default)]
+struct Profile {
+    values: Vec<f64>,
+    /// Sums of the values before each place.
+    sums: Vec<f64>,
 }
 
-fn mean(profile: &[f64], from: f64, to: f64) -> Option<f64> {
-    let (first, last) = (from.round().max(0.0) as usize, to.round() as usize);
-    let values = profile.get(first..=last)?;
-    Some(values.iter().sum::<f64>() / values.len() as f64)
+/// Run of values, in steps from a place.
+#[derive(Clone, Copy)]
+struct Run {
+    first: isize,
+    last: isize,
 }
 
-/// Returns the index at which a bright bar stands out most from the brighter of its flanks.
-fn best_match(profile: &[f64], half_width: f64, flank: f64, min_contrast: f64) -> Option<usize> {
-    let margin = (half_width + flank).ceil() as usize;
-    let middle = profile.len() / 2;
-    let mut best = None;
-    let mut best_score = min_contrast;
-    for index in margin..profile.len().saturating_sub(margin) {
-        let centre = index as f64;
-        let inside = mean(profile, centre - 0.7 * half_width, centre + 0.7 * half_width)?;
-        let left = mean(profile, centre - half_width - flank, centre - half_width - 0.3 * flank)?;
-        let right = mean(profile, centre + half_width + 0.3 * flank, centre + half_width + flank)?;
-        // Of two similar bars, the nearer one is the line.
-        let nearness = 1.0 - 0.3 * index.abs_diff(middle) as f64 / middle as f64;
-        let contrast = inside - left.max(right);
-        if contrast > min_contrast && contrast * nearness > best_score {
-            (best, best_score) = (Some(index), contrast * nearness);
+impl Profile {
+    /// Reads the values up to this number of steps on either side of a sample; `None` if some lie outside of the picture.
+    fn read(&mut self, texture: &Texture, sample: &VisibleSample, steps: i32) -> Option<()> {
+        let pixel = |step: i32| sample.pixel + f64::from(step) * STEP_PX * sample.normal_in_image;
+        let last = DVec2::new(f64::from(texture.width) - 1.0, f64::from(texture.height) - 1.0);
+        let is_inside = |pixel: DVec2| pixel.cmpge(DVec2::ZERO).all() && pixel.cmple(last).all();
+        if !(is_inside(pixel(-steps)) && is_inside(pixel(steps))) {
+            return None;
         }
+        self.values.clear();
+        self.sums.clear();
+        let mut sum = 0.0;
+        for step in -steps..=steps {
+            let pixel = pixel(step);
+            let value = f64::from(texture.sample(pixel.x as f32, pixel.y as f32));
+            self.values.push(value);
+            self.sums.push(sum);
+            sum += value;
+        }
+        self.sums.push(sum);
+        Some(())
     }
-    best
+
+    /// Returns the mean of a run around a place; `None` if it goes beyond the profile.
+    fn mean(&self, place: usize, run: Run) -> Option<f64> {
+        let first = place.saturating_add_signed(run.first);
+        let end = place.checked_add_signed(run.last + 1)?;
+        Some((self.sums.get(end)? - self.sums.get(first)?) / (end - first) as f64)
+    }
 }
 
-/// Returns the positions on both sides of a bar at which the profile crosses half its height, in steps.
-fn edges(profile: &[f64], peak: usize, half_width: f64, flank: f64) -> Option<(f64, f64)> {
-    let centre = peak as f64;
-    let inside = mean(profile, centre - 0.5 * half_width, centre + 0.5 * half_width)?;
-    let left = mean(profile, centre - half_width - flank, centre - half_width - 0.3 * flank)?;
-    let right = mean(profile, centre + half_width + 0.3 * flank, centre + half_width + flank)?;
-    let reach = (half_width + flank).ceil() as usize;
-    let crossing = |from: usize, to: usize, level: f64| {
-        let (high, low) = (profile[from], profile[to]);
-        (high >= level && low < level).then(|| (high - level) / (high - low))
-    };
-    let below = (0..reach).find_map(|i| {
-        let (from, to) = (peak.checked_sub(i)?, peak.checked_sub(i + 1)?);
-        Some(from as f64 - crossing(from, to, 0.5 * (inside + left))?)
-    })?;
-    let above = (0..reach).find_map(|i| {
-        let (from, to) = (peak + i, peak + i + 1);
-        (to < profile.len()).then_some(())?;
-        Some(from as f64 + crossing(from, to, 0.5 * (inside + right))?)
-    })?;
-    Some((below, above))
+impl Run {
+    /// Rounds the ends to whole steps.
+    fn new(from: f64, to: f64) -> Self {
+        let [first, last] = [from, to].map(|end| (end + 0.5).floor() as isize);
+        Self { first, last }
+    }
+}
+
+/// Bright bar between darker flanks, as a line looks across it, steps of a profile.
+struct Bar {
+    half_width: f64,
+    flank: f64,
+}
+
+impl Bar {
+    /// Returns the runs of a bar's left and right flank. What lies next to the bar is left out: it is blurred.
+    fn flanks(&self) -> [Run; 2] {
+        let (far, near) = (self.half_width + self.flank, self.half_width + 0.3 * self.flank);
+        [Run::new(-far, -near), Run::new(near, far)]
+    }
+
+    /// Returns the run inside of a bar, this part of its width.
+    fn inside(&self, part: f64) -> Run {
+        Run::new(-part * self.half_width, part * self.half_width)
+    }
+
+    /// Returns the place at which the bar stands out most from the brighter of its flanks.
+    fn best_match(&self, profile: &Profile, min_contrast: f64) -> Option<usize> {
+        let margin = (self.half_width + self.flank).ceil() as usize;
+        let (inside, [left, right]) = (self.inside(0.7), self.flanks());
+        let middle = profile.values.len() / 2;
+        let mut best = None;
+        let mut best_score = min_contrast;
+        for place in margin..profile.values.len().saturating_sub(margin) {
+            let mean = |run| profile.mean(place, run);
+            // Of two similar bars, the nearer one is the line.
+            let nearness = 1.0 - 0.3 * place.abs_diff(middle) as f64 / middle as f64;
+            let contrast = mean(inside)? - mean(left)?.max(mean(right)?);
+            if contrast > min_contrast && contrast * nearness > best_score {
+                (best, best_score) = (Some(place), contrast * nearness);
+            }
+        }
+        best
+    }
+
+    /// Returns the places on both sides of a bar at which the profile crosses half its height.
+    fn edges(&self, profile: &Profile, peak: usize) -> Option<(f64, f64)> {
+        let [left, right] = self.flanks();
+        let mean = |run| profile.mean(peak, run);
+        let (inside, left, right) = (mean(self.inside(0.5))?, mean(left)?, mean(right)?);
+        let reach = (self.half_width + self.flank).ceil() as usize;
+        let values = &profile.values;
+        let crossing = |from: usize, to: usize, level: f64| {
+            let (high, low) = (values[from], values[to]);
+            (high >= level && low < level).then(|| (high - level) / (high - low))
+        };
+        let below = (0..reach).find_map(|i| {
+            let (from, to) = (peak.checked_sub(i)?, peak.checked_sub(i + 1)?);
+            Some(from as f64 - crossing(from, to, 0.5 * (inside + left))?)
+        })?;
+        let above = (0..reach).find_map(|i| {
+            let (from, to) = (peak + i, peak + i + 1);
+            (to < values.len()).then_some(())?;
+            Some(from as f64 + crossing(from, to, 0.5 * (inside + right))?)
+        })?;
+        Some((below, above))
+    }
 }
 
 #[cfg(test)]

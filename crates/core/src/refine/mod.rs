@@ -4,6 +4,7 @@ mod calibration;
 mod config;
 mod measure;
 mod picture;
+mod pose_derivatives;
 mod trajectory;
 
 pub use self::{

@@ -8,6 +8,7 @@ use super::{
     calibration::{ByCalibration, CalibrationUncertainty, Coupling, lens_parameters},
     config::RefineConfig,
     measure::{LineOffset, MeasureConfig, measure_offsets},
+    pose_derivatives::PoseDerivatives,
 };
 use crate::{
     camera::Camera,
@@ -199,8 +200,11 @@ impl Refiner {
 
     /// Runs iteratively reweighted Gauss–Newton steps on one set of offsets.
     fn solve(&self, pose: CameraPose, offsets: &[LineOffset], mount: MountPose) -> Option<Step> {
-        let rows: Vec<(Vector6<f64>, LineOffset)> =
-            offsets.iter().filter_map(|offset| Some((self.gradient(pose, offset)?, *offset))).collect();
+        let derivatives = PoseDerivatives::at(pose);
+        let rows: Vec<(Vector6<f64>, LineOffset)> = offsets
+            .iter()
+            .filter_map(|offset| Some((self.gradient(pose, &derivatives, offset)?, *offset)))
+            .collect();
         let prior = self.mount_sigma.information();
         let mount_error = mount_error(pose, mount);
         let mut step = Vector6::zeros();
@@ -249,18 +253,17 @@ impl Refiner {
 
     /// Returns the derivatives of the sample's offset along its normal by the six numbers of the pose, pixels per metre
     /// and per radian.
-    fn gradient(&self, pose: CameraPose, offset: &LineOffset) -> Option<Vector6<f64>> {
+    fn gradient(
+        &self,
+        pose: CameraPose,
+        derivatives: &PoseDerivatives,
+        offset: &LineOffset,
+    ) -> Option<Vector6<f64>> {
         let point = offset.visible.sample.point_in_world.extend(0.0);
         let (_, [du, dv]) = self.camera.project_with_gradients(pose.camera_from_world(point)).ok()?;
         let along_normal: DVec3 =
             offset.visible.normal_in_image.x * du + offset.visible.normal_in_image.y * dv;
-        Some(Vector6::from_fn(|axis, _| {
-            let mut step = Vector6::zeros();
-            step[axis] = 1e-5;
-            let change =
-                moved(pose, &step).camera_from_world(point) - moved(pose, &-step).camera_from_world(point);
-            along_normal.dot(change) / 2e-5
-        }))
+        Some(Vector6::from(derivatives.of_point(point).map(|derivative| along_normal.dot(derivative))))
     }
 }
 

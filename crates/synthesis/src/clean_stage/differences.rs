@@ -2,10 +2,8 @@
 
 use reality_sim_core::statistics::{median, robust_sigma};
 
-use super::{
-    predicted::{Expected, Predicted},
-    shrunk::ShrunkPicture,
-};
+use super::predicted::{Expected, Predicted};
+use crate::shrunk::ShrunkPicture;
 
 /// Usable grey values of gains: darker ones are noise, brighter ones are saturated.
 const USABLE: std::ops::Range<f32> = 10.0..245.0;
@@ -101,30 +99,30 @@ fn extremes(
     reach: usize,
     extreme: impl Fn(f32, f32) -> f32 + Copy,
 ) -> Vec<[f32; 3]> {
-    let along_rows: Vec<[f32; 3]> = colors
-        .chunks(width)
-        .flat_map(|row| {
-            (0..row.len()).map(move |column| {
-                let near = &row[column.saturating_sub(reach)..row.len().min(column + reach + 1)];
-                near.iter().fold(row[column], |a, b| both(a, *b, extreme))
-            })
-        })
-        .collect();
-    let rows: Vec<&[[f32; 3]]> = along_rows.chunks(width).collect();
-    let mut result = Vec::with_capacity(along_rows.len());
-    for row in 0..rows.len() {
-        let near = &rows[row.saturating_sub(reach)..rows.len().min(row + reach + 1)];
-        let start = result.len();
-        result.extend_from_slice(near[0]);
-        for other in &near[1..] {
-            for (found, color) in result[start..].iter_mut().zip(*other) {
-                *found = both(*found, *color, extreme);
-            }
-        }
+    let mut along_rows = colors.to_vec();
+    for (found, row) in along_rows.chunks_mut(width).zip(colors.chunks(width)) {
+        spread(found, row, 1, reach, extreme);
     }
-    result
+    let mut found = along_rows.clone();
+    spread(&mut found, &along_rows, width, reach, extreme);
+    found
 }
 
-fn both(a: [f32; 3], b: [f32; 3], extreme: impl Fn(f32, f32) -> f32 + Copy) -> [f32; 3] {
-    std::array::from_fn(|channel| extreme(a[channel], b[channel]))
+/// Takes the extremes of each value and those up to `reach` steps before and after it: whole slices at once, which the compiler
+/// vectorises.
+fn spread(
+    found: &mut [[f32; 3]],
+    values: &[[f32; 3]],
+    step: usize,
+    reach: usize,
+    extreme: impl Fn(f32, f32) -> f32 + Copy,
+) {
+    let take = |found: &mut [[f32; 3]], values: &[[f32; 3]]| {
+        let (found, values) = (found.as_flattened_mut(), values.as_flattened());
+        found.iter_mut().zip(values).for_each(|(found, value)| *found = extreme(*found, *value));
+    };
+    for shift in (1..=reach).map(|steps| steps * step).take_while(|shift| *shift < values.len()) {
+        take(&mut found[shift..], values);
+        take(found, &values[shift..]);
+    }
 }

@@ -9,9 +9,9 @@ use super::{
     goal_volumes::GoalVolumes,
     mosaic::Mosaic,
     predicted::{Expected, GroundPyramid, Predicted, predict},
-    shrunk::ShrunkPicture,
     upright::with_upper_parts,
 };
+use crate::shrunk::ShrunkPicture;
 
 /// Error of a pose, pixels of small pictures, that is always allowed for: lines are fitted to about one pixel of the whole picture,
 /// and the mosaic's cells are about as large.

@@ -11,7 +11,6 @@ mod goal_volumes;
 mod grid;
 mod mosaic;
 mod predicted;
-mod shrunk;
 mod upright;
 mod votes;
 
@@ -36,9 +35,11 @@ use self::{
     grid::Grid,
     mosaic::{Cell, Mosaic, coarse_colors},
     predicted::GroundPyramid,
+};
+use crate::{
+    Archive, SynthesisError,
     shrunk::{ShrunkCameras, ShrunkPicture},
 };
-use crate::{Archive, SynthesisError};
 
 /// Largest number of pictures that vote on the ground.
 const VOTING: usize = 300;

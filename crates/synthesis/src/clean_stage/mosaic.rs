@@ -7,9 +7,9 @@ use super::{
     carpet::Carpet,
     goal_volumes::GoalVolumes,
     grid::Grid,
-    shrunk::ShrunkPicture,
     votes::{DIRECTIONS, Votes, judged},
 };
+use crate::shrunk::ShrunkPicture;
 
 /// Weight of a vote for a colour that the carpet does not have: paint that no line explains wins where nobody saw anything else.
 const IMPLAUSIBLE: f32 = 0.2;

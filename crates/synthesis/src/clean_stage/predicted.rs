@@ -6,7 +6,8 @@ use reality_sim_core::{
     warp::{ProxyGeometry, Surface, Target},
 };
 
-use super::{goal_volumes::GoalVolumes, mosaic::Mosaic, shrunk::ShrunkPicture};
+use super::{goal_volumes::GoalVolumes, mosaic::Mosaic};
+use crate::shrunk::ShrunkPicture;
 
 /// Colours of the ground, averaged over cells of twice, four times and so on the size.
 pub(super) struct GroundPyramid {

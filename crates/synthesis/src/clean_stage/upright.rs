@@ -14,9 +14,8 @@ use super::{
     blobs::Bits,
     differences::beyond_range,
     predicted::{Expected, Predicted},
-    shrunk::ShrunkPicture,
 };
-use crate::select::select;
+use crate::{select::select, shrunk::ShrunkPicture};
 
 /// Height of things above the carpet, metres: that of people.
 const TALLEST_M: f32 = 1.9;

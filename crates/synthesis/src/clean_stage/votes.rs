@@ -9,7 +9,8 @@ use reality_sim_core::{
     warp::{Placement, ground_colors},
 };
 
-use super::{goal_volumes::GoalVolumes, grid::Grid, shrunk::ShrunkPicture};
+use super::{goal_volumes::GoalVolumes, grid::Grid};
+use crate::shrunk::ShrunkPicture;
 
 /// Number of directions from which a cell is seen.
 pub(super) const DIRECTIONS: usize = 24;

@@ -12,21 +12,21 @@ use reality_sim_core::{
     warp::{Picture, Placement, RayTable, Source},
 };
 
-use crate::{Archive, SynthesisError, smaller_camera::smaller};
+use crate::{Archive, SynthesisError};
 
 /// Largest width at which pictures are compared, pixels. Half the size of the usual 640 pixels averages four of them, which halves
 /// the noise, and leaves a ball at 4 m three pixels wide.
 const WIDTH: u32 = 320;
 
 /// Camera with fewer pixels.
-pub(super) struct ShrunkCamera {
+pub(crate) struct ShrunkCamera {
     pub camera: Camera,
     pub kernel: KernelCamera,
     pub rays: RayTable,
 }
 
 /// Cameras of an archive with fewer pixels, by their ids.
-pub(super) struct ShrunkCameras(BTreeMap<i64, ShrunkCamera>);
+pub(crate) struct ShrunkCameras(BTreeMap<i64, ShrunkCamera>);
 
 impl ShrunkCameras {
     /// Shrinks the cameras that took the archive's images.
@@ -60,14 +60,15 @@ impl ShrunkCamera {
         let shrink = f64::from(camera.width.div_ceil(WIDTH));
         let size =
             [camera.width, camera.height].map(|side| (f64::from(side) / shrink).round().max(1.0) as u32);
-        let small = smaller(camera, size);
+        // A valid camera stays valid when its picture shrinks.
+        let small = camera.resized(size).unwrap_or_else(|_| camera.clone());
         Self { kernel: KernelCamera::new(&small), rays: RayTable::new(&small), camera: small }
     }
 }
 
 /// Image of an archive at small size.
 #[derive(Clone)]
-pub(super) struct ShrunkPicture<'a> {
+pub(crate) struct ShrunkPicture<'a> {
     /// Number of the image in the archive.
     pub image: usize,
     pub camera: &'a ShrunkCamera,
