@@ -56,7 +56,7 @@ impl Error {
     }
 
     pub fn words(&self) -> String {
-        format!("{:.2} cm, {:.2} cm", 100.0 * self.0.mean_m, 100.0 * self.0.median_m)
+        format!("{:.3} cm, {:.3} cm", 100.0 * self.0.mean_m, 100.0 * self.0.median_m)
     }
 }
 

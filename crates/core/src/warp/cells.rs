@@ -1,7 +1,8 @@
 //! Warping by cells: inside one surface, the map from the picture that is drawn to a recorded one is smooth, so it is computed
 //! at sixteen pixels of every cell of 16 × 16, and interpolated between them.
 //!
-//! The map is a bicubic polynomial through four by four nodes. Sixteen pixels in between tell whether that is good enough. Where borders of surfaces cross a cell, it has one map for each of them. Where maps are no polynomials, and wherever
+//! The map is a bicubic polynomial through four by four nodes. Sixteen pixels in between tell whether that is good
+//! enough. Where borders of surfaces cross a cell, it has one map for each of them. Where maps are no polynomials, and wherever
 //! something may hide part of a cell from a source, every pixel is computed as in [`super::blend`], of which this is a faster
 //! form.
 

@@ -48,12 +48,15 @@ impl Faces {
     /// Adds the sides of the box that meet this one within a cell all of whose nodes see it: a corner may lie between the nodes.
     #[inline(always)]
     fn add_beside(&mut self, proxy: &ProxyGeometry, nodes: &ProxyPoints, side: f32) -> Option<()> {
+        let side = side as usize;
+        if side >= FIRST_BILLBOARD {
+            return Some(());
+        }
         for axis in 0..3 {
-            let [least, most] = range(&nodes.place[axis]);
-            let is_own = side as usize % 3 == axis;
-            if side as usize >= FIRST_BILLBOARD || is_own {
+            if axis == side % 3 {
                 continue;
             }
+            let [least, most] = range(&nodes.place[axis]);
             if least < proxy.min_in_world[axis] as f32 {
                 self.add(axis as f32)?;
             }
