@@ -33,6 +33,8 @@ impl NearestTree {
         let mut images: Vec<(CameraPose, ImageIndex)> = finite
             .map(|(&pose, image)| (CameraPose { yaw_rad: pose.yaw_rad.rem_euclid(TAU), ..pose }, image))
             .collect();
+        // It grew by doubling.
+        images.shrink_to_fit();
         let leaves = 1 << (images.len() / LEAF_IMAGES).max(1).ilog2();
         let mut boxes = vec![PlanarBox::default(); 2 * leaves - 1];
         split(metric, &mut boxes, 0, &mut images);

@@ -72,7 +72,9 @@ impl Sector {
         // Cells keep places apart, and none is NaN. Only coordinates beyond 10⁶⁰, or below 10⁻⁴³ but not 0, could be
         // refused.
         let delaunay = Delaunay::bulk_load_stable(vertices).unwrap_or_default();
-        let items = spotted.into_iter().map(|spotted| spotted.image).collect();
+        let mut items: Vec<ImageIndex> = spotted.into_iter().map(|spotted| spotted.image).collect();
+        // They were collected in the memory of the larger items.
+        items.shrink_to_fit();
         Self { delaunay, items }
     }
 
