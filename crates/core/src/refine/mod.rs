@@ -4,13 +4,14 @@ mod calibration;
 mod config;
 mod measure;
 mod picture;
-mod pose_derivatives;
+mod pose_steps;
 mod trajectory;
 
 pub use self::{
     calibration::{ByCalibration, CalibrationUncertainty, InvalidCovariance, MOST as MOST_PARAMETERS},
     config::{RefineConfig, SmoothingConfig},
     measure::{LineOffset, MeasureConfig, measure_offsets},
-    picture::{PoseFit, Reach, Refiner, moved, pose_difference},
+    picture::{PoseFit, Reach, Refiner},
+    pose_steps::{moved, pose_difference},
     trajectory::{SmoothedPose, TrajectoryFrame, smooth_trajectory},
 };

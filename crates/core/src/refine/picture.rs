@@ -8,7 +8,7 @@ use super::{
     calibration::{ByCalibration, CalibrationUncertainty, Coupling, lens_parameters},
     config::RefineConfig,
     measure::{LineOffset, MeasureConfig, measure_offsets},
-    pose_derivatives::PoseDerivatives,
+    pose_steps::{PoseDerivatives, moved, pose_difference},
 };
 use crate::{
     camera::Camera,
@@ -100,18 +100,6 @@ pub struct Refiner {
     config: RefineConfig,
     mount_sigma: MountPoseSigma,
     calibration: Option<CalibrationUncertainty>,
-}
-
-/// Returns the pose moved by a step in x, y, yaw, height, pitch and roll, metres and radians.
-pub fn moved(pose: CameraPose, step: &Vector6<f64>) -> CameraPose {
-    CameraPose {
-        x_m: pose.x_m + step[0],
-        y_m: pose.y_m + step[1],
-        yaw_rad: wrap_angle(pose.yaw_rad + step[2]),
-        height_m: pose.height_m + step[3],
-        pitch_rad: pose.pitch_rad + step[4],
-        roll_rad: pose.roll_rad + step[5],
-    }
 }
 
 impl Refiner {
@@ -284,18 +272,6 @@ pub(super) fn mount_error(pose: CameraPose, mount: MountPose) -> Vector6<f64> {
         pose.height_m - mount.height_m,
         pose.pitch_rad - mount.pitch_rad,
         wrap_angle(pose.roll_rad - mount.roll_rad),
-    )
-}
-
-/// Returns the step in x, y, yaw, height, pitch and roll from one pose to another, metres and radians.
-pub fn pose_difference(from: CameraPose, to: CameraPose) -> Vector6<f64> {
-    Vector6::new(
-        to.x_m - from.x_m,
-        to.y_m - from.y_m,
-        wrap_angle(to.yaw_rad - from.yaw_rad),
-        to.height_m - from.height_m,
-        to.pitch_rad - from.pitch_rad,
-        wrap_angle(to.roll_rad - from.roll_rad),
     )
 }
 

@@ -6,7 +6,8 @@ use nalgebra::{Matrix3, Matrix3x6, Matrix6, Vector3, Vector6};
 
 use super::{
     config::SmoothingConfig,
-    picture::{PoseFit, mount_error, moved},
+    picture::{PoseFit, mount_error},
+    pose_steps::moved,
 };
 use crate::{
     filter::MotionNoise,

@@ -265,11 +265,10 @@ impl<'a> Cell<'a> {
 #[inline(always)]
 fn rays_of(target: &Target, column: usize, top: usize, pixel: impl Fn(usize) -> [usize; 2]) -> RayBlock {
     let mut rays = [[0.0; LANES]; 3];
-    for lane in 0..LANES {
-        let [row, u] = pixel(lane);
-        let block = &target.rays.row(top + row)[column];
-        for axis in 0..3 {
-            rays[axis][lane] = block[axis][u];
+    for (axis, values) in rays.iter_mut().enumerate() {
+        for (lane, value) in values.iter_mut().enumerate() {
+            let [row, u] = pixel(lane);
+            *value = target.rays.row(top + row)[column][axis][u];
         }
     }
     rays

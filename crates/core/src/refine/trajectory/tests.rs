@@ -1,7 +1,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{
-    super::{calibration::ByCalibration, picture::pose_difference},
+    super::{calibration::ByCalibration, pose_steps::pose_difference},
     *,
 };
 use crate::filter::{Purpose, Stream};

@@ -1,13 +1,36 @@
-//! How a point in the camera's axes moves with the numbers of the camera's pose.
+//! Steps of a pose in its six numbers, and how a point in the camera's axes moves with them.
 
 use glam::{DMat3, DVec3};
 use nalgebra::Vector6;
 
-use super::picture::moved;
-use crate::pose::CameraPose;
+use crate::pose::{CameraPose, wrap_angle};
 
 /// Half the width of the central differences, metres and radians: their error, a square of it, is that of rounding.
 const STEP: f64 = 1e-5;
+
+/// Returns the pose moved by a step in x, y, yaw, height, pitch and roll, metres and radians.
+pub fn moved(pose: CameraPose, step: &Vector6<f64>) -> CameraPose {
+    CameraPose {
+        x_m: pose.x_m + step[0],
+        y_m: pose.y_m + step[1],
+        yaw_rad: wrap_angle(pose.yaw_rad + step[2]),
+        height_m: pose.height_m + step[3],
+        pitch_rad: pose.pitch_rad + step[4],
+        roll_rad: pose.roll_rad + step[5],
+    }
+}
+
+/// Returns the step in x, y, yaw, height, pitch and roll from one pose to another, metres and radians.
+pub fn pose_difference(from: CameraPose, to: CameraPose) -> Vector6<f64> {
+    Vector6::new(
+        to.x_m - from.x_m,
+        to.y_m - from.y_m,
+        wrap_angle(to.yaw_rad - from.yaw_rad),
+        to.height_m - from.height_m,
+        to.pitch_rad - from.pitch_rad,
+        wrap_angle(to.roll_rad - from.roll_rad),
+    )
+}
 
 /// Derivatives of the transform from the world to the camera's axes by x, y, yaw, height, pitch and roll.
 pub(super) struct PoseDerivatives([(DMat3, DVec3); 6]);
