@@ -2,7 +2,7 @@
 //! beside the same with true poses.
 //!
 //! `cargo run --release --example paper_scale -- record FOLDER [FRAMES]` makes the recordings, which are ray-traced: three quarters of an
-//! hour and 700 MB for the 10,000 frames that are made if FRAMES is left out.
+//! hour and 600 MB for the 10,000 frames that are made if FRAMES is left out.
 //! `cargo run --release --example paper_scale -- measure FOLDER` does all else, and writes `docs/figures/paper_scale.md` and
 //! `docs/images/crossing.jpg`.
 
