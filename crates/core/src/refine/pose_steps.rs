@@ -39,7 +39,7 @@ impl PoseDerivatives {
     /// Differentiates the transform at a pose.
     pub fn at(pose: CameraPose) -> Self {
         let transform = |axis: usize, step: f64| {
-            let pose = moved(pose, &(Vector6::ith(axis, step)));
+            let pose = moved(pose, &Vector6::ith(axis, step));
             let camera_from_world = pose.rotation_world_from_camera().transpose();
             (camera_from_world, -(camera_from_world * pose.position_in_world()))
         };
