@@ -32,11 +32,12 @@ const FORBIDDEN: [&str; 22] = [
 ];
 
 /// All names that may be imported from the core.
-const ALLOWED: [&str; 10] = [
+const ALLOWED: [&str; 11] = [
     "camera::{Camera, Distortion, Opencv, OpencvFisheye}",
     "field::FieldDimensions",
     "pose::{CameraPose, Pose2}",
     "pose::CameraPose",
+    "pose::Pose2",
     "sequence::{CameraSetup, Photometry}",
     "sequence::{FrameRecord, Photometry, Sequence, StampedPose, write_tum}",
     "sequence::FrameRecord",
