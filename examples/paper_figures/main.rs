@@ -4,7 +4,8 @@
 //! `time.svg` into `docs/figures`;
 //! `cargo run --release --example paper_figures -- sweep FRAMES SEEDS SEQUENCE...` writes `sweep.md`.
 //!
-//! FRAMES is the largest number of pictures used of each sequence. `scripts/figures` makes the recordings, too.
+//! FRAMES is the largest number of pictures used of each sequence. `scripts/paper` makes the figures and their recording, `scripts/figures` the
+//! sweep and its recordings.
 
 #[path = "../shared/curves.rs"]
 mod curves;
@@ -34,7 +35,9 @@ fn main() -> anyhow::Result<()> {
         .map(|folder| Recording::open(Path::new(folder), frames as usize))
         .collect::<anyhow::Result<Vec<_>>>()?;
     fs::create_dir_all(OUT).with_context(|| format!("{OUT}: cannot be made"))?;
-    let mut text = header(&arguments.join(" "), &recordings)?;
+    let script =
+        if what == "figures" { "scripts/paper".to_owned() } else { format!("scripts/figures {PROFILE}") };
+    let mut text = header(&script, &arguments.join(" "), &recordings)?;
     let file = match (what.as_str(), recordings.as_slice()) {
         ("figures", [recording]) => {
             figures::write(recording, u64::from(seeds), &mut text)?;
@@ -50,9 +53,9 @@ fn main() -> anyhow::Result<()> {
 }
 
 /// Describes how the file was made.
-fn header(arguments: &str, recordings: &[Recording]) -> anyhow::Result<String> {
+fn header(script: &str, arguments: &str, recordings: &[Recording]) -> anyhow::Result<String> {
     let mut text = format!(
-        "Made by `bash scripts/figures {PROFILE}`, which makes the recordings that are not part of the repository, and runs \
+        "Made by `bash {script}`, which makes the recordings that are not part of the repository, and runs \
          `cargo run --profile {PROFILE} --example paper_figures -- {arguments}`.\n\n| sequence | name | pictures |\n|---|---|---|\n"
     );
     for Recording { sequence, pictures } in recordings {

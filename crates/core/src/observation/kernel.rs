@@ -1,58 +1,18 @@
-//! Inner loop of all scoring: ground points are projected by a particle's pose and the lens, and a texture is read
-//! there.
+//! Inner loop of all scoring: line samples are projected by a particle's pose and the lens, or interpolated between others that are, and a
+//! texture is read there.
 //!
-//! It handles sixteen points at a time, in plain arrays that the compiler turns into vector instructions.
+//! It handles sixteen samples at a time, in plain arrays that the compiler turns into vector instructions.
 //! Multiplications and additions are never fused, so that every processor gives the same bits.
 
+use super::{
+    interpolation::{Limits, NODES, interpolate},
+    samples::{Block, Circle, Ground, Quad, Samples},
+};
 use crate::{
-    camera::{KernelCamera, LANES, Lanes, Pixels, project_lanes},
+    camera::{KernelCamera, LANES, Lanes, Pixels, Places, inside_lanes, place_lanes, project_lanes},
     pose::CameraPose,
     preprocess::Texture,
 };
-
-/// Sixteen ground points: neighbours on a line, hence close together.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Block {
-    /// x and y, metres. A block with fewer points is padded with NaN, which no camera sees.
-    place: [Lanes; 2],
-    /// Centre of a circle that contains all points.
-    centre: [f32; 2],
-    radius: f32,
-}
-
-impl Block {
-    fn new(points: &[glam::DVec2]) -> Self {
-        let mut place = [[f32::NAN; LANES]; 2];
-        for (lane, point) in points.iter().enumerate() {
-            place[0][lane] = point.x as f32;
-            place[1][lane] = point.y as f32;
-        }
-        let centre = points.iter().sum::<glam::DVec2>() / points.len() as f64;
-        let radius = points.iter().map(|point| point.distance(centre)).fold(0.0, f64::max);
-        // The radius is a little larger, to allow for rounding.
-        Self { place, centre: [centre.x as f32, centre.y as f32], radius: 1.001 * radius as f32 + 1e-4 }
-    }
-}
-
-/// Ground points in blocks of sixteen.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct GroundPoints {
-    pub blocks: Vec<Block>,
-}
-
-impl GroundPoints {
-    pub fn new(points: impl Iterator<Item = glam::DVec2>) -> Self {
-        let points: Vec<_> = points.collect();
-        let blocks = points.chunks(LANES).map(Block::new).collect();
-        Self { blocks }
-    }
-
-    /// Returns all points.
-    pub fn points(&self) -> impl Iterator<Item = [f32; 2]> {
-        let lanes = self.blocks.iter().flat_map(|block| block.place[0].into_iter().zip(block.place[1]));
-        lanes.filter(|(x, _)| !x.is_nan()).map(|(x, y)| [x, y])
-    }
-}
 
 /// Pose for points with z = 0: `camera = linear · ground + offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,36 +38,85 @@ impl CameraFromGround {
         }
     }
 
-    /// Returns whether a whole block lies outside the lens's largest angle, judged by the block's circle alone.
+    /// Returns whether a whole circle lies outside the lens's largest angle.
     #[inline(always)]
-    fn is_beyond(&self, camera: &KernelCamera, block: &Block) -> bool {
-        let [a, b] = block.centre;
+    fn is_beyond(&self, camera: &KernelCamera, circle: &Circle) -> bool {
+        let [a, b] = circle.centre;
         let [x, y, z] = std::array::from_fn(|axis| {
             self.linear[axis][0] * a + self.linear[axis][1] * b + self.offset[axis]
         });
         let distance = (x * x + y * y + z * z).sqrt();
         // The circle's point with the smallest angle has at most this z, and at least this distance.
-        let least_distance = distance - block.radius.copysign(camera.min_cos);
-        z + block.radius < camera.min_cos * least_distance
+        let least_distance = distance - circle.radius.copysign(camera.min_cos);
+        z + circle.radius < camera.min_cos * least_distance
+    }
+
+    /// Returns points in the camera's axes, metres.
+    #[inline(always)]
+    pub(super) fn in_camera(&self, ground: &Ground) -> [Lanes; 3] {
+        let mut place = [[0.0_f32; LANES]; 3];
+        for (axis, place) in place.iter_mut().enumerate() {
+            let [a, b] = self.linear[axis];
+            let offset = self.offset[axis];
+            for i in 0..LANES {
+                place[i] = a * ground[0][i] + b * ground[1][i] + offset;
+            }
+        }
+        place
     }
 }
 
-/// Projects a block; `None` if the camera sees none of it.
+/// Projects one of the points of all samples of a block; `None` if the camera sees none of them.
 #[inline(always)]
-pub(crate) fn project_block(camera: &KernelCamera, pose: &CameraFromGround, block: &Block) -> Option<Pixels> {
-    if pose.is_beyond(camera, block) {
+pub(super) fn project_block<const N: usize>(
+    camera: &KernelCamera,
+    pose: &CameraFromGround,
+    block: &Block<N>,
+    point: usize,
+) -> Option<Pixels> {
+    if pose.is_beyond(camera, &block.circle) {
         return None;
     }
-    let ground = &block.place;
-    let mut place = [[0.0_f32; LANES]; 3];
-    for (axis, place) in place.iter_mut().enumerate() {
-        let [a, b] = pose.linear[axis];
-        let offset = pose.offset[axis];
-        for i in 0..LANES {
-            place[i] = a * ground[0][i] + b * ground[1][i] + offset;
-        }
+    project_lanes(camera, &pose.in_camera(&block.points[point]))
+}
+
+/// Interpolates one block of four between its nodes; `None` if the picture contains none of its samples.
+#[inline(always)]
+fn interpolate_block(camera: &KernelCamera, nodes: &Places, block: usize) -> Option<Pixels> {
+    let mut pixels = Pixels {
+        u: interpolate(&nodes.u, block),
+        v: interpolate(&nodes.v, block),
+        nearness: interpolate(&nodes.nearness, block),
+        seen: [0.0; LANES],
+    };
+    inside_lanes(camera, &mut pixels).then_some(pixels)
+}
+
+/// Interpolates one block of a quad between its nodes, or projects it where that is not right; `None` if the camera sees none of its
+/// samples. The last argument tells which of the blocks, and which of the points of all samples.
+// Returning a struct of all nodes and their blocks instead, which would read better, takes a third longer: it is kept in memory.
+#[inline(always)]
+pub(super) fn see_block<const N: usize>(
+    camera: &KernelCamera,
+    pose: &CameraFromGround,
+    quad: &Quad<N>,
+    nodes: &Places,
+    is_right: bool,
+    [block, point]: [usize; 2],
+) -> Option<Pixels> {
+    if is_right {
+        interpolate_block(camera, nodes, block)
+    } else {
+        project_block(camera, pose, &quad.blocks[block], point)
     }
-    project_lanes(camera, &place)
+}
+
+/// Two sums over the samples of a pose, lane by lane.
+type Sums = [Lanes; 2];
+
+/// Adds up the lanes of every pose.
+fn totals(all: &[Sums]) -> Vec<[f32; 2]> {
+    all.iter().map(|sums| sums.map(|lanes| lanes.iter().sum())).collect()
 }
 
 /// Returns bilinear values (0–255) at sixteen pixels; 0 for points that are not seen.
@@ -141,15 +150,16 @@ pub(crate) fn sample_block(texture: &Texture, pixels: &Pixels) -> Lanes {
     value
 }
 
-/// Returns the sum of the texture's values over all points seen, and the number of these points.
+/// Returns the sum of the texture's values over all samples seen, and the number of these samples, for each pose.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
-pub(crate) fn sum_along_lines(
+pub(super) fn sum_along_lines(
     texture: &Texture,
     camera: &KernelCamera,
-    pose: &CameraFromGround,
-    points: &GroundPoints,
-) -> [f32; 2] {
-    sum_on_any_processor(texture, camera, pose, points)
+    limits: &Limits,
+    poses: &[CameraFromGround],
+    samples: &Samples<1>,
+) -> Vec<[f32; 2]> {
+    sum_on_any_processor(texture, camera, limits, poses, samples)
 }
 
 /// Computes [`sum_along_lines`] in every build.
@@ -157,27 +167,44 @@ pub(crate) fn sum_along_lines(
 pub(super) fn sum_on_any_processor(
     texture: &Texture,
     camera: &KernelCamera,
-    pose: &CameraFromGround,
-    points: &GroundPoints,
-) -> [f32; 2] {
-    let (mut sum, mut seen) = ([0.0_f32; LANES], [0.0_f32; LANES]);
-    for block in &points.blocks {
-        let Some(pixels) = project_block(camera, pose, block) else { continue };
-        let value = sample_block(texture, &pixels);
-        for i in 0..LANES {
-            sum[i] += value[i];
-            seen[i] += pixels.seen[i];
+    limits: &Limits,
+    poses: &[CameraFromGround],
+    samples: &Samples<1>,
+) -> Vec<[f32; 2]> {
+    let mut all: Vec<Sums> = vec![[[0.0; LANES]; 2]; poses.len()];
+    // All poses take a block before the next one: they mostly see the same blocks, so that the processor foresees which.
+    for quad in &samples.quads {
+        for (pose, sums) in poses.iter().zip(&mut all) {
+            if pose.is_beyond(camera, &quad.circle) {
+                continue;
+            }
+            let nodes = place_lanes(camera, &pose.in_camera(&quad.nodes[0]));
+            let wrong = limits.wrong(&nodes, quad.step_m);
+            for block in 0..NODES {
+                let is_right = wrong[block] == 0;
+                let Some(pixels) = see_block(camera, pose, quad, &nodes, is_right, [block, 0]) else {
+                    continue;
+                };
+                add_values(texture, &pixels, sums);
+            }
         }
     }
-    [sum.iter().sum(), seen.iter().sum()]
+    for block in &samples.others {
+        for (pose, sums) in poses.iter().zip(&mut all) {
+            let Some(pixels) = project_block(camera, pose, block, 0) else { continue };
+            add_values(texture, &pixels, sums);
+        }
+    }
+    totals(&all)
 }
 
-/// Centre, left flank and right flank of line samples, in blocks of sixteen.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct LinePoints {
-    pub centre: GroundPoints,
-    pub left: GroundPoints,
-    pub right: GroundPoints,
+#[inline(always)]
+fn add_values(texture: &Texture, pixels: &Pixels, [sum, seen]: &mut Sums) {
+    let value = sample_block(texture, pixels);
+    for i in 0..LANES {
+        sum[i] += value[i];
+        seen[i] += pixels.seen[i];
+    }
 }
 
 /// Parameters of the contrast model that depend on the picture.
@@ -200,18 +227,19 @@ pub struct ContrastScale {
 /// Minimum contrast: something dark in place of a line, such as the edge of an obstacle, is no worse than no line.
 const MIN_CONTRAST: f32 = -0.25;
 
-/// Returns Σ weight · contrast and Σ weight over all samples seen with both flanks. Contrast is the Michelson contrast
+/// Returns Σ weight · contrast and Σ weight over all samples seen with both flanks, for each pose. Contrast is the Michelson contrast
 /// of the centre and the brighter flank, in units of the picture's line contrast, clipped to [[`MIN_CONTRAST`], 1].
 /// Light that varies over the field does not change it.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
-pub(crate) fn contrast_along_lines(
+pub(super) fn contrast_along_lines(
     texture: &Texture,
     camera: &KernelCamera,
-    pose: &CameraFromGround,
-    points: &LinePoints,
+    limits: &Limits,
+    poses: &[CameraFromGround],
+    samples: &Samples<3>,
     scale: ContrastScale,
-) -> [f32; 2] {
-    contrast_on_any_processor(texture, camera, pose, points, scale)
+) -> Vec<[f32; 2]> {
+    contrast_on_any_processor(texture, camera, limits, poses, samples, scale)
 }
 
 /// Computes [`contrast_along_lines`] in every build.
@@ -219,34 +247,70 @@ pub(crate) fn contrast_along_lines(
 pub(super) fn contrast_on_any_processor(
     texture: &Texture,
     camera: &KernelCamera,
-    pose: &CameraFromGround,
-    points: &LinePoints,
+    limits: &Limits,
+    poses: &[CameraFromGround],
+    samples: &Samples<3>,
     scale: ContrastScale,
-) -> [f32; 2] {
-    let area_at_1_m = scale.relative_area * pose.height_m;
-    let (mut contrast, mut weight) = ([0.0_f32; LANES], [0.0_f32; LANES]);
-    for ((centre, left), right) in
-        points.centre.blocks.iter().zip(&points.left.blocks).zip(&points.right.blocks)
-    {
-        let Some(centre) = project_block(camera, pose, centre) else { continue };
-        let Some(left) = project_block(camera, pose, left) else { continue };
-        let Some(right) = project_block(camera, pose, right) else { continue };
-        let line = sample_block(texture, &centre);
-        let (flank_left, flank_right) = (sample_block(texture, &left), sample_block(texture, &right));
-        for i in 0..LANES {
-            let (du, dv) = (left.u[i] - right.u[i], left.v[i] - right.v[i]);
-            // The flanks lie two line widths apart.
-            let width_px = 0.5 * (du * du + dv * dv).sqrt();
-            let seen = centre.seen[i] * left.seen[i] * right.seen[i];
-            let resolved = (width_px - scale.min_width_px) * scale.per_width_px;
-            let near = centre.nearness[i];
-            let area = area_at_1_m * near * near * near;
-            let w = if seen > 0.0 { resolved.min(area).clamp(0.0, 1.0) } else { 0.0 };
-            let flank = flank_left[i].max(flank_right[i]);
-            let c = (line[i] - flank) / (line[i] + flank + scale.dark_level) * scale.per_contrast;
-            contrast[i] += w * c.clamp(MIN_CONTRAST, 1.0);
-            weight[i] += w;
+) -> Vec<[f32; 2]> {
+    let mut all: Vec<Sums> = vec![[[0.0; LANES]; 2]; poses.len()];
+    for quad in &samples.quads {
+        for (pose, sums) in poses.iter().zip(&mut all) {
+            if pose.is_beyond(camera, &quad.circle) {
+                continue;
+            }
+            let [centre, left, right] = [
+                place_lanes(camera, &pose.in_camera(&quad.nodes[0])),
+                place_lanes(camera, &pose.in_camera(&quad.nodes[1])),
+                place_lanes(camera, &pose.in_camera(&quad.nodes[2])),
+            ];
+            let wrong = [&centre, &left, &right].map(|nodes| limits.wrong(nodes, quad.step_m));
+            for block in 0..NODES {
+                let is_right = wrong[0][block] | wrong[1][block] | wrong[2][block] == 0;
+                let Some(centre) = see_block(camera, pose, quad, &centre, is_right, [block, 0]) else {
+                    continue;
+                };
+                let Some(left) = see_block(camera, pose, quad, &left, is_right, [block, 1]) else { continue };
+                let Some(right) = see_block(camera, pose, quad, &right, is_right, [block, 2]) else {
+                    continue;
+                };
+                add_contrasts(texture, &scale, pose, [&centre, &left, &right], sums);
+            }
         }
     }
-    [contrast.iter().sum(), weight.iter().sum()]
+    for block in &samples.others {
+        for (pose, sums) in poses.iter().zip(&mut all) {
+            let Some(centre) = project_block(camera, pose, block, 0) else { continue };
+            let Some(left) = project_block(camera, pose, block, 1) else { continue };
+            let Some(right) = project_block(camera, pose, block, 2) else { continue };
+            add_contrasts(texture, &scale, pose, [&centre, &left, &right], sums);
+        }
+    }
+    totals(&all)
+}
+
+#[inline(always)]
+fn add_contrasts(
+    texture: &Texture,
+    scale: &ContrastScale,
+    pose: &CameraFromGround,
+    [centre, left, right]: [&Pixels; 3],
+    [contrast, weight]: &mut Sums,
+) {
+    let area_at_1_m = scale.relative_area * pose.height_m;
+    let line = sample_block(texture, centre);
+    let (flank_left, flank_right) = (sample_block(texture, left), sample_block(texture, right));
+    for i in 0..LANES {
+        let (du, dv) = (left.u[i] - right.u[i], left.v[i] - right.v[i]);
+        // The flanks lie two line widths apart.
+        let width_px = 0.5 * (du * du + dv * dv).sqrt();
+        let seen = centre.seen[i] * left.seen[i] * right.seen[i];
+        let resolved = (width_px - scale.min_width_px) * scale.per_width_px;
+        let near = centre.nearness[i];
+        let area = area_at_1_m * near * near * near;
+        let w = if seen > 0.0 { resolved.min(area).clamp(0.0, 1.0) } else { 0.0 };
+        let flank = flank_left[i].max(flank_right[i]);
+        let c = (line[i] - flank) / (line[i] + flank + scale.dark_level) * scale.per_contrast;
+        contrast[i] += w * c.clamp(MIN_CONTRAST, 1.0);
+        weight[i] += w;
+    }
 }

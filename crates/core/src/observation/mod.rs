@@ -7,12 +7,17 @@
 //! | [`ObservationKind::Contrast`] | gain · Σ weight · (contrast of line against flanks − neutral) |
 
 mod config;
+mod interpolation;
 mod kernel;
 mod model;
 mod normal_search;
+mod samples;
+
+use std::slice;
 
 use rayon::prelude::*;
 
+use self::model::Lines;
 pub use self::{
     config::{ObservationConfig, ObservationKind},
     kernel::{CameraFromGround, ContrastScale},
@@ -77,13 +82,18 @@ impl CpuScorer {
     /// Returns two sums along the lines of a pose: Σ value and the number of samples seen, or for the contrast model Σ
     /// weight · contrast and Σ weight.
     pub fn sums(&self, pose: &CameraPose) -> [f32; 2] {
-        let LineModel { config, camera, points, .. } = &self.model;
-        let pose = CameraFromGround::new(*pose);
-        match config.kind {
-            ObservationKind::Contrast => {
-                kernel::contrast_along_lines(&self.texture, camera, &pose, points, self.scale)
+        self.sums_of(slice::from_ref(pose))[0]
+    }
+
+    /// Returns [`Self::sums`] of every pose.
+    fn sums_of(&self, poses: &[CameraPose]) -> Vec<[f32; 2]> {
+        let LineModel { camera, limits, lines, .. } = &self.model;
+        let poses: Vec<CameraFromGround> = poses.iter().copied().map(CameraFromGround::new).collect();
+        match lines {
+            Lines::Plain(samples) => kernel::sum_along_lines(&self.texture, camera, limits, &poses, samples),
+            Lines::Flanked(samples) => {
+                kernel::contrast_along_lines(&self.texture, camera, limits, &poses, samples, self.scale)
             }
-            _ => kernel::sum_along_lines(&self.texture, camera, &pose, &points.centre),
         }
     }
 
@@ -95,7 +105,8 @@ impl CpuScorer {
 
     /// Returns the log-weights of poses, as [`Scorer::log_weights`]; the CPU never fails.
     pub fn log_weights_of(&self, poses: &[CameraPose]) -> Vec<f64> {
-        poses.par_iter().with_min_len(POSES_PER_TASK).map(|pose| self.log_weight(pose)).collect()
+        let sums = poses.par_chunks(POSES_PER_TASK).flat_map_iter(|poses| self.sums_of(poses));
+        sums.map(|sums| self.model.log_weight(sums)).collect()
     }
 
     /// Returns the log-weight of one pose.

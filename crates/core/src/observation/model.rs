@@ -1,10 +1,15 @@
 //! What an observation model reads along the lines, and how it becomes a log-weight: the part common to all devices.
 
+use std::ops::Range;
+
+use glam::DVec2;
 use image::GrayImage;
 
 use super::{
     config::{ObservationConfig, ObservationKind},
-    kernel::{ContrastScale, GroundPoints, LinePoints},
+    interpolation::Limits,
+    kernel::ContrastScale,
+    samples::Samples,
 };
 use crate::{
     camera::{Camera, KernelCamera},
@@ -25,6 +30,15 @@ const FULL_WIDTH_PX: f32 = 3.0;
 /// Area of a sample's piece of line in the picture from which the sample counts fully, square pixels.
 const FULL_AREA_PX: f64 = 8.0;
 
+/// Samples of a field's lines.
+#[derive(Debug, Clone)]
+pub(super) enum Lines {
+    /// Their centres.
+    Plain(Samples<1>),
+    /// Centre, left flank and right flank.
+    Flanked(Samples<3>),
+}
+
 /// Camera and line samples of a field, with the settings of an observation model.
 #[derive(Debug, Clone)]
 pub struct LineModel {
@@ -32,7 +46,8 @@ pub struct LineModel {
     pub config: ObservationConfig,
     /// Camera in the form that the scoring loops use.
     pub camera: KernelCamera,
-    pub(super) points: LinePoints,
+    pub(super) limits: Limits,
+    pub(super) lines: Lines,
     relative_area: f32,
 }
 
@@ -40,20 +55,23 @@ impl LineModel {
     /// Prepares the samples of a field's lines for a camera.
     pub fn new(camera: &Camera, field: &FieldDimensions, config: ObservationConfig) -> Self {
         let samples = sample_lines(field, config.spacing_in(field));
-        let points = match config.kind {
-            ObservationKind::Contrast => line_points(&samples, field.line_width_m),
-            _ => LinePoints { centre: ground_points(&samples, 0.0), ..Default::default() },
+        let lines = match config.kind {
+            ObservationKind::Contrast => Lines::Flanked(flanked(&samples, field.line_width_m)),
+            _ => Lines::Plain(plain(&samples)),
         };
         let area_px = camera.fx * camera.fy * field.line_width_m * config.spacing_in(field);
         let relative_area = (area_px / FULL_AREA_PX) as f32;
-        Self { config, camera: KernelCamera::new(camera), points, relative_area }
+        let camera = KernelCamera::new(camera);
+        Self { config, limits: Limits::new(&camera), camera, lines, relative_area }
     }
 
     /// Returns the centre of each line sample on the ground, metres, together with its left flank; the right flank is
     /// its mirror image about the centre. For models without flanks, the centre takes the flank's place.
     pub fn places(&self) -> Vec<[[f32; 2]; 2]> {
-        let flanks = if self.points.left.blocks.is_empty() { &self.points.centre } else { &self.points.left };
-        self.points.centre.points().zip(flanks.points()).map(|(centre, flank)| [centre, flank]).collect()
+        match &self.lines {
+            Lines::Plain(samples) => samples.points().map(|[centre]| [centre, centre]).collect(),
+            Lines::Flanked(samples) => samples.points().map(|[centre, left, _]| [centre, left]).collect(),
+        }
     }
 
     /// Returns the contrast model's parameters for a picture with these levels.
@@ -129,22 +147,30 @@ fn nearness(distances: &GrayImage, cap: u8) -> GrayImage {
     field
 }
 
-pub(super) fn ground_points(samples: &[LineSample], across_m: f64) -> GroundPoints {
-    GroundPoints::new(
-        samples.iter().map(|sample| sample.point_in_world + across_m * sample.normal_in_world()),
-    )
+/// Returns the centres of samples.
+pub(super) fn plain(samples: &[LineSample]) -> Samples<1> {
+    let points: Vec<[DVec2; 1]> = samples.iter().map(|sample| [sample.point_in_world]).collect();
+    Samples::new(runs(samples).map(|run| &points[run]))
 }
 
-pub(super) fn line_points(samples: &[LineSample], line_width_m: f64) -> LinePoints {
-    let clear: Vec<LineSample> = samples
-        .iter()
-        .filter(|sample| sample.clearance_m > CLEARANCE_WIDTHS * line_width_m)
-        .copied()
-        .collect();
-    let flank = FLANK_WIDTHS * line_width_m;
-    LinePoints {
-        centre: ground_points(&clear, 0.0),
-        left: ground_points(&clear, flank),
-        right: ground_points(&clear, -flank),
-    }
+/// Returns centre, left flank and right flank of the samples whose flanks are on no other line.
+pub(super) fn flanked(samples: &[LineSample], line_width_m: f64) -> Samples<3> {
+    let is_clear = |sample: &&LineSample| sample.clearance_m > CLEARANCE_WIDTHS * line_width_m;
+    let clear: Vec<LineSample> = samples.iter().filter(is_clear).copied().collect();
+    let points = |sample: &LineSample| {
+        let flank = FLANK_WIDTHS * line_width_m * sample.normal_in_world();
+        let centre = sample.point_in_world;
+        [centre, centre + flank, centre - flank]
+    };
+    let points: Vec<[DVec2; 3]> = clear.iter().map(points).collect();
+    Samples::new(runs(&clear).map(|run| &points[run]))
+}
+
+/// Returns where the samples of each line are.
+fn runs(samples: &[LineSample]) -> impl Iterator<Item = Range<usize>> {
+    let mut end = 0;
+    samples.chunk_by(|a, b| a.curve == b.curve).map(move |run| {
+        end += run.len();
+        end - run.len()..end
+    })
 }
