@@ -110,10 +110,9 @@ impl Limits {
     pub fn wrong(&self, nodes: &Places, step_m: f32) -> [u32; NODES] {
         let largest_nearness = self.largest_step / step_m;
         let mut wrong = [0u8; LANES];
-        for i in 0..LANES {
+        for ((wrong, nearness), cos) in wrong.iter_mut().zip(&nodes.nearness).zip(&nodes.cos) {
             // A point that is NaN is wrong.
-            let is_right = (nodes.nearness[i] <= largest_nearness) & (nodes.cos[i] >= self.min_cos);
-            wrong[i] = u8::from(!is_right);
+            *wrong = u8::from(!((*nearness <= largest_nearness) & (*cos >= self.min_cos)));
         }
         std::array::from_fn(|block| {
             u32::from_ne_bytes(std::array::from_fn(|node| wrong[NODES * block + node]))

@@ -179,10 +179,8 @@ pub(super) fn sum_on_any_processor(
                 continue;
             }
             let nodes = place_lanes(camera, &pose.in_camera(&quad.nodes[0]));
-            let wrong = limits.wrong(&nodes, quad.step_m);
-            for block in 0..NODES {
-                let is_right = wrong[block] == 0;
-                let Some(pixels) = see_block(camera, pose, quad, &nodes, is_right, [block, 0]) else {
+            for (block, wrong) in limits.wrong(&nodes, quad.step_m).into_iter().enumerate() {
+                let Some(pixels) = see_block(camera, pose, quad, &nodes, wrong == 0, [block, 0]) else {
                     continue;
                 };
                 add_values(texture, &pixels, sums);
@@ -263,9 +261,10 @@ pub(super) fn contrast_on_any_processor(
                 place_lanes(camera, &pose.in_camera(&quad.nodes[1])),
                 place_lanes(camera, &pose.in_camera(&quad.nodes[2])),
             ];
-            let wrong = [&centre, &left, &right].map(|nodes| limits.wrong(nodes, quad.step_m));
-            for block in 0..NODES {
-                let is_right = wrong[0][block] | wrong[1][block] | wrong[2][block] == 0;
+            let [a, b, c] = [&centre, &left, &right].map(|nodes| limits.wrong(nodes, quad.step_m));
+            let wrong: [u32; NODES] = std::array::from_fn(|block| a[block] | b[block] | c[block]);
+            for (block, wrong) in wrong.into_iter().enumerate() {
+                let is_right = wrong == 0;
                 let Some(centre) = see_block(camera, pose, quad, &centre, is_right, [block, 0]) else {
                     continue;
                 };
