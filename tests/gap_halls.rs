@@ -13,9 +13,9 @@ use reality_sim::{
 };
 use reality_sim_hidden::{Hidden, Recipe};
 
-/// Returns a drawn world of 60 frames with these effects.
+/// Returns a drawn world of 40 frames with these effects.
 fn drawn(seed: u64, effects: &[Hidden]) -> Recipe {
-    Recipe { effects: effects.to_vec(), frames: 60, size: [640, 480], ..Recipe::drawn(seed) }
+    Recipe { effects: effects.to_vec(), frames: 40, size: [640, 480], ..Recipe::drawn(seed) }
 }
 
 fn recording(sequence: &Sequence) -> Recording<'_> {

@@ -86,7 +86,7 @@ fn the_recording_of_the_readme_shows_what_the_readme_says() {
 
 #[test]
 fn a_camera_that_is_turned_against_the_frame_of_its_poses_is_named_as_such() {
-    for seed in [11, 12, 13] {
+    for seed in [11, 12] {
         let truth = 1.1_f64.to_radians();
         let (_folder, mut sequence) = record(seed, &[]);
         moved(&mut sequence, |pose| CameraPose { yaw_rad: pose.yaw_rad - truth, ..pose });
@@ -98,7 +98,7 @@ fn a_camera_that_is_turned_against_the_frame_of_its_poses_is_named_as_such() {
 
 #[test]
 fn a_camera_that_is_beside_the_place_of_its_poses_is_named_as_such() {
-    for seed in [11, 12, 13] {
+    for seed in [11, 12] {
         let (forward_m, left_m) = (0.06, -0.04);
         let (_folder, mut sequence) = record(seed, &[]);
         moved(&mut sequence, |pose| {
@@ -133,7 +133,7 @@ fn with_lasting_errors(sequence: &mut Sequence, seed: u64, sigma: f64, time_cons
 
 #[test]
 fn errors_of_the_reference_that_last_for_seconds_become_no_name() {
-    for (seed, time_constant_s) in [(201, 0.5), (202, 1.0), (203, 2.0), (204, 5.0), (205, 2.0), (206, 5.0)] {
+    for (seed, time_constant_s) in [(201, 0.5), (202, 1.0), (203, 2.0), (204, 5.0)] {
         let (_folder, mut sequence) = recorded(&Recipe { frames: 48, ..small(seed) });
         with_lasting_errors(&mut sequence, seed, 0.003, time_constant_s);
         let report = reported(&sequence);

@@ -6,12 +6,12 @@ use std::{path::Path, process::Command};
 
 use serde_json::Value;
 
-/// Runs `gap --inject` on a recording of `assets/` and returns the report that it prints.
+/// Runs `gap --inject` on 32 pictures of a recording of `assets/` and returns the report that it prints.
 fn control(recording: &str, inject: &str) -> Value {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(recording);
     let out = tempfile::tempdir().unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_reality-sim"))
-        .args(["gap", folder.to_str().unwrap(), "--inject", inject, "--json", "--out"])
+        .args(["gap", folder.to_str().unwrap(), "--frames", "0..32", "--inject", inject, "--json", "--out"])
         .arg(out.path().join("report"))
         .output()
         .unwrap();

@@ -9,6 +9,7 @@ use reality_sim_core::{
     mount::MountPose,
     names::{UnknownName, by_name},
     pose::{CameraPose, Pose2},
+    preprocess::whiteness,
     refine::RefineConfig,
     sequence::Sequence,
     statistics::median,
@@ -216,6 +217,10 @@ impl Work<'_> {
             Ok(Taken { frame, pixels, stated: mount_of_frame(self.sequence, frame) })
         });
         let taken: Vec<Taken> = taken.collect::<Result<_, CalibrationError>>()?;
+        // The search through a covered lens would take a minute.
+        if taken.iter().all(|taken| whiteness(&taken.pixels).iter().all(|&white| white == 0)) {
+            return Err(self.too_few(0));
+        }
         let find = |height_is_guessed| {
             // A lens and a height that are both trusted were tried before: one of them is wrong.
             let lens_is_guessed = !trusted.lens || trusted.height;

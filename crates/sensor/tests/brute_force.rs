@@ -22,6 +22,11 @@ const LAST_RAY: u8 = 255;
 /// pixel: there, the fraction that they cover together differs from the product by at most a quarter of that third: 21.3.
 /// The rays themselves resolve fractions of a pixel to a sixtieth.
 const LARGEST_DIFFERENCE: f32 = 26.0;
+/// The side of a post touches the rim of its foot, and the two run along each other in the whole pixel where they do: a quarter of
+/// the full scale, and what the rays resolve.
+const LARGEST_DIFFERENCE_AT_FEET: f32 = 68.0;
+/// Number of pixels in which that may be: two for each of the two posts of a goal that is near.
+const PIXELS_AT_FEET: usize = 4;
 const MEAN_DIFFERENCE: f32 = 0.25;
 
 struct Reference {
@@ -154,7 +159,9 @@ proptest! {
         let largest = differences.iter().copied().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
         let mean = differences.iter().map(|(value, ..)| value).sum::<f32>() / differences.len() as f32;
         eprintln!("{largest:?} {mean}");
-        prop_assert!(largest.0 <= LARGEST_DIFFERENCE, "{largest:?}");
+        prop_assert!(largest.0 <= LARGEST_DIFFERENCE_AT_FEET, "{largest:?}");
+        let large: Vec<_> = differences.iter().filter(|(value, ..)| *value > LARGEST_DIFFERENCE).collect();
+        prop_assert!(large.len() <= PIXELS_AT_FEET, "{large:?}");
         prop_assert!(mean <= MEAN_DIFFERENCE, "{mean}");
     }
 }

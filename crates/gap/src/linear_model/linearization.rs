@@ -159,9 +159,14 @@ pub(crate) fn linearise(
         chain,
     };
     let motions = instrumental_motions(recording, &recording.frames.iter().collect::<Vec<_>>());
-    let frames = recording.frames.as_slice().par_iter().zip(measurements.as_slice()).zip(&motions);
-    let linearized: Vec<LinearizedFrame> =
-        frames.map(|((frame, measured), motion)| linearization.frame(frame, measured, *motion)).collect();
+    let roundings = Rounding::of_frames(measurements);
+    let measured = measurements.as_slice().par_iter().zip(&roundings);
+    let frames = recording.frames.as_slice().par_iter().zip(measured).zip(&motions);
+    let linearized: Vec<LinearizedFrame> = frames
+        .map(|((frame, (measured, rounding)), motion)| {
+            linearization.frame(frame, measured, rounding, *motion)
+        })
+        .collect();
     let simplified = |frame: LinearizedFrame| match recording.simplification {
         Some(Simplification::ExactPoses) => frame.at_exact_pose(),
         Some(Simplification::EvenSurfaces) => frame.on_even_surfaces(),
@@ -183,15 +188,20 @@ struct Linearization<'a> {
 
 impl Linearization<'_> {
     /// Linearises a frame. `motion` is that of the robot at about the time of the frame's odometry step.
-    fn frame(&self, frame: &Frame, measured: &FrameMeasurements, motion: Option<Motion2>) -> LinearizedFrame {
+    fn frame(
+        &self,
+        frame: &Frame,
+        measured: &FrameMeasurements,
+        rounding: &Rounding,
+        motion: Option<Motion2>,
+    ) -> LinearizedFrame {
         let mut measurements = measured.measurements(self.nominal.gamma);
         measurements.extend(frame.step.into_iter().flat_map(|step| Measurement::of_odometry(step.odometry)));
         measurements.extend(frame.stated_attitude_rad.into_iter().flat_map(Measurement::of_attitude));
-        let rounding = Rounding::new(&measured.noise_steps);
         let predictor = |chain| Predictor {
             camera: frame_camera(chain, self.recording, frame),
             frame: measured,
-            rounding: &rounding,
+            rounding,
             step_until_s: frame.step.map(|step| step.until_s),
             nominal: self.nominal,
             own_clock_s: 0.0,

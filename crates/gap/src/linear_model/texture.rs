@@ -27,8 +27,7 @@ impl CarpetTexture {
     /// Takes what is more in the medians of measured variances than in the model's noise for texture.
     pub(crate) fn new(measurements: &PerFrame<FrameMeasurements>, chain: &Chain, gamma: f64) -> Self {
         let mut squares: [Vec<f64>; OCTAVES] = Default::default();
-        for frame in measurements.iter() {
-            let rounding = Rounding::new(&frame.noise_steps);
+        for (frame, rounding) in measurements.iter().zip(Rounding::of_frames(measurements)) {
             let noise = frame.measurements(gamma).into_iter();
             let noise = noise.filter(|row| row.quantity == Quantity::NoiseVariance);
             for (row, block) in noise.zip(&frame.blocks) {

@@ -66,9 +66,10 @@ pub(crate) fn rounded_variance(sigma: f64, step: f64) -> f64 {
         // Sheppard's correction.
         return sigma * sigma + step * step / 12.0;
     }
-    let beyond = |edge: f64| 1.0 - erf(edge / (sigma * std::f64::consts::SQRT_2));
-    // P(|x| rounds to k or more) = erfc((k − ½) step / (√2 σ)); k² = Σ (2j − 1).
-    (1..=20).map(|k| f64::from(2 * k - 1) * beyond((f64::from(k) - 0.5) * step)).sum::<f64>() * step * step
+    let beyond = |k: i32| 1.0 - erf((f64::from(k) - 0.5) * step / (sigma * std::f64::consts::SQRT_2));
+    // P(|x| rounds to k or more) = erfc((k − ½) step / (√2 σ)); k² = Σ (2j − 1). What is beyond 8.3 σ rounds to nothing.
+    let probable = (1..=20).map(|k| (k, beyond(k))).take_while(|(_, beyond)| *beyond > 0.0);
+    probable.map(|(k, beyond)| f64::from(2 * k - 1) * beyond).sum::<f64>() * step * step
 }
 
 /// Returns the orthonormal basis of the cosine transform (DCT-II), by frequency and position.
