@@ -20,7 +20,7 @@ pub(crate) struct LinearModelThresholds {
     /// poses' errors in turn: so many before slow errors of the poses are known, and so many after. Chosen; no measurement.
     pub(crate) reweighting_rounds: usize,
     /// Rounds in which the pose of a held-out frame is refitted. Measured with errors of 3 mrad and 3 mm in poses of 320×240
-    /// pictures (seed 204 of `tests/gap_reference.rs`): the third round still changes the gap by 1 %, the fourth by no digit.
+    /// pictures (seed 204 of `tests/gap/reference.rs`): the third round still changes the gap by 1 %, the fourth by no digit.
     pub(crate) refitting_rounds: usize,
     /// Cut-off of Tukey's biweight, standard deviations: residuals beyond it have no weight (Huber and Ronchetti 2009,
     /// section 4.8). Chosen: a little above the customary 4.685 of 95 % efficiency; it has 96 %.

@@ -1,15 +1,18 @@
 //! `gap --reference`: what has changed since an earlier recording by the same camera, without nominal values.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
-
-use std::{fs, path::Path, process::Command};
+use std::{fs, path::Path};
 
 use reality_sim_hidden::{Falloff, Hidden, Recipe};
 use serde_json::Value;
 
+use crate::{
+    common::{assert_fails, program, shown},
+    small,
+};
+
 /// Records a walk in one hall, whose camera file tells nothing of brightness, noise and sharpness.
 fn record(folder: &Path, seed: u64, effects: &[Hidden]) {
-    let recipe = Recipe { frames: 32, size: [320, 240], effects: effects.to_vec(), ..Recipe::new(seed) };
+    let recipe = Recipe { effects: effects.to_vec(), ..small(seed) };
     recipe.record(folder).unwrap();
     let camera = folder.join("camera.toml");
     let text = fs::read_to_string(&camera).unwrap();
@@ -23,15 +26,8 @@ fn since(earlier: &[Hidden], later: &[Hidden]) -> Value {
     let [before, after, out] = ["before", "after", "out"].map(|name| folder.path().join(name));
     record(&before, 131, earlier);
     record(&after, 132, later);
-    let output = Command::new(env!("CARGO_BIN_EXE_reality-sim"))
-        .arg("gap")
-        .arg(&after)
-        .arg("--reference")
-        .arg(&before)
-        .args(["--json", "--out"])
-        .arg(&out)
-        .output()
-        .unwrap();
+    let output =
+        program(&["gap", shown(&after), "--reference", shown(&before), "--json", "--out", shown(&out)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
 }
@@ -55,17 +51,8 @@ fn a_report_is_not_written_into_the_earlier_recording() {
     record(&before, 131, &[]);
     record(&after, 132, &[]);
     let camera = fs::read_to_string(before.join("camera.toml")).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_reality-sim"))
-        .arg("gap")
-        .arg(&after)
-        .arg("--reference")
-        .arg(&before)
-        .arg("--out")
-        .arg(&before)
-        .output()
-        .unwrap();
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert!(!output.status.success() && message.contains("holds the input"), "{message}");
+    let refused = ["gap", shown(&after), "--reference", shown(&before), "--out", shown(&before)];
+    assert_fails(&refused, &["holds the input"]);
     assert_eq!(fs::read_to_string(before.join("camera.toml")).unwrap(), camera);
 }
 

@@ -1,11 +1,8 @@
 //! The gap workflow in drawn worlds: other halls, lenses, carpets and robots than those of the standard one.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
-
 use reality_sim::{
-    Sequence,
     gap::{
-        Options, Recording, ReferenceSource, Simplification, analyse,
+        Options, Simplification, analyse,
         report::{Report, Verdict, text::summary},
     },
     sensor::Model,
@@ -13,36 +10,22 @@ use reality_sim::{
 };
 use reality_sim_hidden::{Hidden, Recipe};
 
+use crate::{assert_size, named, recorded, recording_of, reported};
+
 /// Returns a drawn world of 40 frames with these effects.
 fn drawn(seed: u64, effects: &[Hidden]) -> Recipe {
     Recipe { effects: effects.to_vec(), frames: 40, size: [640, 480], ..Recipe::drawn(seed) }
 }
 
-fn recording(sequence: &Sequence) -> Recording<'_> {
-    let poses: Vec<_> = sequence.reference_poses().collect();
-    Recording::new(sequence, &poses, ReferenceSource::Measured, None).unwrap()
-}
-
-fn reported(sequence: &Sequence) -> Report {
-    report_of(&recording(sequence))
-}
-
-fn report_of(recording: &Recording<'_>) -> Report {
-    analyse(recording, &Model::default(), &Options::default(), &|_| ()).unwrap().report
-}
-
 fn reported_of(recipe: &Recipe) -> Report {
-    let folder = tempfile::tempdir().unwrap();
-    reported(&recipe.record(folder.path()).unwrap())
+    let (_folder, sequence) = recorded(recipe);
+    reported(&sequence)
 }
 
 /// Asserts that the report names exactly this effect, and that its estimate is within four standard deviations of the truth.
 fn assert_found(report: &Report, id: &str, parameter: &str, truth: f64) {
-    let named: Vec<&str> = report.effects.iter().map(|effect| effect.id.as_str()).collect();
-    assert_eq!((report.verdict, named), (Verdict::Named, vec![id]), "{}", summary(report));
-    let estimate = &report.effects[0].parameters[parameter];
-    let off = (estimate.value - truth).abs() / estimate.sigma;
-    assert!(off < 4.0, "{id}: {} ± {} for {truth}", estimate.value, estimate.sigma);
+    assert_eq!((report.verdict, named(report)), (Verdict::Named, vec![id]), "{}", summary(report));
+    assert_size(report, id, parameter, truth);
 }
 
 /// In this world the carpet is brighter by up to a tenth where the camera looks at it from another side, and the paint is not.
@@ -68,16 +51,15 @@ fn lines_that_errors_of_the_reference_poses_displace_are_not_missing() {
 
 #[test]
 fn stray_light_is_told_from_a_black_level() {
-    let report = reported_of(&drawn(101_280_000, &[Hidden::VeilingGlare { share: 0.15 }]));
+    let recipe = drawn(101_280_000, &[Hidden::VeilingGlare { share: 0.15 }]);
+    let report = reported_of(&Recipe { frames: 60, ..recipe });
     assert_found(&report, "veiling_glare", "share", 0.15);
 }
 
 /// A person's measurement is trusted to 5 %; one that is trusted to 50 % may be off by that much.
 #[test]
 fn lines_brighter_than_stated_are_named_unless_the_files_trust_their_brightness_less() {
-    let folder = tempfile::tempdir().unwrap();
-    let recipe = drawn(101_300_000, &[Hidden::LineReflectance { change: 0.8 }]);
-    let mut sequence = recipe.record(folder.path()).unwrap();
+    let (_folder, mut sequence) = recorded(&drawn(101_300_000, &[Hidden::LineReflectance { change: 0.8 }]));
     assert_found(&reported(&sequence), "line_reflectance", "change", 0.8);
     let photometry = sequence.setup.photometry.as_mut().unwrap();
     photometry.trust = Some(Trust { line: Some(0.5), ..Trust::default() });
@@ -87,10 +69,12 @@ fn lines_brighter_than_stated_are_named_unless_the_files_trust_their_brightness_
 /// A world in which nothing is hidden, of few and small pictures.
 #[test]
 fn simpler_workflows_see_effects_where_there_are_none() {
-    let folder = tempfile::tempdir().unwrap();
-    let sequence = Recipe { frames: 24, size: [320, 240], ..drawn(1001, &[]) }.record(folder.path()).unwrap();
+    let (_folder, sequence) = recorded(&Recipe { frames: 24, size: [320, 240], ..drawn(1001, &[]) });
     assert_eq!(reported(&sequence).verdict, Verdict::None);
-    let simpler = |simplification| report_of(&recording(&sequence).simplified(simplification));
+    let simpler = |simplification| {
+        let recording = recording_of(&sequence).simplified(simplification);
+        analyse(&recording, &Model::default(), &Options::default(), &|_| ()).unwrap().report
+    };
     for simplification in [Simplification::ExactPoses, Simplification::EvenSurfaces] {
         assert_ne!(simpler(simplification).verdict, Verdict::None, "{simplification:?}");
     }

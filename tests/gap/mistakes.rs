@@ -1,38 +1,29 @@
 //! Mistakes that people make in a recording's files are recognised before anything is fitted.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
-
 use image::{RgbImage, imageops};
 use reality_sim::{
     CameraPose, FieldDimensions, Pose2, Sequence,
     field::preset_names,
     gap::{
-        Options, Recording, ReferenceSource, analyse,
+        Recording, ReferenceSource,
         report::{Finding, InputMistake, Report, Verdict, text::summary},
         shows_lines,
     },
     glam::{DMat3, DQuat, DVec3},
-    sensor::Model,
 };
 use reality_sim_hidden::{Hidden, Random, Recipe};
 use tempfile::TempDir;
+
+use crate::{recorded, reported, small};
 
 /// Mistake with the way in which it changes a value.
 type Case<T> = (InputMistake, fn(T) -> T);
 /// The same of a picture.
 type PictureCase = (InputMistake, fn(&RgbImage) -> RgbImage);
 
-fn recorded(seed: u64, effects: Vec<Hidden>) -> (TempDir, Sequence) {
-    let folder = tempfile::tempdir().unwrap();
-    let recipe = Recipe { frames: 16, size: [320, 240], effects, ..Recipe::new(seed) };
-    let sequence = recipe.record(folder.path()).unwrap();
-    (folder, sequence)
-}
-
-fn reported(sequence: &Sequence) -> Report {
-    let poses: Vec<_> = sequence.reference_poses().collect();
-    let recording = Recording::new(sequence, &poses, ReferenceSource::Measured, None).unwrap();
-    analyse(&recording, &Model::default(), &Options::default(), &|_| ()).unwrap().report
+/// Records 16 pictures: a mistake shows in few.
+fn short(seed: u64, effects: Vec<Hidden>) -> (TempDir, Sequence) {
+    recorded(&Recipe { frames: 16, effects, ..small(seed) })
 }
 
 fn mistakes(report: &Report) -> Vec<InputMistake> {
@@ -45,7 +36,7 @@ fn mistakes(report: &Report) -> Vec<InputMistake> {
 
 /// Asserts that a mistake is the only thing that is said of a recording in which it was made.
 fn assert_recognised(mistake: InputMistake, make: impl Fn(&mut Sequence)) {
-    let (_folder, mut sequence) = recorded(3, Vec::new());
+    let (_folder, mut sequence) = short(3, Vec::new());
     make(&mut sequence);
     let report = reported(&sequence);
     let said = summary(&report);
@@ -198,11 +189,11 @@ fn nothing_and_no_effect_is_taken_for_a_mistake() {
     let random = &mut Random::new(1);
     for id in ["principal_point", "mount_pitch", "field_dimensions", "odometry_scale"] {
         let effect = Hidden::of(id, 30.0, random).unwrap();
-        let (_folder, sequence) = recorded(5, vec![effect]);
+        let (_folder, sequence) = short(5, vec![effect]);
         assert_eq!(mistakes(&reported(&sequence)), [], "{id}");
     }
     for seed in 100..103 {
-        let (_folder, sequence) = recorded(seed, Vec::new());
+        let (_folder, sequence) = short(seed, Vec::new());
         assert_eq!(mistakes(&reported(&sequence)), [], "seed {seed}");
     }
 }
@@ -211,7 +202,7 @@ fn nothing_and_no_effect_is_taken_for_a_mistake() {
 fn a_camera_file_that_is_wrong_by_a_factor() {
     for (factor, percent) in [(1.43, 143_u32), (0.7, 70)] {
         for seed in [3, 4] {
-            let (_folder, mut sequence) = recorded(seed, Vec::new());
+            let (_folder, mut sequence) = short(seed, Vec::new());
             let camera = &mut sequence.setup.camera;
             (camera.fx, camera.fy) = (factor * camera.fx, factor * camera.fy);
             let found = mistakes(&reported(&sequence));
@@ -219,7 +210,7 @@ fn a_camera_file_that_is_wrong_by_a_factor() {
             assert!(found.abs_diff(percent) <= 4, "seed {seed}: {found} % instead of {percent} %");
         }
     }
-    let (_folder, mut sequence) = recorded(3, Vec::new());
+    let (_folder, mut sequence) = short(3, Vec::new());
     let camera = &mut sequence.setup.camera;
     for value in [&mut camera.fx, &mut camera.fy, &mut camera.cx, &mut camera.cy] {
         *value *= 2.0;
@@ -231,7 +222,7 @@ fn a_camera_file_that_is_wrong_by_a_factor() {
 #[test]
 fn pictures_that_show_no_lines() {
     for level in [0, 255] {
-        let (_folder, sequence) = recorded(3, Vec::new());
+        let (_folder, sequence) = short(3, Vec::new());
         for frame in 0..sequence.frames.len() {
             let [width, height] = [sequence.setup.camera.width, sequence.setup.camera.height];
             let picture = RgbImage::from_pixel(width, height, image::Rgb([level; 3]));
@@ -242,12 +233,12 @@ fn pictures_that_show_no_lines() {
         assert_eq!((report.verdict, &report.unexplained[..]), (Verdict::Unknown, &[Finding::NoLines][..]));
         assert!(summary(&report).starts_with("No picture shows a white line"), "{}", summary(&report));
     }
-    assert!(shows_lines(&recorded(3, Vec::new()).1).unwrap());
+    assert!(shows_lines(&short(3, Vec::new()).1).unwrap());
 }
 
 #[test]
 fn pictures_of_another_field() {
-    let (_folder, mut sequence) = recorded(101, Vec::new());
+    let (_folder, mut sequence) = short(101, Vec::new());
     sequence.field.length_m = 200.0;
     let report = reported(&sequence);
     let [Finding::ForeignLines { share, .. }] = report.unexplained[..] else {
@@ -259,7 +250,7 @@ fn pictures_of_another_field() {
 
 #[test]
 fn missing_pictures_are_said_before_missing_poses() {
-    let (_folder, sequence) = recorded(3, Vec::new());
+    let (_folder, sequence) = short(3, Vec::new());
     let poses = vec![None; sequence.frames.len()];
     for frame in 0..sequence.frames.len() {
         std::fs::remove_file(sequence.image_path(frame).unwrap()).unwrap();

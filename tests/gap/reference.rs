@@ -1,51 +1,13 @@
 //! The gap workflow and what reference poses are to the camera: turned, beside it, faster than it, noisy.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
-
 use reality_sim::{
     CameraPose, Sequence, StampedPose,
-    gap::{
-        Channel, Options, Recording, ReferenceSource, analyse,
-        report::{Report, text::summary},
-    },
+    gap::{Channel, report::text::summary},
     glam::{DQuat, DVec3},
-    sensor::Model,
 };
 use reality_sim_hidden::{Hidden, Random, Recipe};
-use tempfile::TempDir;
 
-/// Records a small sequence with these effects.
-fn record(seed: u64, effects: &[Hidden]) -> (TempDir, Sequence) {
-    recorded(&Recipe { effects: effects.to_vec(), ..small(seed) })
-}
-
-fn small(seed: u64) -> Recipe {
-    Recipe { frames: 32, size: [320, 240], ..Recipe::new(seed) }
-}
-
-fn recorded(recipe: &Recipe) -> (TempDir, Sequence) {
-    let folder = tempfile::tempdir().unwrap();
-    let sequence = recipe.record(folder.path()).unwrap();
-    (folder, sequence)
-}
-
-fn reported(sequence: &Sequence) -> Report {
-    let poses: Vec<_> = sequence.reference_poses().collect();
-    let recording = Recording::new(sequence, &poses, ReferenceSource::Measured, None).unwrap();
-    analyse(&recording, &Model::default(), &Options::default(), &|_| ()).unwrap().report
-}
-
-fn named(report: &Report) -> Vec<&str> {
-    report.effects.iter().map(|effect| effect.id.as_str()).collect()
-}
-
-/// Asserts that the estimate of a parameter is within four of its standard deviations of the truth.
-fn assert_size(report: &Report, id: &str, parameter: &str, truth: f64) {
-    let effect = report.effects.iter().find(|effect| effect.id == id).unwrap();
-    let estimate = &effect.parameters[parameter];
-    let off = (estimate.value - truth).abs() / estimate.sigma;
-    assert!(off < 4.0, "{id}: {} ± {} for {truth}", estimate.value, estimate.sigma);
-}
+use crate::{assert_size, named, record, recorded, reported, small};
 
 /// Replaces every reference pose.
 fn moved(sequence: &mut Sequence, change: impl Fn(CameraPose) -> CameraPose) {
@@ -76,7 +38,7 @@ fn the_recording_of_the_readme_shows_what_the_readme_says() {
     // Libraries of other machines may round the last digits of sizes otherwise.
     let summary = summary(&report);
     let (said, _) = summary.split_once(':').unwrap();
-    let readme = include_str!("../README.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    let readme = include_str!("../../README.md").split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(readme.contains(&format!("\"{said}:")), "{said}");
     let size = report.effects[0].parameters["pitch_rad"].value.abs().to_degrees();
     assert!((size - 1.0).abs() < 0.05, "{size}");

@@ -1,69 +1,18 @@
-//! The gap workflow on recordings with hidden effects, made by a ray caster that shares no code with what is fitted.
+//! Effects that are hidden, alone and together, and what is said of them.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
-
-use std::{
-    collections::BTreeSet,
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
+use std::{collections::BTreeSet, fs, path::Path};
 
 use reality_sim::{
     Sequence,
     gap::{
-        Analysis, Channel, Options, Pictures, Recording, ReferenceSource, analyse,
-        report::{
-            FieldLine, Finding, MissingInput, ObjectMotion, Report, UnobservableCause, Verdict, text::summary,
-        },
+        Channel, Options, Pictures,
+        report::{FieldLine, Finding, MissingInput, ObjectMotion, UnobservableCause, Verdict, text::summary},
     },
     sensor::{Model, library},
 };
 use reality_sim_hidden::{Course, Falloff, Hidden, Recipe, Walk};
-use serde_json::Value;
-use tempfile::TempDir;
 
-/// Records a small sequence with these effects.
-fn record(seed: u64, effects: &[Hidden]) -> (TempDir, Sequence) {
-    recorded(&Recipe { effects: effects.to_vec(), ..small(seed) })
-}
-
-fn small(seed: u64) -> Recipe {
-    Recipe { frames: 24, size: [320, 240], ..Recipe::new(seed) }
-}
-
-fn recorded(recipe: &Recipe) -> (TempDir, Sequence) {
-    let folder = tempfile::tempdir().unwrap();
-    let sequence = recipe.record(folder.path()).unwrap();
-    (folder, sequence)
-}
-
-fn analysed(sequence: &Sequence, model: &Model, options: &Options) -> Analysis {
-    analyse(&recording_of(sequence), model, options, &|_| ()).unwrap()
-}
-
-fn recording_of(sequence: &Sequence) -> Recording<'_> {
-    Recording::new(sequence, &sequence.reference_poses().collect::<Vec<_>>(), ReferenceSource::Measured, None)
-        .unwrap()
-}
-
-fn reported(sequence: &Sequence) -> Report {
-    analysed(sequence, &Model::default(), &Options::default()).report
-}
-
-fn named(report: &Report) -> Vec<&str> {
-    report.effects.iter().map(|effect| effect.id.as_str()).collect()
-}
-
-/// Asserts that the estimate of a parameter is within four of its standard deviations of the truth.
-fn assert_size(report: &Report, id: &str, parameter: &str, truth: f64) {
-    // The hidden defocus is a disc; the library's Gaussian with the same edges is a tenth wider.
-    let form = if id == "defocus" { 0.15 * truth } else { 0.0 };
-    let effect = report.effects.iter().find(|effect| effect.id == id).unwrap();
-    let estimate = &effect.parameters[parameter];
-    let off = ((estimate.value - truth).abs() - form) / estimate.sigma;
-    assert!(off < 4.0, "{id}: {} ± {} for {truth}", estimate.value, estimate.sigma);
-}
+use crate::{analysed, assert_size, named, record, recorded, recording_of, reported, small};
 
 #[test]
 fn without_a_hidden_effect_nothing_is_named_and_every_effect_has_a_detection_limit_or_a_cause() {
@@ -318,93 +267,6 @@ fn differences_are_shown_where_the_recorded_picture_has_the_field() {
     assert!(green(0) < 0.05, "{} of all else", green(0));
 }
 
-fn program(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_reality-sim")).args(arguments).output().unwrap()
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
-}
-
-/// Asserts that the program fails with one line that contains all these parts.
-fn assert_refused(arguments: &[&str], parts: &[&str]) {
-    let output = program(arguments);
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(message.trim_end().lines().count(), 1, "{message}");
-    for part in parts {
-        assert!(message.contains(part), "{message:?} has no {part:?}");
-    }
-}
-
-#[test]
-fn the_program_writes_a_report_a_page_pictures_and_a_model_that_it_takes_again() {
-    let (folder, _sequence) = record(81, &[Hidden::MountPitch { angle_rad: -0.02 }]);
-    let out = folder.path().join("report");
-    let output = program(&["gap", text(folder.path()), "--out", text(&out), "--json"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let written: Value = serde_json::from_str(&fs::read_to_string(out.join("report.json")).unwrap()).unwrap();
-    assert_eq!(printed, written);
-    assert_eq!(written["verdict"], "named");
-    let effect = &written["effects"][0];
-    assert_eq!(effect["id"], "mount_pitch");
-    assert!(effect["parameters"]["pitch_rad"]["value"].as_f64().unwrap() < -0.015);
-    assert_eq!(effect["parameters"]["pitch_rad"]["unit"], "rad");
-    for key in ["p_value", "held_out_gain", "confusable_with", "because"] {
-        assert!(!effect[key].is_null(), "{key}");
-    }
-    for key in ["before", "after", "floor", "unit", "channels"] {
-        assert!(!written["gap"][key].is_null(), "{key}");
-    }
-    assert!(written["not_found"][0]["detection_limit"]["value"].as_f64().unwrap() > 0.0);
-    let page = fs::read_to_string(out.join("report.html")).unwrap();
-    // Its pictures are embedded: nothing is fetched.
-    let fetched =
-        page.match_indices("src=\"").all(|(at, _)| page[at..].starts_with("src=\"data:image/jpeg;base64,"));
-    assert!(page.contains("mount_pitch") && fetched && !page.contains("href="), "self-contained");
-    for name in ["measured", "before", "after"] {
-        assert_eq!(image::open(out.join(format!("pictures/{name}.png"))).unwrap().width(), 320);
-    }
-    let again = folder.path().join("again");
-    let model = out.join("model.toml");
-    let output =
-        program(&["gap", text(folder.path()), "--model", text(&model), "--out", text(&again), "--json"]);
-    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(report["effects"], Value::Array(Vec::new()));
-    assert_eq!(report["in_model"][0]["id"], "mount_pitch");
-}
-
-#[test]
-fn poses_of_the_particle_filter_suffice_and_the_report_states_what_they_absorb() {
-    let (folder, _sequence) = record(91, &[Hidden::MountPitch { angle_rad: 0.03 }]);
-    let out = folder.path().join("report");
-    let output =
-        program(&["gap", text(folder.path()), "--tag", "--backend", "cpu", "--out", text(&out), "--json"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(report["poses"]["source"], "tagged");
-    assert!(!report["poses"]["absorbed"].as_str().unwrap().is_empty());
-    assert_eq!(report["effects"][0]["id"], "mount_pitch", "{report}");
-}
-
-#[test]
-fn broken_pictures_are_left_out_and_named() {
-    let (folder, sequence) = record(101, &[]);
-    let picture = sequence.image_path(5).unwrap();
-    let bytes = fs::read(&picture).unwrap();
-    fs::write(&picture, &bytes[..bytes.len() / 2]).unwrap();
-    fs::remove_file(sequence.image_path(9).unwrap()).unwrap();
-    let out = folder.path().join("report");
-    let output = program(&["gap", text(folder.path()), "--out", text(&out), "--json"]);
-    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(report["frames"], 30);
-    assert_eq!(report["left_out"].as_array().unwrap().len(), 2);
-    fs::remove_dir_all(folder.path().join("images")).unwrap();
-    let refused = ["gap", text(folder.path()), "--out", text(&out)];
-    assert_refused(&refused, &["32 of its 32 pictures are missing", "000000.jpg"]);
-}
-
 #[test]
 fn effects_that_need_an_input_missing_from_the_camera_file_are_unobservable() {
     let (folder, _sequence) = record(111, &[]);
@@ -465,33 +327,4 @@ fn noise_is_named_although_its_two_numbers_cannot_be_told_apart() {
     let (_folder, sequence) = record(26, &[Hidden::SensorNoise { factor: 1.5 }]);
     let report = reported(&sequence);
     assert_eq!(named(&report), ["sensor_noise"], "{}", summary(&report));
-}
-
-#[test]
-fn bad_input_is_one_sentence() {
-    let (folder, _sequence) = record(121, &[]);
-    let (input, out) = (text(folder.path()), folder.path().join("report"));
-    let out = text(&out);
-    assert_refused(&["gap", "no/such/folder", "--out", out], &["no/such/folder"]);
-    assert_refused(
-        &["gap", input, "--out", text(&folder.path().join("camera.toml/report"))],
-        &["camera.toml"],
-    );
-    assert_refused(&["gap", input, "--out", input], &["holds the input"]);
-    assert_refused(&["gap", input, "--frames", "0..5", "--out", out], &["5 of the 5 frames", "at least 12"]);
-    assert_refused(&["gap", input, "--frames", "20..90", "--out", out], &["frames 0 to 31"]);
-    let model = folder.path().join("model.toml");
-    fs::write(&model, "[[effect]]\nid = \"gremlins\"\n").unwrap();
-    assert_refused(&["gap", input, "--model", text(&model), "--out", out], &["model.toml", "gremlins"]);
-    fs::write(&model, "[[effect]]\nid = \"vignetting\"\nstrength = nan\n").unwrap();
-    assert_refused(&["gap", input, "--model", text(&model), "--out", out], &["model.toml", "strength"]);
-    fs::write(&model, "[[effect]]\nid = \"focal_length\"\nscale = -1.0\n").unwrap();
-    let fresh = folder.path().join("fresh");
-    let refused = ["gap", input, "--model", text(&model), "--out", text(&fresh)];
-    assert_refused(&refused, &["model.toml", "focal"]);
-    assert!(!fresh.exists(), "nothing is made for what is refused");
-    fs::write(&model, "[[effect]]\nid = \"camera_height\"\nheight_m = -2.0\n").unwrap();
-    assert_refused(&["gap", input, "--model", text(&model), "--out", out], &["frame 0", "camera_height"]);
-    assert_eq!(program(&["gap", input, "--frames", "9..3", "--out", out]).status.code(), Some(2));
-    assert_eq!(program(&["gap", input]).status.code(), Some(2));
 }

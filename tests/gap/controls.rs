@@ -1,20 +1,18 @@
 //! Controls: effects that are hidden in a recording of one's own, and whether they are named.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail like tests")]
-
-use std::{path::Path, process::Command};
+use std::path::Path;
 
 use serde_json::Value;
+
+use crate::common::{program, shown};
 
 /// Runs `gap --inject` on 32 pictures of a recording of `assets/` and returns the report that it prints.
 fn control(recording: &str, inject: &str) -> Value {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(recording);
     let out = tempfile::tempdir().unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_reality-sim"))
-        .args(["gap", folder.to_str().unwrap(), "--frames", "0..32", "--inject", inject, "--json", "--out"])
-        .arg(out.path().join("report"))
-        .output()
-        .unwrap();
+    let report = out.path().join("report");
+    let gap = ["gap", shown(&folder), "--out", shown(&report), "--json"];
+    let output = program(&[&gap[..], &["--frames", "0..32", "--inject", inject]].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
 }
