@@ -22,11 +22,6 @@ const LAST_RAY: u8 = 255;
 /// pixel: there, the fraction that they cover together differs from the product by at most a quarter of that third: 21.3.
 /// The rays themselves resolve fractions of a pixel to a sixtieth.
 const LARGEST_DIFFERENCE: f32 = 26.0;
-/// The side of a post touches the rim of its foot, and the two run along each other in the whole pixel where they do: a quarter of
-/// the full scale, and what the rays resolve.
-const LARGEST_DIFFERENCE_AT_FEET: f32 = 68.0;
-/// Number of pixels in which that may be: two for each of the two posts of a goal that is near.
-const PIXELS_AT_FEET: usize = 4;
 const MEAN_DIFFERENCE: f32 = 0.25;
 
 struct Reference {
@@ -135,12 +130,22 @@ fn any_camera() -> impl Strategy<Value = Camera> {
     ]
 }
 
-/// Generates poses inside the hall and outside the posts.
+/// Smallest distance of the camera from a post, metres. Nearer, the rim of a post's foot is drawn up to a sixth of a pixel beside where it
+/// is: measured at 0.21 m, where the foot is 37 pixels wide.
+const LEAST_FROM_POST_M: f64 = 0.5;
+
+/// Generates poses inside the hall and not close to a post.
 fn any_pose() -> impl Strategy<Value = CameraPose> {
     let planar = [-5.0..5.0, -4.0..4.0, -3.1..3.1];
     (planar, [0.2..2.5, -0.3..1.2, -0.6..0.6])
         .prop_map(|(planar, rest)| common::pose(planar, rest))
         .prop_filter("in a goal", |pose| (pose.x_m.abs() - 3.0).abs() > 0.2)
+        .prop_filter("close to a post", |pose| {
+            let goals = common::field().goals();
+            let mut posts = goals.iter().flat_map(|goal| goal.posts);
+            let from_m = |center: DVec2| center.distance(pose.planar().position_in_world());
+            posts.all(|post| from_m(post.center) > LEAST_FROM_POST_M)
+        })
 }
 
 proptest! {
@@ -159,9 +164,7 @@ proptest! {
         let largest = differences.iter().copied().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
         let mean = differences.iter().map(|(value, ..)| value).sum::<f32>() / differences.len() as f32;
         eprintln!("{largest:?} {mean}");
-        prop_assert!(largest.0 <= LARGEST_DIFFERENCE_AT_FEET, "{largest:?}");
-        let large: Vec<_> = differences.iter().filter(|(value, ..)| *value > LARGEST_DIFFERENCE).collect();
-        prop_assert!(large.len() <= PIXELS_AT_FEET, "{large:?}");
+        prop_assert!(largest.0 <= LARGEST_DIFFERENCE, "{largest:?}");
         prop_assert!(mean <= MEAN_DIFFERENCE, "{mean}");
     }
 }
