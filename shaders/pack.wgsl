@@ -1,5 +1,5 @@
 // One texel per pixel: its own value and those of its right, lower and lower right neighbours, so that a bilinear look-up
-// costs one load. Twin: `Texture::pack` in crates/core/src/preprocess/texture.rs.
+// costs one load. Twin, whose texels share the values at their right: `Texture::pack` in crates/core/src/preprocess/texture.rs.
 
 #import shared/picture.wgsl
 

@@ -1,5 +1,5 @@
 // Bilinear values of an 8-bit picture whose texels hold their right, lower and lower right neighbours too: the twin of
-// `sample_block` in crates/core/src/observation/kernel.rs and of `Texture` in crates/core/src/preprocess/texture.rs.
+// `sample_block` in crates/core/src/observation/kernel.rs, where a texel has fewer values and two are loaded at once.
 
 fn sample(place: vec2<f32>) -> f32 {
     let corner = floor(place);

@@ -25,6 +25,7 @@ fn record(seed: u64, effects: &[Hidden]) -> (TempDir, Sequence) {
     recorded(&Recipe { effects: effects.to_vec(), ..small(seed) })
 }
 
+/// Returns a recipe of 32 small pictures: with 24, six of these tests miss what is hidden.
 fn small(seed: u64) -> Recipe {
     Recipe { frames: 32, size: [320, 240], ..Recipe::new(seed) }
 }

@@ -217,7 +217,7 @@ impl Work<'_> {
             Ok(Taken { frame, pixels, stated: mount_of_frame(self.sequence, frame) })
         });
         let taken: Vec<Taken> = taken.collect::<Result<_, CalibrationError>>()?;
-        // The search through a covered lens would take a minute.
+        // A search through black pictures, as behind a lens cap, takes a minute. Those with noise in the dark are searched.
         if taken.iter().all(|taken| whiteness(&taken.pixels).iter().all(|&white| white == 0)) {
             return Err(self.too_few(0));
         }

@@ -429,7 +429,7 @@ mod tests {
     }
 
     /// Allows for a particle whose expected number of copies is nearly whole: it may get one more or less, and in the
-    /// residual scheme that shifts all slots behind it.
+    /// residual scheme that shifts all slots behind it, and which particles the draws that are left go to.
     fn assert_same_particles(found: &[CameraPose], expected: &[CameraPose], is_residual: bool, about: &str) {
         assert_eq!(found.len(), expected.len());
         let same = |a: CameraPose, b: CameraPose| distance(a, b) < 1e-5;
@@ -437,12 +437,16 @@ mod tests {
             let off = found.iter().zip(expected).filter(|(a, b)| !same(**a, **b)).count();
             assert!(off * 50 <= found.len(), "{off} of {} slots differ, {about}", found.len());
         }
-        let copies =
-            |of: CameraPose, among: &[CameraPose]| among.iter().filter(|other| same(of, **other)).count();
-        let differing = found.iter().map(|&pose| copies(pose, found).abs_diff(copies(pose, expected)));
-        let differing: Vec<usize> = differing.filter(|&difference| difference > 0).collect();
-        assert!(differing.iter().all(|&difference| difference == 1), "{differing:?}, {about}");
-        assert!(differing.len() * 20 <= found.len(), "{} copies differ, {about}", differing.len());
+        let mut left = expected.to_vec();
+        let has_no_partner = |pose: &&CameraPose| match left.iter().position(|other| same(**pose, *other)) {
+            Some(partner) => {
+                left.swap_remove(partner);
+                false
+            }
+            None => true,
+        };
+        let alone = found.iter().filter(has_no_partner).count();
+        assert!(alone * 20 <= found.len(), "{alone} of {} survivors differ, {about}", found.len());
     }
 
     fn filter_on(context: &Arc<GpuContext>, config: FilterConfig) -> Result<GpuFilter, GpuError> {

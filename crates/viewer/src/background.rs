@@ -121,9 +121,15 @@ impl<T: Send + 'static> Task<T> {
         self.thread.take().map(thread::JoinHandle::join);
     }
 
-    /// Shows the description, the progress, and a button that cancels the task.
+    /// Shows a button that cancels the task, the description, and the progress.
     pub fn ui(&self, ui: &mut egui::Ui) {
         ui.horizontal(|ui| {
+            // First, so that it does not move from under the mouse where another phase has another width.
+            if self.progress.is_cancelled() {
+                ui.weak("stopping …");
+            } else if ui.button("Cancel").clicked() {
+                self.progress.is_cancelled.store(true, Ordering::Relaxed);
+            }
             ui.label(self.progress.phase().unwrap_or(&self.title));
             match self.progress.share() {
                 Some(share) => {
@@ -132,11 +138,6 @@ impl<T: Send + 'static> Task<T> {
                 None => {
                     ui.spinner();
                 }
-            }
-            if self.progress.is_cancelled() {
-                ui.weak("stopping …");
-            } else if ui.button("Cancel").clicked() {
-                self.progress.is_cancelled.store(true, Ordering::Relaxed);
             }
         });
     }

@@ -5,7 +5,7 @@
 //! Multiplications and additions are never fused, so that every processor gives the same bits.
 
 use super::{
-    interpolation::{Limits, NODES, interpolate},
+    interpolation::{NODES, interpolate},
     samples::{Block, Circle, Ground, Quad, Samples},
 };
 use crate::{
@@ -80,16 +80,27 @@ pub(super) fn project_block<const N: usize>(
     project_lanes(camera, &pose.in_camera(&block.points[point]))
 }
 
-/// Interpolates one block of four between its nodes; `None` if the picture contains none of its samples.
+/// Interpolates one block of four between its nodes; `None` if the picture contains none of its lanes.
 #[inline(always)]
-fn interpolate_block(camera: &KernelCamera, nodes: &Places, block: usize) -> Option<Pixels> {
+fn interpolate_block(
+    camera: &KernelCamera,
+    nodes: &Places,
+    block: usize,
+    is_sample: &Lanes,
+) -> Option<Pixels> {
     let mut pixels = Pixels {
         u: interpolate(&nodes.u, block),
         v: interpolate(&nodes.v, block),
         nearness: interpolate(&nodes.nearness, block),
         seen: [0.0; LANES],
     };
-    inside_lanes(camera, &mut pixels).then_some(pixels)
+    if !inside_lanes(camera, &mut pixels) {
+        return None;
+    }
+    for (seen, is_sample) in pixels.seen.iter_mut().zip(is_sample) {
+        *seen *= is_sample;
+    }
+    Some(pixels)
 }
 
 /// Interpolates one block of a quad between its nodes, or projects it where that is not right; `None` if the camera sees none of its
@@ -105,7 +116,7 @@ pub(super) fn see_block<const N: usize>(
     [block, point]: [usize; 2],
 ) -> Option<Pixels> {
     if is_right {
-        interpolate_block(camera, nodes, block)
+        interpolate_block(camera, nodes, block, &quad.blocks[block].is_sample)
     } else {
         project_block(camera, pose, &quad.blocks[block], point)
     }
@@ -136,13 +147,13 @@ pub(crate) fn sample_block(texture: &Texture, pixels: &Pixels) -> Lanes {
         index[i] = row.wrapping_mul(texture.width).wrapping_add(column);
     }
     // The index of a point that is not seen may be any number; what is read there is not used.
-    let texel = texture.gather(index);
+    let values = texture.gather(index);
     let mut value = [0.0_f32; LANES];
     for i in 0..LANES {
-        let p00 = (texel[i] & 255) as f32;
-        let p10 = (texel[i] >> 8 & 255) as f32;
-        let p01 = (texel[i] >> 16 & 255) as f32;
-        let p11 = (texel[i] >> 24) as f32;
+        let p00 = (values[i] & 255) as f32;
+        let p01 = (values[i] >> 8 & 255) as f32;
+        let p10 = (values[i] >> 16 & 255) as f32;
+        let p11 = (values[i] >> 24) as f32;
         let top = p00 + fu[i] * (p10 - p00);
         let bottom = p01 + fu[i] * (p11 - p01);
         value[i] = if pixels.seen[i] > 0.0 { top + fv[i] * (bottom - top) } else { 0.0 };
@@ -155,11 +166,10 @@ pub(crate) fn sample_block(texture: &Texture, pixels: &Pixels) -> Lanes {
 pub(super) fn sum_along_lines(
     texture: &Texture,
     camera: &KernelCamera,
-    limits: &Limits,
     poses: &[CameraFromGround],
     samples: &Samples<1>,
 ) -> Vec<[f32; 2]> {
-    sum_on_any_processor(texture, camera, limits, poses, samples)
+    sum_on_any_processor(texture, camera, poses, samples)
 }
 
 /// Computes [`sum_along_lines`] in every build.
@@ -167,7 +177,6 @@ pub(super) fn sum_along_lines(
 pub(super) fn sum_on_any_processor(
     texture: &Texture,
     camera: &KernelCamera,
-    limits: &Limits,
     poses: &[CameraFromGround],
     samples: &Samples<1>,
 ) -> Vec<[f32; 2]> {
@@ -179,18 +188,12 @@ pub(super) fn sum_on_any_processor(
                 continue;
             }
             let nodes = place_lanes(camera, &pose.in_camera(&quad.nodes[0]));
-            for (block, wrong) in limits.wrong(&nodes, quad.step_m).into_iter().enumerate() {
+            for (block, wrong) in quad.limits.wrong(&nodes).into_iter().enumerate() {
                 let Some(pixels) = see_block(camera, pose, quad, &nodes, wrong == 0, [block, 0]) else {
                     continue;
                 };
                 add_values(texture, &pixels, sums);
             }
-        }
-    }
-    for block in &samples.others {
-        for (pose, sums) in poses.iter().zip(&mut all) {
-            let Some(pixels) = project_block(camera, pose, block, 0) else { continue };
-            add_values(texture, &pixels, sums);
         }
     }
     totals(&all)
@@ -232,12 +235,11 @@ const MIN_CONTRAST: f32 = -0.25;
 pub(super) fn contrast_along_lines(
     texture: &Texture,
     camera: &KernelCamera,
-    limits: &Limits,
     poses: &[CameraFromGround],
     samples: &Samples<3>,
     scale: ContrastScale,
 ) -> Vec<[f32; 2]> {
-    contrast_on_any_processor(texture, camera, limits, poses, samples, scale)
+    contrast_on_any_processor(texture, camera, poses, samples, scale)
 }
 
 /// Computes [`contrast_along_lines`] in every build.
@@ -245,7 +247,6 @@ pub(super) fn contrast_along_lines(
 pub(super) fn contrast_on_any_processor(
     texture: &Texture,
     camera: &KernelCamera,
-    limits: &Limits,
     poses: &[CameraFromGround],
     samples: &Samples<3>,
     scale: ContrastScale,
@@ -261,7 +262,7 @@ pub(super) fn contrast_on_any_processor(
                 place_lanes(camera, &pose.in_camera(&quad.nodes[1])),
                 place_lanes(camera, &pose.in_camera(&quad.nodes[2])),
             ];
-            let [a, b, c] = [&centre, &left, &right].map(|nodes| limits.wrong(nodes, quad.step_m));
+            let [a, b, c] = [&centre, &left, &right].map(|nodes| quad.limits.wrong(nodes));
             let wrong: [u32; NODES] = std::array::from_fn(|block| a[block] | b[block] | c[block]);
             for (block, wrong) in wrong.into_iter().enumerate() {
                 let is_right = wrong == 0;
@@ -274,14 +275,6 @@ pub(super) fn contrast_on_any_processor(
                 };
                 add_contrasts(texture, &scale, pose, [&centre, &left, &right], sums);
             }
-        }
-    }
-    for block in &samples.others {
-        for (pose, sums) in poses.iter().zip(&mut all) {
-            let Some(centre) = project_block(camera, pose, block, 0) else { continue };
-            let Some(left) = project_block(camera, pose, block, 1) else { continue };
-            let Some(right) = project_block(camera, pose, block, 2) else { continue };
-            add_contrasts(texture, &scale, pose, [&centre, &left, &right], sums);
         }
     }
     totals(&all)

@@ -6,11 +6,13 @@
 //! | [`ObservationKind::Distance`] | Σ (cap − distance to the nearest white line) / α (Eq. 1 with the sign reversed) |
 //! | [`ObservationKind::Contrast`] | gain · Σ weight · (contrast of line against flanks − neutral) |
 
+mod block;
 mod config;
 mod interpolation;
 mod kernel;
 mod model;
 mod normal_search;
+mod path;
 mod samples;
 
 use std::slice;
@@ -19,7 +21,9 @@ use rayon::prelude::*;
 
 use self::model::Lines;
 pub use self::{
+    block::{LineBlock, SamplePoints},
     config::{ObservationConfig, ObservationKind},
+    interpolation::Limits,
     kernel::{CameraFromGround, ContrastScale},
     model::LineModel,
     normal_search::NormalSearch,
@@ -64,7 +68,7 @@ impl CpuScorer {
 
     /// Returns the number of line samples scored for each pose.
     pub fn samples(&self) -> usize {
-        self.model.places().len()
+        self.model.blocks().iter().map(|block| block.samples.len()).sum()
     }
 
     /// Returns the fraction of the line in view that the picture shows where the pose projects it: 1 if every line is
@@ -87,12 +91,12 @@ impl CpuScorer {
 
     /// Returns [`Self::sums`] of every pose.
     fn sums_of(&self, poses: &[CameraPose]) -> Vec<[f32; 2]> {
-        let LineModel { camera, limits, lines, .. } = &self.model;
+        let LineModel { camera, lines, .. } = &self.model;
         let poses: Vec<CameraFromGround> = poses.iter().copied().map(CameraFromGround::new).collect();
         match lines {
-            Lines::Plain(samples) => kernel::sum_along_lines(&self.texture, camera, limits, &poses, samples),
+            Lines::Plain(samples) => kernel::sum_along_lines(&self.texture, camera, &poses, samples),
             Lines::Flanked(samples) => {
-                kernel::contrast_along_lines(&self.texture, camera, limits, &poses, samples, self.scale)
+                kernel::contrast_along_lines(&self.texture, camera, &poses, samples, self.scale)
             }
         }
     }

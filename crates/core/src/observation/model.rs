@@ -6,8 +6,9 @@ use glam::DVec2;
 use image::GrayImage;
 
 use super::{
+    block::LineBlock,
     config::{ObservationConfig, ObservationKind},
-    interpolation::Limits,
+    interpolation::CameraLimits,
     kernel::ContrastScale,
     samples::Samples,
 };
@@ -46,7 +47,6 @@ pub struct LineModel {
     pub config: ObservationConfig,
     /// Camera in the form that the scoring loops use.
     pub camera: KernelCamera,
-    pub(super) limits: Limits,
     pub(super) lines: Lines,
     relative_area: f32,
 }
@@ -55,22 +55,22 @@ impl LineModel {
     /// Prepares the samples of a field's lines for a camera.
     pub fn new(camera: &Camera, field: &FieldDimensions, config: ObservationConfig) -> Self {
         let samples = sample_lines(field, config.spacing_in(field));
-        let lines = match config.kind {
-            ObservationKind::Contrast => Lines::Flanked(flanked(&samples, field.line_width_m)),
-            _ => Lines::Plain(plain(&samples)),
-        };
         let area_px = camera.fx * camera.fy * field.line_width_m * config.spacing_in(field);
         let relative_area = (area_px / FULL_AREA_PX) as f32;
         let camera = KernelCamera::new(camera);
-        Self { config, limits: Limits::new(&camera), camera, lines, relative_area }
+        let limits = CameraLimits::new(&camera);
+        let lines = match config.kind {
+            ObservationKind::Contrast => Lines::Flanked(flanked(&samples, field.line_width_m, &limits)),
+            _ => Lines::Plain(plain(&samples, &limits)),
+        };
+        Self { config, camera, lines, relative_area }
     }
 
-    /// Returns the centre of each line sample on the ground, metres, together with its left flank; the right flank is
-    /// its mirror image about the centre. For models without flanks, the centre takes the flank's place.
-    pub fn places(&self) -> Vec<[[f32; 2]; 2]> {
+    /// Returns the line samples.
+    pub fn blocks(&self) -> Vec<LineBlock> {
         match &self.lines {
-            Lines::Plain(samples) => samples.points().map(|[centre]| [centre, centre]).collect(),
-            Lines::Flanked(samples) => samples.points().map(|[centre, left, _]| [centre, left]).collect(),
+            Lines::Plain(samples) => samples.blocks([0, 0]).collect(),
+            Lines::Flanked(samples) => samples.blocks([0, 1]).collect(),
         }
     }
 
@@ -148,13 +148,13 @@ fn nearness(distances: &GrayImage, cap: u8) -> GrayImage {
 }
 
 /// Returns the centres of samples.
-pub(super) fn plain(samples: &[LineSample]) -> Samples<1> {
+pub(super) fn plain(samples: &[LineSample], limits: &CameraLimits) -> Samples<1> {
     let points: Vec<[DVec2; 1]> = samples.iter().map(|sample| [sample.point_in_world]).collect();
-    Samples::new(runs(samples).map(|run| &points[run]))
+    Samples::new(runs(samples).map(|run| &points[run]), limits)
 }
 
 /// Returns centre, left flank and right flank of the samples whose flanks are on no other line.
-pub(super) fn flanked(samples: &[LineSample], line_width_m: f64) -> Samples<3> {
+pub(super) fn flanked(samples: &[LineSample], line_width_m: f64, limits: &CameraLimits) -> Samples<3> {
     let is_clear = |sample: &&LineSample| sample.clearance_m > CLEARANCE_WIDTHS * line_width_m;
     let clear: Vec<LineSample> = samples.iter().filter(is_clear).copied().collect();
     let points = |sample: &LineSample| {
@@ -163,7 +163,7 @@ pub(super) fn flanked(samples: &[LineSample], line_width_m: f64) -> Samples<3> {
         [centre, centre + flank, centre - flank]
     };
     let points: Vec<[DVec2; 3]> = clear.iter().map(points).collect();
-    Samples::new(runs(&clear).map(|run| &points[run]))
+    Samples::new(runs(&clear).map(|run| &points[run]), limits)
 }
 
 /// Returns where the samples of each line are.

@@ -2,10 +2,9 @@ use image::GrayImage;
 use proptest::prelude::*;
 
 use super::{
-    interpolation::{Limits, TOLERANCE_PX},
+    interpolation::{CameraLimits, TOLERANCE_PX},
     kernel::{
-        contrast_along_lines, contrast_on_any_processor, project_block, see_block, sum_along_lines,
-        sum_on_any_processor,
+        contrast_along_lines, contrast_on_any_processor, see_block, sum_along_lines, sum_on_any_processor,
     },
     model::{DARK_LEVEL, flanked, plain},
     samples::{Ground, Samples},
@@ -77,10 +76,10 @@ struct View<const N: usize> {
 
 /// Returns what the loops see of all samples.
 fn views<const N: usize>(camera: &KernelCamera, pose: CameraPose, samples: &Samples<N>) -> Vec<View<N>> {
-    let (limits, pose) = (Limits::new(camera), CameraFromGround::new(pose));
+    let pose = CameraFromGround::new(pose);
     let quads = samples.quads.iter().flat_map(|quad| {
         let nodes = quad.nodes.each_ref().map(|nodes| place_lanes(camera, &pose.in_camera(nodes)));
-        let wrong = nodes.each_ref().map(|nodes| limits.wrong(nodes, quad.step_m));
+        let wrong = nodes.each_ref().map(|nodes| quad.limits.wrong(nodes));
         let pose = &pose;
         (0..quad.blocks.len()).map(move |block| {
             let is_interpolated = wrong.iter().all(|wrong| wrong[block] == 0);
@@ -88,21 +87,17 @@ fn views<const N: usize>(camera: &KernelCamera, pose: CameraPose, samples: &Samp
             View { points: quad.blocks[block].points, pixels: std::array::from_fn(see), is_interpolated }
         })
     });
-    let others = samples.others.iter().map(|block| View {
-        points: block.points,
-        pixels: std::array::from_fn(|point| project_block(camera, &pose, block, point)),
-        is_interpolated: false,
-    });
-    quads.chain(others).collect()
+    quads.collect()
 }
 
 proptest! {
     /// Compares the single-precision loop with the double-precision camera.
     #[test]
     fn the_loop_projects_as_the_camera_does(pose in any_pose(), drawn in any_camera()) {
-        let samples = plain(&sample_lines(&test_scene::field(), 0.02));
+        let samples = sample_lines(&test_scene::field(), 0.02);
         for camera in cameras().into_iter().chain([drawn]) {
             let kernel = KernelCamera::new(&camera);
+            let samples = plain(&samples, &CameraLimits::new(&kernel));
             for View { points: [[x, y]], pixels: [pixels], is_interpolated } in views(&kernel, pose, &samples) {
                 let tolerance = if is_interpolated { 0.01 + f64::from(TOLERANCE_PX) } else { 0.01 };
                 for lane in (0..LANES).filter(|lane| !x[*lane].is_nan()) {
@@ -135,8 +130,9 @@ proptest! {
         pose in any_pose(), camera in any_camera(), preset in prop::sample::select(preset_names().collect::<Vec<_>>()), spacing_m in 0.01..0.05,
     ) {
         let field = FieldDimensions::preset(preset).unwrap();
-        let samples = flanked(&sample_lines(&field, spacing_m), field.line_width_m);
         let kernel = KernelCamera::new(&camera);
+        let samples =
+            flanked(&sample_lines(&field, spacing_m), field.line_width_m, &CameraLimits::new(&kernel));
         let in_camera = CameraFromGround::new(pose);
         for view in views(&kernel, pose, &samples).iter().filter(|view| view.is_interpolated) {
             for (pixels, points) in view.pixels.iter().zip(view.points) {
@@ -161,23 +157,24 @@ proptest! {
         });
         let (texture, field) = (Texture::pack(&picture), test_scene::field());
         let samples = sample_lines(&field, 0.05);
-        let (plain, flanked) = (plain(&samples), flanked(&samples, field.line_width_m));
         let poses = [CameraFromGround::new(pose), CameraFromGround::new(other)];
         let scale = ContrastScale { per_contrast: 2.0, dark_level: DARK_LEVEL, min_width_px: 0.7, per_width_px: 0.5, relative_area: 1.0 };
         for camera in cameras() {
             let camera = KernelCamera::new(&camera);
-            let limits = Limits::new(&camera);
+            let limits = CameraLimits::new(&camera);
+            let (plain, flanked) =
+                (plain(&samples, &limits), flanked(&samples, field.line_width_m, &limits));
             let (sum, sum_anywhere) = (
-                sum_along_lines(&texture, &camera, &limits, &poses, &plain),
-                sum_on_any_processor(&texture, &camera, &limits, &poses, &plain),
+                sum_along_lines(&texture, &camera, &poses, &plain),
+                sum_on_any_processor(&texture, &camera, &poses, &plain),
             );
             prop_assert_eq!(bits(&sum), bits(&sum_anywhere));
             // What a pose sees does not depend on the others.
-            let alone = sum_along_lines(&texture, &camera, &limits, &poses[1..], &plain);
+            let alone = sum_along_lines(&texture, &camera, &poses[1..], &plain);
             prop_assert_eq!(bits(&sum[1..]), bits(&alone));
             let (contrast, contrast_anywhere) = (
-                contrast_along_lines(&texture, &camera, &limits, &poses, &flanked, scale),
-                contrast_on_any_processor(&texture, &camera, &limits, &poses, &flanked, scale),
+                contrast_along_lines(&texture, &camera, &poses, &flanked, scale),
+                contrast_on_any_processor(&texture, &camera, &poses, &flanked, scale),
             );
             prop_assert_eq!(bits(&contrast), bits(&contrast_anywhere));
         }
@@ -191,10 +188,10 @@ proptest! {
             image::Luma([((u * 7 + v * 3 + seed % 97) % 122).abs_diff(61) as u8 * 4])
         });
         let samples = sample_lines(&test_scene::field(), 0.05);
-        let (texture, points) = (Texture::pack(&picture), plain(&samples));
         let camera = &cameras()[0];
         let kernel = KernelCamera::new(camera);
-        let sums = sum_along_lines(&texture, &kernel, &Limits::new(&kernel), &[CameraFromGround::new(pose)], &points);
+        let (texture, points) = (Texture::pack(&picture), plain(&samples, &CameraLimits::new(&kernel)));
+        let sums = sum_along_lines(&texture, &kernel, &[CameraFromGround::new(pose)], &points);
         let [sum, seen] = sums[0];
         let (mut expected, mut count) = (0.0, 0.0);
         for sample in &samples {
@@ -272,15 +269,16 @@ fn poses_without_sense_have_a_weight_all_the_same() {
 /// Most blocks of a fine sampling are interpolated for every camera, or the loops would be slow.
 #[test]
 fn most_samples_are_interpolated() {
-    let samples = plain(&sample_lines(&test_scene::field(), 0.02));
-    assert!(samples.quads.len() * 64 * 10 > 8 * samples.points().count());
+    let samples = sample_lines(&test_scene::field(), 0.02);
     for camera in cameras() {
         let kernel = KernelCamera::new(&camera);
+        let limits = CameraLimits::new(&kernel);
+        let samples = plain(&samples, &limits);
         let seen = |view: &&View<1>| view.pixels[0].is_some();
         let views: Vec<View<1>> =
             test_scene::poses().into_iter().flat_map(|pose| views(&kernel, pose, &samples)).collect();
         let [all, interpolated] = [false, true]
             .map(|only| views.iter().filter(seen).filter(|view| !only || view.is_interpolated).count());
-        assert!(2 * interpolated > all, "{interpolated} of {all}: {:?} {camera:?}", Limits::new(&kernel));
+        assert!(2 * interpolated > all, "{interpolated} of {all}: {limits:?} {camera:?}");
     }
 }

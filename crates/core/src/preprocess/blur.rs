@@ -42,6 +42,7 @@ fn blur_columns(across: &[f32], width: usize, kernel: &[f32]) -> Vec<u8> {
     blurred
 }
 
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 fn blur_row(row: &[u8], kernel: &[f32], out: &mut [f32]) {
     let radius = kernel.len() / 2;
     let mut padded = Vec::with_capacity(row.len() + 2 * radius);
@@ -55,6 +56,7 @@ fn blur_row(row: &[u8], kernel: &[f32], out: &mut [f32]) {
     }
 }
 
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 fn blur_column(across: &[f32], y: usize, kernel: &[f32], out: &mut [u8]) {
     let (width, height) = (out.len(), across.len() / out.len());
     let radius = kernel.len() / 2;

@@ -10,24 +10,18 @@ use glam::Vec2;
 use image::{GrayImage, RgbImage};
 use rayon::prelude::*;
 
-use super::carpet::{CarpetColor, ColorSum};
+use super::{
+    carpet::CarpetColor,
+    strips::{BEARINGS, GroundCell, MIN_DEPRESSION, Strips, bearing_direction},
+};
 use crate::{camera::Camera, mount::MountPose};
 
 /// Side of the square cells into which the picture is divided, pixels.
 pub const CELL_PX: u32 = 2;
-/// Number of directions around the camera, by pseudo-angle.
-const BEARINGS: usize = 360;
-/// Number of steps of the ray's sine of depression, from the horizon (0) to straight down (1).
-const DEPRESSIONS: usize = 400;
-/// Minimum sine of depression: flatter rays end beyond any field, about 40 camera heights away.
-const MIN_DEPRESSION: f32 = 0.025;
 /// Maximum distance from the camera up to which the carpet's colour is learned, camera heights.
 const LEARNING_RADIUS_HEIGHTS: f32 = 8.0;
 
-/// Number of carpet cells at a strip's near end from which the next strip takes its start colour.
-const NEAR_CELLS: usize = 8;
-/// Step between the cells from which the colour is learned, and between the bearings among which the best one is
-/// sought.
+/// Step between the cells from which the colour is learned.
 const LEARNING_STEP: usize = 5;
 /// Sine of depression that no ray has.
 const NEVER_INSIDE: f32 = 2.0;
@@ -39,6 +33,8 @@ const SIDE_BEARINGS: usize = 6;
 pub struct BorderDetector {
     columns: u32,
     rows: u32,
+    /// First byte of each cell's first pixel in a picture.
+    first_bytes: Vec<u32>,
     /// Unit rays of the cells' centres in the camera's axes; zero where the camera sees nothing.
     rays_in_camera: Vec<[f32; 3]>,
 }
@@ -55,13 +51,6 @@ pub struct FieldBorder {
     pub outline_in_heading: Vec<Vec2>,
 }
 
-/// Ray of a cell: its bearing, and the sine of its depression below the horizon.
-#[derive(Clone, Copy)]
-struct GroundCell {
-    bearing: u16,
-    depression: f32,
-}
-
 impl BorderDetector {
     /// Prepares the rays of a camera's pixels.
     pub fn new(camera: &Camera) -> Self {
@@ -73,25 +62,22 @@ impl BorderDetector {
             let seen = camera.check_inside(pixel).is_ok();
             camera.unproject(pixel).ok().filter(|_| seen).map_or([0.0; 3], |ray| ray.as_vec3().to_array())
         };
-        let rays_in_camera = (0..rows)
-            .flat_map(|row| (0..columns).map(move |column| (row, column)))
-            .map(|(r, c)| ray(r, c))
-            .collect();
-        Self { columns, rows, rays_in_camera }
+        let first_byte = |row, column| 3 * CELL_PX * (row * camera.width + column);
+        let cells = || (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+        Self {
+            columns,
+            rows,
+            first_bytes: cells().map(|(row, column)| first_byte(row, column)).collect(),
+            rays_in_camera: cells().map(|(row, column)| ray(row, column)).collect(),
+        }
     }
 
     /// Finds the border in a picture taken with this mount pose.
     pub fn detect(&self, picture: &RgbImage, mount: MountPose) -> FieldBorder {
         let cells = self.ground_cells(mount);
-        let color = |index: usize| {
-            let (column, row) = (index as u32 % self.columns, index as u32 / self.columns);
-            picture
-                .get_pixel(
-                    (column * CELL_PX).min(picture.width() - 1),
-                    (row * CELL_PX).min(picture.height() - 1),
-                )
-                .0
-        };
+        // A picture of another size than the camera's has no colour where it has no pixel.
+        let pixel = |first: u32| picture.get(first as usize..)?.first_chunk().copied();
+        let color = |index: usize| pixel(self.first_bytes[index]).unwrap_or_default();
         let near = 1.0 / (1.0 + LEARNING_RADIUS_HEIGHTS * LEARNING_RADIUS_HEIGHTS).sqrt();
         let seen = || cells.iter().enumerate().filter_map(|(index, cell)| cell.map(|cell| (index, cell)));
         let carpet = CarpetColor::learn(
@@ -100,11 +86,7 @@ impl BorderDetector {
                 .filter(|(_, cell)| cell.depression > near)
                 .map(|(index, _)| color(index)),
         );
-        let mut strips = vec![[ColorSum::default(); DEPRESSIONS]; BEARINGS];
-        for (index, cell) in seen() {
-            strips[usize::from(cell.bearing)][depression_bin(cell.depression)].add(color(index), &carpet);
-        }
-        let ends = carpet_ends(&strips, &carpet);
+        let ends = Strips::gather(&cells, color, &carpet).carpet_ends(&carpet);
         let mut places = border_points(&ends, mount.height_m as f32);
         // The robot itself stands on the carpet: without its own position, the outline of a narrow view would cut off
         // what lies near.
@@ -113,7 +95,7 @@ impl BorderDetector {
         let limits = hull_depressions(&outline_in_heading, mount.height_m as f32);
         let inside = |cell: &GroundCell| cell.depression >= limits[usize::from(cell.bearing)];
         let depressions =
-            cells.iter().map(|cell| cell.filter(inside).map_or(0.0, |cell| cell.depression)).collect();
+            cells.par_iter().map(|cell| cell.filter(inside).map_or(0.0, |cell| cell.depression)).collect();
         FieldBorder { columns: self.columns, depressions, carpet, outline_in_heading }
     }
 
@@ -122,11 +104,7 @@ impl BorderDetector {
         debug_assert_eq!(self.rays_in_camera.len(), (self.columns * self.rows) as usize);
         self.rays_in_camera
             .par_iter()
-            .map(|&ray| {
-                let ray = rotation * glam::Vec3::from(ray);
-                (-ray.z >= MIN_DEPRESSION)
-                    .then(|| GroundCell { bearing: bearing_bin(ray.truncate()), depression: -ray.z })
-            })
+            .map(|&ray| GroundCell::of_ray(rotation * glam::Vec3::from(ray)))
             .collect()
     }
 }
@@ -156,100 +134,15 @@ impl FieldBorder {
     /// Sets all pixels outside the border to zero.
     pub fn mask(&self, picture: &mut GrayImage) {
         let width = picture.width().max(1) as usize;
-        for (v, row) in picture.as_flat_samples_mut().samples.chunks_exact_mut(width).enumerate() {
+        picture.par_chunks_exact_mut(width).enumerate().for_each(|(v, row)| {
             let first = v / CELL_PX as usize * self.columns as usize;
             let cells = &self.depressions[first..first + self.columns as usize];
             for (pixels, &depression) in row.chunks_mut(CELL_PX as usize).zip(cells) {
-                if depression <= 0.0 {
-                    pixels.fill(0);
-                }
+                let kept = if depression > 0.0 { u8::MAX } else { 0 };
+                pixels.iter_mut().for_each(|pixel| *pixel &= kept);
             }
-        }
+        });
     }
-}
-
-/// Returns a number from 0 to 4 that grows with the angle of a direction, without trigonometry.
-fn pseudo_angle(direction: Vec2) -> f32 {
-    let p = direction.y / (direction.x.abs() + direction.y.abs()).max(f32::MIN_POSITIVE);
-    if direction.x < 0.0 {
-        2.0 - p
-    } else if direction.y < 0.0 {
-        4.0 + p
-    } else {
-        p
-    }
-}
-
-fn bearing_bin(direction: Vec2) -> u16 {
-    ((pseudo_angle(direction) * (BEARINGS as f32 / 4.0)) as usize).min(BEARINGS - 1) as u16
-}
-
-/// Returns the direction at the centre of a bearing's bin.
-fn bearing_direction(bin: usize) -> Vec2 {
-    let p = (bin as f32 + 0.5) * 4.0 / BEARINGS as f32;
-    let direction = match p {
-        p if p < 1.0 => Vec2::new(1.0 - p, p),
-        p if p < 2.0 => Vec2::new(1.0 - p, 2.0 - p),
-        p if p < 3.0 => Vec2::new(p - 3.0, 2.0 - p),
-        p => Vec2::new(p - 3.0, p - 4.0),
-    };
-    direction.normalize_or(Vec2::X)
-}
-
-fn depression_bin(depression: f32) -> usize {
-    ((depression * DEPRESSIONS as f32) as usize).min(DEPRESSIONS - 1)
-}
-
-/// Cells from near to far along one bearing.
-type Strip = [ColorSum; DEPRESSIONS];
-
-/// Finds where the carpet ends along every bearing. Lens and light change its colour from one side of the picture to
-/// the other: starting from the strip that shows the learned colour best, each strip begins with the colour of its
-/// neighbour.
-fn carpet_ends(strips: &[Strip], carpet: &CarpetColor) -> Vec<Option<f32>> {
-    let likeness = |strip: &Strip| -> f32 {
-        let near = strip.iter().filter(|cells| cells.mean().is_some_and(|mean| carpet.is_near(mean)));
-        near.map(|cells| cells.count).sum()
-    };
-    let count = strips.len();
-    let looked_at = (0..count).step_by(LEARNING_STEP).map(|bin| (bin, likeness(&strips[bin])));
-    let first = looked_at.max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(bin, _)| bin);
-    let mut ends = vec![None; count];
-    for side in [1, count - 1] {
-        let mut start = *carpet;
-        for step in 0..=count / 2 {
-            let bin = (first + step * side) % count;
-            (ends[bin], start) = farthest_carpet(&strips[bin], start, carpet);
-        }
-    }
-    ends
-}
-
-/// Returns the sine of depression that best divides carpet from everything else, along a strip of cells followed from
-/// near to far, and the carpet's colour at its near end. The colour that counts as carpet follows gradual changes of
-/// light along the strip; a wall, a floor or a robot is a sudden change.
-fn farthest_carpet(strip: &Strip, start: CarpetColor, learned: &CarpetColor) -> (Option<f32>, CarpetColor) {
-    let (mut local, mut near_end) = (start, start);
-    let (mut sum, mut best, mut end) = (0.0, 0.0, None);
-    let mut carpet_cells = 0;
-    for (bin, cells) in strip.iter().enumerate().rev() {
-        let Some(mean) = cells.mean() else { continue };
-        if local.is_near(mean) {
-            local = local.drifted(mean, learned);
-            carpet_cells += 1;
-            if carpet_cells == NEAR_CELLS {
-                near_end = local;
-            }
-            sum += cells.count;
-            if sum > best {
-                (best, end) = (sum, Some(bin));
-            }
-        } else {
-            // The robot's own shoulder may hide the near end: the carpet may begin anywhere.
-            sum = (sum - cells.count).max(0.0);
-        }
-    }
-    (end.map(|bin| bin as f32 / DEPRESSIONS as f32), near_end)
 }
 
 /// Returns the points where the carpet ends, without single directions that reach beyond both neighbours.
@@ -323,8 +216,6 @@ fn ray_meets_edge(direction: Vec2, from: Vec2, to: Vec2) -> Option<f32> {
 
 #[cfg(test)]
 mod tests {
-    use std::f32::consts::TAU;
-
     use glam::DVec2;
     use image::Rgb;
 
@@ -424,15 +315,6 @@ mod tests {
             let pose = test_scene::poses()[1];
             BorderDetector::new(&test_scene::fisheye()).detect(&flat, MountPose::of(pose));
         }
-    }
-
-    #[test]
-    fn bearings_are_where_their_bins_are() {
-        for bin in 0..BEARINGS {
-            assert_eq!(usize::from(bearing_bin(bearing_direction(bin))), bin);
-        }
-        let angle = |bin: usize| bearing_direction(bin).to_angle().rem_euclid(TAU);
-        assert!((1..BEARINGS).all(|bin| angle(bin) > angle(bin - 1)));
     }
 
     #[test]

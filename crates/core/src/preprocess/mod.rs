@@ -8,6 +8,7 @@ mod distance;
 mod grey;
 mod line_points;
 mod prepared;
+mod strips;
 mod texture;
 mod white_line;
 

@@ -1,63 +1,64 @@
 //! An 8-bit picture laid out for bilinear look-ups at many random positions.
 
 use image::GrayImage;
+use rayon::prelude::*;
 
-/// Picture in which each texel holds its own value and those of its right, lower and lower right neighbours in one
-/// 32-bit word, so that a bilinear look-up costs one load instead of four.
+/// Picture in which each texel holds its own value and that of its lower neighbour. A texel and the one to its right are four bytes, so
+/// that a bilinear look-up costs one load instead of four, and a picture of 640 × 480 pixels takes 600 kB, which fits the cache of a core.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
     pub(crate) width: u32,
     pub(crate) height: u32,
-    texels: Vec<u32>,
+    /// Row by row, a power of two and one more.
+    texels: Vec<[u8; 2]>,
 }
 
 impl Default for Texture {
     /// Returns a texture of one black pixel.
     fn default() -> Self {
-        Self { width: 1, height: 1, texels: vec![0] }
+        Self { width: 1, height: 1, texels: vec![[0; 2]; 2] }
     }
 }
 
 impl Texture {
-    /// Returns one word per texel, row by row: its own value in the lowest byte, then those of its right, lower and
-    /// lower right neighbours. The number of words is padded to a power of two.
-    pub fn texels(&self) -> &[u32] {
-        &self.texels
-    }
-
-    /// Packs a grey picture. Beyond the last column and row the value at the edge is repeated.
+    /// Packs a grey picture. Beyond the last row the value at the edge is repeated.
     pub fn pack(picture: &GrayImage) -> Self {
         let (width, height) = picture.dimensions();
         let values = picture.as_raw();
-        let mut texels = Vec::with_capacity(values.len().next_power_of_two());
-        for y in 0..height as usize {
-            let row = &values[y * width as usize..][..width as usize];
-            let below = &values[(y + 1).min(height as usize - 1) * width as usize..][..width as usize];
-            let word =
-                |x: usize, right: usize| u32::from_le_bytes([row[x], row[right], below[x], below[right]]);
-            texels.extend((0..row.len() - 1).map(|x| word(x, x + 1)));
-            texels.push(word(row.len() - 1, row.len() - 1));
-        }
-        // Padded to a power of two, see `gather`.
-        texels.resize(texels.len().next_power_of_two(), 0);
+        let row_length = width.max(1) as usize;
+        let below = values.get(row_length..).unwrap_or_default();
+        let last_row = &values[below.len()..];
+        // Padded to a power of two, and by one more whose left neighbour may be read, see `gather`.
+        let mut texels = vec![[0; 2]; values.len().next_power_of_two() + 1];
+        let rows_below = below.par_chunks(row_length).chain(last_row.par_chunks(row_length));
+        let rows = texels.par_chunks_mut(row_length).zip(values.par_chunks(row_length).zip(rows_below));
+        rows.for_each(|(row, (own, below))| {
+            for (texel, (&own, &below)) in row.iter_mut().zip(own.iter().zip(below)) {
+                *texel = [own, below];
+            }
+        });
         Self { width, height, texels }
     }
 
-    /// Returns the texels at these indices, row by row; at one beyond the last texel any other one.
+    /// Returns the values at these indices, counted row by row, and those of their lower, right and lower right neighbours, from the lowest
+    /// byte to the highest; at an index beyond the last texel any values. Right of the last column are those of the next row's first.
     #[inline(always)]
     pub(crate) fn gather<const N: usize>(&self, mut indices: [u32; N]) -> [u32; N] {
-        // Every constructor makes at least one texel, and their number a power of two.
-        let mask = (self.texels.len() - 1) as u32;
+        // Every constructor makes a power of two and one more. A mask without the highest bit keeps indices in half of the bits that an
+        // address has, and they are loaded by half as many instructions.
+        let mask = (self.texels.len() - 2) as u32 & (u32::MAX >> 1);
         for index in &mut indices {
             *index &= mask;
         }
-        let mut texels = [0; N];
-        for (texel, index) in texels.iter_mut().zip(indices) {
-            // SAFETY: the mask is the number of texels minus one, or its low bits, and no masked index is larger. With checks, which
-            // keep the compiler from loading all lanes by one instruction, scoring takes half as long again (`cargo bench -- scoring`).
-            *texel = unsafe { *self.texels.get_unchecked(index as usize) };
+        let mut values = [0; N];
+        for (value, index) in values.iter_mut().zip(indices) {
+            // SAFETY: the mask is the number of texels minus two, or its low bits, and no masked index is larger: two texels of two bytes
+            // begin there. With checks, which keep the compiler from loading all lanes by one instruction, scoring takes half as long again
+            // (`cargo bench -- scoring`).
+            let two = unsafe { self.texels.as_ptr().add(index as usize).cast::<[u8; 4]>().read() };
+            *value = u32::from_le_bytes(two);
         }
-        texels
+        values
     }
 
     /// Returns the bilinear value (0–255) at a position in pixels; positions outside are moved to the edge.
@@ -66,8 +67,9 @@ impl Texture {
         let v = v.clamp(0.0, (self.height - 1) as f32);
         // Neither is negative: cutting off their fractions is cheaper than rounding down, for which some processors have no instruction.
         let (column, row) = (u as usize, v as usize);
-        let texel = self.texels[row * self.width as usize + column];
-        let [p00, p10, p01, p11] = texel.to_le_bytes().map(f32::from);
+        let first = row * self.width as usize + column;
+        let [[p00, p01], [p10, p11]] =
+            [self.texels[first], self.texels[first + 1]].map(|texel| texel.map(f32::from));
         let (fu, fv) = (u - column as f32, v - row as f32);
         let (top, bottom) = (p00 + fu * (p10 - p00), p01 + fu * (p11 - p01));
         top + fv * (bottom - top)
@@ -95,20 +97,22 @@ mod tests {
     }
 
     #[test]
-    fn gathered_texels_are_those_at_the_indices_and_any_index_is_harmless() {
+    fn gathered_values_are_those_at_the_indices_and_any_index_is_harmless() {
         for [width, height] in [[1, 1], [7, 5], [64, 32]] {
-            let texture =
-                Texture::pack(&GrayImage::from_fn(width, height, |u, v| Luma([(3 * u + 7 * v) as u8])));
-            let count = texture.texels().len() as u32;
-            assert!(count.is_power_of_two());
-            for index in 0..count {
-                assert_eq!(
-                    texture.gather([index, 0]),
-                    [texture.texels()[index as usize], texture.texels()[0]]
-                );
+            let picture = GrayImage::from_fn(width, height, |u, v| Luma([(3 * u + 7 * v) as u8]));
+            let texture = Texture::pack(&picture);
+            for (index, (u, v)) in (0..height).flat_map(|v| (0..width).map(move |u| (u, v))).enumerate() {
+                let value =
+                    |right: u32, down: u32| picture.get_pixel(u + right, (v + down).min(height - 1)).0[0];
+                let [[own, below, right, below_right], _] =
+                    texture.gather([index as u32, 0]).map(u32::to_le_bytes);
+                assert_eq!([own, below], [value(0, 0), value(0, 1)]);
+                if u + 1 < width {
+                    assert_eq!([right, below_right], [value(1, 0), value(1, 1)]);
+                }
             }
-            for index in [count, u32::MAX, u32::MAX / 3] {
-                assert!(texture.texels().contains(&texture.gather([index])[0]));
+            for index in [width * height, 2048, u32::MAX, u32::MAX / 3] {
+                texture.gather([index]);
             }
         }
         let empty = Texture::pack(&GrayImage::new(0, 0));

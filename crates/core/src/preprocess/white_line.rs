@@ -3,7 +3,7 @@
 use image::GrayImage;
 use rayon::prelude::*;
 
-use super::FieldBorder;
+use super::{CELL_PX, FieldBorder};
 
 /// Distance of the flanks from a pixel, in line widths; large enough to span a line that runs at 45°.
 const FLANK_WIDTHS: f32 = 1.3;
@@ -48,9 +48,15 @@ pub fn white_levels(
     scale: LineScale,
 ) -> (WhiteLevels, Vec<[u32; 2]>) {
     let ridges = ridges(whiteness, border, scale, LEVEL_ROWS);
+    let width = whiteness.width().max(1) as usize;
+    let rows =
+        || ridges.chunks_exact(width).zip(whiteness.chunks_exact(width)).enumerate().step_by(LEVEL_ROWS);
     // Pixels that are no ridge at all would outnumber the lines.
-    let candidates =
-        || ridges.as_raw().iter().zip(whiteness.as_raw()).filter(|(ridge, _)| **ridge > MIN_RIDGE);
+    let candidates = || {
+        rows()
+            .flat_map(|(_, (ridges, white))| ridges.iter().zip(white))
+            .filter(|(ridge, _)| **ridge > MIN_RIDGE)
+    };
     let mut histogram = [0_u32; 256];
     candidates().for_each(|(&ridge, _)| histogram[usize::from(ridge)] += 1);
     let threshold = otsu(&histogram);
@@ -64,9 +70,10 @@ pub fn white_levels(
         true => WhiteLevels { carpet: flank / count, line: line / count, threshold },
         false => WhiteLevels { threshold, ..WhiteLevels::default() },
     };
-    let rows = (0..ridges.height()).step_by(LEVEL_ROWS);
-    let pixels = rows.flat_map(|v| (0..ridges.width()).map(move |u| [u, v]));
-    let white = pixels.filter(|[u, v]| ridges.get_pixel(*u, *v).0[0] > threshold);
+    let white = rows().flat_map(|(v, (ridges, _))| {
+        let columns = (0..).zip(ridges).filter(|(_, ridge)| **ridge > threshold);
+        columns.map(move |(u, _)| [u, v as u32])
+    });
     (levels, white.collect())
 }
 
@@ -75,18 +82,23 @@ pub fn white_levels(
 fn ridges(whiteness: &GrayImage, border: &FieldBorder, scale: LineScale, every: usize) -> GrayImage {
     let (width, height) = (whiteness.width() as usize, whiteness.height() as usize);
     let values = whiteness.as_raw();
+    let ridge = |u: usize, v: usize, [across, along]: [usize; 2]| {
+        let value = values[v * width + u];
+        let rise = |a: usize, b: usize| value.saturating_sub(values[a].max(values[b]));
+        let beside =
+            (u >= across && u + across < width).then(|| rise(v * width + u - across, v * width + u + across));
+        let above = (v >= along && v + along < height)
+            .then(|| rise((v - along) * width + u, (v + along) * width + u));
+        beside.unwrap_or(0).max(above.unwrap_or(0))
+    };
     let mut ridges = vec![0_u8; values.len()];
     ridges.par_chunks_mut(width.max(1)).enumerate().filter(|(v, _)| v % every == 0).for_each(|(v, row)| {
-        for (u, ridge) in row.iter_mut().enumerate() {
-            let flanks = flank_distances(border, scale, [u as u32, v as u32]);
-            let Some([across, along]) = flanks else { continue };
-            let value = values[v * width + u];
-            let rise = |a: usize, b: usize| value.saturating_sub(values[a].max(values[b]));
-            let beside = (u >= across && u + across < width)
-                .then(|| rise(v * width + u - across, v * width + u + across));
-            let above = (v >= along && v + along < height)
-                .then(|| rise((v - along) * width + u, (v + along) * width + u));
-            *ridge = beside.unwrap_or(0).max(above.unwrap_or(0));
+        let cells = row.chunks_mut(CELL_PX as usize).zip((0..).step_by(CELL_PX as usize));
+        for (found, first) in cells {
+            let Some(flanks) = flank_distances(border, scale, [first as u32, v as u32]) else { continue };
+            for (found, u) in found.iter_mut().zip(first..) {
+                *found = ridge(u, v, flanks);
+            }
         }
     });
     // The buffer holds exactly one value per pixel, as its size requires.

@@ -7,8 +7,15 @@ use reality_sim_core::field::{Goal, GoalPost};
 
 use super::shape::Shape;
 
-/// Number of straight segments of the outline around a post's end: half a circle is 0.5 mm off at a post of 10 cm.
-const END_PIECES: u32 = 10;
+/// Smallest number of straight segments of the outline around a post's end: half a circle is 0.6 mm off at a post of 10 cm.
+const LEAST_PIECES: f64 = 10.0;
+
+/// Largest angle between a post's rim and the segments for it, radians: 0.06 pixels at a focal length of 120. Half a
+/// circle of a post of 10 cm needs more than the fewest segments nearer than 1.2 m.
+const LARGEST_SAGITTA_RAD: f64 = 5e-4;
+
+/// Largest number of segments, for cameras that touch a rim.
+const MOST_PIECES: f64 = 64.0;
 
 /// Posts and crossbar of a goal.
 #[derive(Debug, Clone, Copy)]
@@ -46,6 +53,13 @@ impl GoalBars {
     }
 }
 
+/// Returns the number of segments for an arc whose nearest place is so far away.
+fn pieces(radius_m: f64, arc_rad: f64, nearest_m: f64) -> u32 {
+    // The middle of a segment of the angle α is r (1 − cos α/2) ≈ r α² / 8 beside the arc.
+    let wanted = arc_rad.abs() * (radius_m / (8.0 * LARGEST_SAGITTA_RAD * nearest_m)).sqrt();
+    wanted.ceil().clamp(LEAST_PIECES, MOST_PIECES) as u32
+}
+
 /// Returns the outline around the visible rims of a post's foot and top. The lower rim is seen from above, so that its near
 /// side is the outline. The same holds for the upper rim seen from below; from above, its far side is the outline.
 fn post_outline(post: &GoalPost, position: DVec3) -> Option<Shape> {
@@ -58,8 +72,10 @@ fn post_outline(post: &GoalPost, position: DVec3) -> Option<Shape> {
     // Half the angle about the axis between the two lines where planes through the position are tangent to the cylinder.
     let touch_rad = (post.radius_m / distance_m).acos();
     let rim = |from_rad: f64, to_rad: f64, z_m: f64| {
-        (0..=END_PIECES).map(move |i| {
-            let angle_rad = from_rad + (to_rad - from_rad) * f64::from(i) / f64::from(END_PIECES);
+        let nearest_m = (distance_m - post.radius_m).hypot(position.z - z_m);
+        let pieces = pieces(post.radius_m, to_rad - from_rad, nearest_m);
+        (0..=pieces).map(move |i| {
+            let angle_rad = from_rad + (to_rad - from_rad) * f64::from(i) / f64::from(pieces);
             (post.center + post.radius_m * DVec2::from_angle(angle_rad).rotate(towards)).extend(z_m)
         })
     };
