@@ -28,7 +28,7 @@ impl Texture {
         let row_length = width.max(1) as usize;
         let below = values.get(row_length..).unwrap_or_default();
         let last_row = &values[below.len()..];
-        // Padded to a power of two, and by one more whose left neighbour may be read, see `gather`.
+        // Padded to a power of two, and by one more, which is read together with the one at its left, see `gather`.
         let mut texels = vec![[0; 2]; values.len().next_power_of_two() + 1];
         let rows_below = below.par_chunks(row_length).chain(last_row.par_chunks(row_length));
         let rows = texels.par_chunks_mut(row_length).zip(values.par_chunks(row_length).zip(rows_below));
