@@ -100,7 +100,7 @@ impl LiveFeed {
 /// let first = live.wait().ok_or("there is a picture")??;
 /// println!("{:.3} m, {:.0} ms old", first.frame.pose.x_m, 1e3 * first.latency_s);
 ///
-/// let mut pictures = 1;
+/// let mut pictures = 1 + first.dropped_before;
 /// while let Some(result) = live.wait() {
 ///     pictures += 1 + result?.dropped_before;
 /// }
