@@ -26,9 +26,18 @@ struct Pixel {
     seen: bool,
 }
 
-/// Projects a point. `is_radial` is the camera's, or a constant: where a driver runs on a processor, a branch on a value
-/// that is read costs both sides.
-fn project_point(camera: Camera, is_radial: bool, p: vec3<f32>) -> Pixel {
+/// Place of a point in the plane of the picture, whether the picture contains it or not.
+struct Place {
+    place: vec2<f32>,
+    /// Inverse of the distance from the camera, 1/m.
+    nearness: f32,
+    /// Cosine of the angle from the optical axis.
+    cosine: f32,
+}
+
+/// Projects a point, without asking whether the camera sees it. `is_radial` is the camera's, or a constant: where a driver runs on a
+/// processor, a branch on a value that is read costs both sides.
+fn place_of_point(camera: Camera, is_radial: bool, p: vec3<f32>) -> Place {
     let nearness = 1.0 / sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
     let cosine = p.z * nearness;
     // Written out: indexing by a variable would load the array in every step.
@@ -62,9 +71,19 @@ fn project_point(camera: Camera, is_radial: bool, p: vec3<f32>) -> Pixel {
             b * radial + p1 * (r2 + 2.0 * b * b) + p2 * ab2,
         );
     }
-    place = camera.focal_px * place + camera.centre_px;
+    return Place(camera.focal_px * place + camera.centre_px, nearness, cosine);
+}
+
+/// Whether a place is in the picture and in the image circle.
+fn is_inside(camera: Camera, place: vec2<f32>) -> bool {
     let from_circle = place - camera.circle.xy;
     let in_circle = camera.circle.z < 0.0 || dot(from_circle, from_circle) <= camera.circle.z;
     let in_picture = all(place >= vec2<f32>(0.0)) && all(place <= camera.largest_px);
-    return Pixel(place, nearness, cosine >= camera.min_cos && in_circle && in_picture);
+    return in_circle && in_picture;
+}
+
+/// Projects a point; see `place_of_point` for `is_radial`.
+fn project_point(camera: Camera, is_radial: bool, p: vec3<f32>) -> Pixel {
+    let found = place_of_point(camera, is_radial, p);
+    return Pixel(found.place, found.nearness, found.cosine >= camera.min_cos && is_inside(camera, found.place));
 }

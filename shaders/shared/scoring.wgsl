@@ -1,11 +1,16 @@
-// Inputs that the scoring kernels share, and the sum over a workgroup. One workgroup scores one pose.
+// Inputs that the scoring kernels share, and the sum over a workgroup. A workgroup scores a few poses: a thread takes every so many blocks
+// of samples for one of them. Neighbouring threads take the same block for neighbouring poses, which are mostly close to each other: they
+// agree on whether the block is seen, and whether its samples are interpolated.
 
-const THREADS: u32 = 32u;
+/// Poses of a workgroup: as many as the threads that run in step on the narrowest devices.
+const POSES: u32 = 8u;
+/// Threads for each pose.
+const SHARES: u32 = 16u;
 
 /// Settings of one dispatch.
 struct Settings {
-    /// Number of line samples.
-    samples: u32,
+    /// Number of blocks of line samples.
+    blocks: u32,
     /// Number of poses.
     poses: u32,
     /// Workgroups along x: a dispatch of more poses uses y as well.
@@ -20,29 +25,22 @@ struct Settings {
 
 @group(0) @binding(0) var<uniform> camera: Camera;
 @group(0) @binding(1) var<uniform> settings: Settings;
-/// Centre (x, y) and, for contrast, left flank (x, y) of a line sample; the right flank mirrors the left one.
-@group(0) @binding(2) var samples: texture_2d<u32>;
+// Binding 2 is the texture of the blocks, in blocks.wgsl.
 @group(0) @binding(3) var texels: texture_2d<u32>;
 @group(0) @binding(4) var<storage, read> poses: array<CameraFromGround>;
 @group(0) @binding(5) var<storage, read_write> sums: array<vec2<f32>>;
 
-/// Samples per row of their texture.
-const SAMPLES_IN_ROW: u32 = 1024u;
+/// Sum of each share of each pose.
+var<workgroup> partial_sums: array<array<vec2<f32>, POSES>, SHARES>;
 
-fn line_sample(index: u32) -> vec4<f32> {
-    return bitcast<vec4<f32>>(textureLoad(samples, vec2<u32>(index % SAMPLES_IN_ROW, index / SAMPLES_IN_ROW), 0));
-}
-
-var<workgroup> partial_sums: array<vec2<f32>, THREADS>;
-
-/// Sum of all threads' values, returned to the first thread.
-fn sum_of_workgroup(thread: u32, value: vec2<f32>) -> vec2<f32> {
-    partial_sums[thread] = value;
-    for (var half = THREADS / 2u; half > 0u; half /= 2u) {
+/// Sum over the shares of a thread's pose, returned to the threads of the first share.
+fn sum_of_shares(pose: u32, share: u32, value: vec2<f32>) -> vec2<f32> {
+    partial_sums[share][pose] = value;
+    for (var half = SHARES / 2u; half > 0u; half /= 2u) {
         workgroupBarrier();
-        if thread < half {
-            partial_sums[thread] += partial_sums[thread + half];
+        if share < half {
+            partial_sums[share][pose] += partial_sums[share + half][pose];
         }
     }
-    return partial_sums[thread];
+    return partial_sums[share][pose];
 }

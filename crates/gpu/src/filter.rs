@@ -428,15 +428,15 @@ mod tests {
         context.check().unwrap();
     }
 
-    /// Allows for a particle whose expected number of copies is nearly whole: it may get one more or less, and in the
-    /// residual scheme that shifts all slots behind it, and which particles the draws that are left go to. Weights differ by as much as the CPU
-    /// interpolates places in the picture: measured, that are 3.3 % of the slots, and 5.5 % of the survivors in the residual scheme.
+    /// Allows for a particle whose expected number of copies is nearly whole: it may get one more or less. In the residual scheme, whose draws
+    /// are scaled by what the certain copies leave, that also changes which neighbours the drawn slots go to. Measured: 3 of 3000 survivors
+    /// differ at most, 143 in the residual scheme.
     fn assert_same_particles(found: &[CameraPose], expected: &[CameraPose], is_residual: bool, about: &str) {
         assert_eq!(found.len(), expected.len());
         let same = |a: CameraPose, b: CameraPose| distance(a, b) < 1e-5;
         if !is_residual {
             let off = found.iter().zip(expected).filter(|(a, b)| !same(**a, **b)).count();
-            assert!(off * 20 <= found.len(), "{off} of {} slots differ, {about}", found.len());
+            assert!(off * 50 <= found.len(), "{off} of {} slots differ, {about}", found.len());
         }
         let mut left = expected.to_vec();
         let has_no_partner = |pose: &&CameraPose| match left.iter().position(|other| same(**pose, *other)) {
@@ -447,7 +447,8 @@ mod tests {
             None => true,
         };
         let alone = found.iter().filter(has_no_partner).count();
-        assert!(alone * 10 <= found.len(), "{alone} of {} survivors differ, {about}", found.len());
+        let allowed = found.len() / if is_residual { 20 } else { 200 };
+        assert!(alone <= allowed, "{alone} of {} survivors differ, {about}", found.len());
     }
 
     fn filter_on(context: &Arc<GpuContext>, config: FilterConfig) -> Result<GpuFilter, GpuError> {

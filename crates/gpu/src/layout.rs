@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use reality_sim_core::{
     camera::{KernelCamera, Lens, RADIAL_TERMS},
-    observation::{CameraFromGround, ContrastScale},
+    observation::{CameraFromGround, ContrastScale, LineBlock, SamplePoints},
     pose::CameraPose,
     warp::{Billboard, BlendWeights, MAX_SOURCES, Placement, ProxyGeometry, Source, Target},
 };
@@ -34,7 +34,7 @@ pub(crate) struct PoseLayout {
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct SettingsLayout {
-    pub samples: u32,
+    pub blocks: u32,
     pub poses: u32,
     pub groups_along_x: u32,
     per_contrast: f32,
@@ -42,6 +42,20 @@ pub(crate) struct SettingsLayout {
     min_width_px: f32,
     per_width_px: f32,
     relative_area: f32,
+}
+
+/// Block of line samples in the texture that `shaders/shared/blocks.wgsl` reads.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct BlockLayout {
+    largest_nearness: f32,
+    min_cos: f32,
+    samples: f32,
+    radius: f32,
+    centre: [f32; 2],
+    padding: [f32; 2],
+    nodes: [SamplePoints; 4],
+    points: [SamplePoints; 16],
 }
 
 /// `Picture` in `shaders/shared/picture.wgsl`.
@@ -266,9 +280,9 @@ impl From<CameraFromGround> for PoseLayout {
 }
 
 impl SettingsLayout {
-    pub fn new(samples: u32, scale: ContrastScale) -> Self {
+    pub fn new(blocks: u32, scale: ContrastScale) -> Self {
         Self {
-            samples,
+            blocks,
             poses: 0,
             groups_along_x: 1,
             per_contrast: scale.per_contrast,
@@ -276,6 +290,22 @@ impl SettingsLayout {
             min_width_px: scale.min_width_px,
             per_width_px: scale.per_width_px,
             relative_area: scale.relative_area,
+        }
+    }
+}
+
+impl From<&LineBlock> for BlockLayout {
+    fn from(block: &LineBlock) -> Self {
+        let LineBlock { samples, nodes, limits, centre, radius_m } = block;
+        Self {
+            largest_nearness: limits.largest_nearness,
+            min_cos: limits.min_cos,
+            samples: samples.len() as f32,
+            radius: *radius_m,
+            centre: *centre,
+            padding: [0.0; 2],
+            nodes: *nodes,
+            points: std::array::from_fn(|lane| samples.get(lane).copied().unwrap_or_default()),
         }
     }
 }
@@ -402,7 +432,7 @@ mod tests {
             focal_px centre_px largest_px min_cos is_radial circle lens_parameters);
         assert_same_layout!(PoseLayout in "contrast_along_lines.wgsl" as "CameraFromGround": x y z);
         assert_same_layout!(SettingsLayout in "contrast_along_lines.wgsl" as "Settings":
-            samples poses groups_along_x per_contrast dark_level min_width_px per_width_px relative_area);
+            blocks poses groups_along_x per_contrast dark_level min_width_px per_width_px relative_area);
         assert_same_layout!(PictureLayout in "pack.wgsl" as "Picture":
             width height row_words mask_columns blur_radius nearness_cap padding_0 padding_1);
         assert_same_layout!(ParticleLayout in "diffuse.wgsl" as "Particle":

@@ -10,8 +10,11 @@ use crate::{
     GpuContext, GpuError,
     buffers::{uniform, uniform_of, write},
     kernel::{Binding, BoundKernel, Kernel, groups},
-    layout::{CameraLayout, SettingsLayout},
+    layout::{BlockLayout, CameraLayout, SettingsLayout},
 };
+
+/// Poses per workgroup, `POSES` in `shaders/shared/scoring.wgsl`.
+const POSES: u32 = 8;
 
 /// Camera and samples of a field's lines on the device.
 #[derive(Debug)]
@@ -21,8 +24,8 @@ pub(crate) struct LineScoring {
     kernel: Kernel,
     camera: wgpu::Buffer,
     settings: wgpu::Buffer,
-    samples: wgpu::TextureView,
-    sample_count: u32,
+    blocks: wgpu::TextureView,
+    block_count: u32,
 }
 
 impl LineScoring {
@@ -33,14 +36,14 @@ impl LineScoring {
             ObservationKind::Gauss | ObservationKind::Distance => "sum_along_lines",
         };
         let is_radial = matches!(model.camera.lens, Lens::Radial { .. });
-        let places = model.places();
+        let blocks: Vec<BlockLayout> = model.blocks().iter().map(BlockLayout::from).collect();
         Ok(Self {
             levels: WhiteLevels::default(),
             kernel: Kernel::with_constants(context, kernel, &[("is_radial", f64::from(u8::from(is_radial)))]),
             camera: uniform_of(context, "the camera", CameraLayout::from(&model.camera))?,
             settings: uniform::<SettingsLayout>(context, "the scoring's settings")?,
-            samples: sample_texture(context, &places),
-            sample_count: places.len() as u32,
+            blocks: block_texture(context, &blocks),
+            block_count: blocks.len() as u32,
             model,
         })
     }
@@ -65,15 +68,15 @@ impl LineScoring {
         let [camera, settings] = [&self.camera, &self.settings].map(Binding::from);
         self.kernel.bind_all(
             context,
-            &[camera, settings, (&self.samples).into(), texels.into(), poses.into(), sums.into()],
+            &[camera, settings, (&self.blocks).into(), texels.into(), poses.into(), sums.into()],
         )
     }
 
     /// Sets the number of poses and returns the workgroups that they need.
     pub fn configure(&self, context: &GpuContext, poses: usize) -> [u32; 2] {
-        let groups = groups(context, poses as u32);
+        let groups = groups(context, (poses as u32).div_ceil(POSES));
         let scale = self.model.contrast_scale(&self.levels);
-        let mut settings = SettingsLayout::new(self.sample_count, scale);
+        let mut settings = SettingsLayout::new(self.block_count, scale);
         (settings.poses, settings.groups_along_x) = (poses as u32, groups[0]);
         write(context, &self.settings, &[settings]);
         groups
@@ -81,13 +84,14 @@ impl LineScoring {
 }
 
 /// Stores the line samples as a texture: drivers that run on a processor read a texture faster than a buffer.
-fn sample_texture(context: &GpuContext, places: &[[[f32; 2]; 2]]) -> wgpu::TextureView {
-    const IN_ROW: usize = 1024;
-    let mut values: Vec<[[f32; 2]; 2]> = places.to_vec();
-    values.resize(places.len().next_multiple_of(IN_ROW).max(IN_ROW), Default::default());
+fn block_texture(context: &GpuContext, blocks: &[BlockLayout]) -> wgpu::TextureView {
+    const IN_ROW: usize = 32;
+    const ROW_BYTES: usize = IN_ROW * size_of::<BlockLayout>();
+    let mut rows = blocks.to_vec();
+    rows.resize(blocks.len().next_multiple_of(IN_ROW).max(IN_ROW), bytemuck::Zeroable::zeroed());
     let size = wgpu::Extent3d {
-        width: IN_ROW as u32,
-        height: (values.len() / IN_ROW) as u32,
+        width: (ROW_BYTES / size_of::<[f32; 4]>()) as u32,
+        height: (rows.len() / IN_ROW) as u32,
         depth_or_array_layers: 1,
     };
     let texture = context.device.create_texture(&wgpu::TextureDescriptor {
@@ -102,9 +106,9 @@ fn sample_texture(context: &GpuContext, places: &[[[f32; 2]; 2]]) -> wgpu::Textu
     });
     let layout = wgpu::TexelCopyBufferLayout {
         offset: 0,
-        bytes_per_row: Some((IN_ROW * size_of::<[[f32; 2]; 2]>()) as u32),
+        bytes_per_row: Some(ROW_BYTES as u32),
         rows_per_image: None,
     };
-    context.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&values), layout, size);
+    context.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&rows), layout, size);
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }

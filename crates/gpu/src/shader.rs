@@ -32,6 +32,7 @@ pub(crate) const FILES: &[(&str, &str)] = files![
     "predict.wgsl",
     "resample.wgsl",
     "shared/angles.wgsl",
+    "shared/blocks.wgsl",
     "shared/camera.wgsl",
     "shared/color.wgsl",
     "shared/filter.wgsl",

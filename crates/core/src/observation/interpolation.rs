@@ -14,7 +14,7 @@ use glam::{DQuat, DVec2, DVec3};
 use crate::camera::{KernelCamera, LANES, Lanes, Places, place_lanes};
 
 /// Number of nodes of a block.
-pub(super) const NODES: usize = 4;
+pub const NODES: usize = 4;
 /// Samples of a block that are its nodes: as many between two neighbours.
 pub(super) const NODE_LANES: [usize; NODES] = [0, 5, 10, 15];
 
@@ -71,7 +71,7 @@ pub(super) fn interpolate(nodes: &Lanes, block: usize) -> Lanes {
 
 /// Where the samples of a block may be interpolated.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Limits {
+pub struct Limits {
     /// Largest nearness of a node: one over the distance from the camera, per metre.
     pub largest_nearness: f32,
     /// Smallest cosine of a node's angle from the optical axis: all samples in between are within the lens's largest angle.

@@ -6,6 +6,7 @@
 //! | [`ObservationKind::Distance`] | Σ (cap − distance to the nearest white line) / α (Eq. 1 with the sign reversed) |
 //! | [`ObservationKind::Contrast`] | gain · Σ weight · (contrast of line against flanks − neutral) |
 
+mod block;
 mod config;
 mod interpolation;
 mod kernel;
@@ -20,7 +21,9 @@ use rayon::prelude::*;
 
 use self::model::Lines;
 pub use self::{
+    block::{LineBlock, SamplePoints},
     config::{ObservationConfig, ObservationKind},
+    interpolation::Limits,
     kernel::{CameraFromGround, ContrastScale},
     model::LineModel,
     normal_search::NormalSearch,
@@ -65,7 +68,7 @@ impl CpuScorer {
 
     /// Returns the number of line samples scored for each pose.
     pub fn samples(&self) -> usize {
-        self.model.places().len()
+        self.model.blocks().iter().map(|block| block.samples.len()).sum()
     }
 
     /// Returns the fraction of the line in view that the picture shows where the pose projects it: 1 if every line is

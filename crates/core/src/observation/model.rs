@@ -6,6 +6,7 @@ use glam::DVec2;
 use image::GrayImage;
 
 use super::{
+    block::LineBlock,
     config::{ObservationConfig, ObservationKind},
     interpolation::CameraLimits,
     kernel::ContrastScale,
@@ -65,12 +66,11 @@ impl LineModel {
         Self { config, camera, lines, relative_area }
     }
 
-    /// Returns the centre of each line sample on the ground, metres, together with its left flank; the right flank is
-    /// its mirror image about the centre. For models without flanks, the centre takes the flank's place.
-    pub fn places(&self) -> Vec<[[f32; 2]; 2]> {
+    /// Returns the line samples.
+    pub fn blocks(&self) -> Vec<LineBlock> {
         match &self.lines {
-            Lines::Plain(samples) => samples.points().map(|[centre]| [centre, centre]).collect(),
-            Lines::Flanked(samples) => samples.points().map(|[centre, left, _]| [centre, left]).collect(),
+            Lines::Plain(samples) => samples.blocks([0, 0]).collect(),
+            Lines::Flanked(samples) => samples.blocks([0, 1]).collect(),
         }
     }
 

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::{
+    block::LineBlock,
     interpolation::{CameraLimits, Limits, NODE_LANES, NODES},
     path::Path,
 };
@@ -140,14 +141,24 @@ impl<const N: usize> Samples<N> {
         Self { quads: quads.collect() }
     }
 
-    /// Returns the points of every sample.
-    pub fn points(&self) -> impl Iterator<Item = [[f32; 2]; N]> {
-        let blocks = self.quads.iter().flat_map(|quad| &quad.blocks);
-        let sample = |block: &Block<N>, lane: usize| block.points.map(|[x, y]| [x[lane], y[lane]]);
-        blocks.flat_map(move |block| {
+    /// Returns every block that has samples, with these two of its points.
+    pub fn blocks(&self, [first, second]: [usize; 2]) -> impl Iterator<Item = LineBlock> {
+        let two = move |points: &[Ground; N], lane: usize| {
+            [first, second].map(|number| points[number].map(|axis| axis[lane]))
+        };
+        let numbered = self.quads.iter().flat_map(|quad| (0..NODES).map(move |block| (quad, block)));
+        let blocks = numbered.map(move |(quad, number)| {
+            let block = &quad.blocks[number];
             let samples = (0..LANES).filter(|lane| block.is_sample[*lane] > 0.0);
-            samples.map(move |lane| sample(block, lane))
-        })
+            LineBlock {
+                samples: samples.map(|lane| two(&block.points, lane)).collect(),
+                nodes: std::array::from_fn(|node| two(&quad.nodes, NODES * number + node)),
+                limits: quad.limits,
+                centre: block.circle.centre,
+                radius_m: block.circle.radius,
+            }
+        });
+        blocks.filter(|block| !block.samples.is_empty())
     }
 }
 
