@@ -1,6 +1,7 @@
 //! Samples along the field's lines: evenly spaced on the ground for scoring, evenly in the picture for measuring.
 
 use glam::{DMat3, DVec2, DVec3};
+use rayon::prelude::*;
 
 use super::{Curve, FieldDimensions, GoalPost};
 use crate::{camera::Camera, pose::CameraPose};
@@ -82,18 +83,20 @@ pub fn visible_samples(
     let camera_from_world = pose.rotation_world_from_camera().transpose();
     let placed = PlacedCamera { camera, pose, camera_from_world };
     let posts: Vec<GoalPost> = field.goals().iter().flat_map(|goal| goal.posts).collect();
-    let mut kept: Vec<VisibleSample> = Vec::new();
-    for &sample in samples {
-        let Ok(pixel) = camera.project(placed.in_camera(sample.point_in_world)) else { continue };
-        // Most samples are too dense: this is asked first.
-        let too_dense = kept
-            .last()
-            .is_some_and(|last| last.sample.curve == sample.curve && last.pixel.distance(pixel) < spacing_px);
-        if !too_dense && !posts.iter().any(|post| hides(post, pose, sample.point_in_world)) {
-            kept.extend(placed.see(sample, field.line_width_m));
+    let lines = samples.par_chunk_by(|a, b| a.curve == b.curve);
+    let seen = lines.map(|line| {
+        let mut kept: Vec<VisibleSample> = Vec::new();
+        for &sample in line {
+            let Ok(pixel) = camera.project(placed.in_camera(sample.point_in_world)) else { continue };
+            // Most samples are too dense: this is asked first.
+            let too_dense = kept.last().is_some_and(|last| last.pixel.distance(pixel) < spacing_px);
+            if !too_dense && !posts.iter().any(|post| hides(post, pose, sample.point_in_world)) {
+                kept.extend(placed.see(sample, field.line_width_m));
+            }
         }
-    }
-    kept
+        kept
+    });
+    seen.flatten_iter().collect()
 }
 
 /// Camera at its pose.

@@ -9,10 +9,7 @@ use std::{
 use super::{observation::Observation, picture::Picture};
 use crate::sequence::{Sequence, SequenceError};
 
-/// Maximum number of decoded pictures that wait, besides the one being decoded.
-const QUEUE: usize = 1;
-
-/// Iterator over the frames of a recording with their pictures. A thread decodes them ahead; it ends when the iterator is
+/// Iterator over the frames of a recording with their pictures. A thread decodes one picture ahead; it ends when the iterator is
 /// dropped. The iteration ends after an error.
 #[derive(Debug)]
 pub struct Playback {
@@ -26,7 +23,7 @@ pub struct Playback {
 impl Playback {
     /// Starts decoding the pictures of a recording.
     pub fn new(sequence: Arc<Sequence>) -> Self {
-        let (sender, receiver) = mpsc::sync_channel(QUEUE);
+        let (sender, receiver) = mpsc::sync_channel(0);
         let decoded = sequence.clone();
         let thread = thread::spawn(move || {
             for index in 0..decoded.frames.len() {

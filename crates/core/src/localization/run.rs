@@ -6,7 +6,7 @@ use super::{
     error::LocalizationError, frame::LocalizedFrame, localizer::Localizer, observation::Observation,
     playback::Playback,
 };
-use crate::sequence::Sequence;
+use crate::sequence::{Sequence, SequenceError};
 
 /// Iterator that localizes the frames of a recording in order. A thread decodes the pictures ahead; dropping the iterator
 /// stops it. The iteration ends after an error; that of a picture tells of all pictures that cannot be used.
@@ -15,6 +15,8 @@ pub struct Run<L> {
     localizer: L,
     playback: Playback,
     observation: Option<Observation>,
+    /// What the next step takes; `None` before the first.
+    upcoming: Option<Result<Observation, SequenceError>>,
     has_failed: bool,
 }
 
@@ -28,7 +30,8 @@ impl Localizer {
 impl<L: BorrowMut<Localizer>> Run<L> {
     /// Works as [`Localizer::run`], with a localizer that is owned.
     pub fn new(localizer: L, sequence: Arc<Sequence>) -> Self {
-        Self { localizer, playback: Playback::new(sequence), observation: None, has_failed: false }
+        let playback = Playback::new(sequence);
+        Self { localizer, playback, observation: None, upcoming: None, has_failed: false }
     }
 
     /// Ends the run, and returns the localizer.
@@ -47,7 +50,7 @@ impl<L: BorrowMut<Localizer>> Run<L> {
     }
 
     fn step(&mut self) -> Option<Result<LocalizedFrame, LocalizationError>> {
-        let observation = match self.playback.next()? {
+        let observation = match self.upcoming.take().or_else(|| self.playback.next())? {
             Ok(observation) => observation,
             // Whoever mends the recording wants to know of all its broken pictures.
             Err(error) => {
@@ -61,6 +64,10 @@ impl<L: BorrowMut<Localizer>> Run<L> {
         }
         let frame = localizer.update(&observation);
         self.observation = Some(observation);
+        // Taken now: the next picture but one is decoded while the caller looks at the result, and less while a picture is localized, which
+        // uses all cores.
+        self.upcoming = self.playback.next();
+        self.playback.peek();
         Some(frame)
     }
 }

@@ -103,7 +103,7 @@ impl CpuScorer {
 
     /// Loads a new picture, as [`Scorer::load`]; the CPU never fails.
     pub fn set_picture(&mut self, picture: &Prepared) {
-        self.texture = Texture::pack(&self.model.image(picture));
+        self.texture.repack(&self.model.image(picture));
         self.scale = self.model.contrast_scale(&picture.levels);
     }
 

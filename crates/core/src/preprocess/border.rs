@@ -63,7 +63,8 @@ impl BorderDetector {
             camera.unproject(pixel).ok().filter(|_| seen).map_or([0.0; 3], |ray| ray.as_vec3().to_array())
         };
         let first_byte = |row, column| 3 * CELL_PX * (row * camera.width + column);
-        let cells = || (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+        let of_row = |row| (0..columns).map(move |column| (row, column));
+        let cells = || (0..rows).into_par_iter().flat_map_iter(of_row);
         Self {
             columns,
             rows,

@@ -23,21 +23,30 @@ impl Default for Texture {
 impl Texture {
     /// Packs a grey picture. Beyond the last row the value at the edge is repeated.
     pub fn pack(picture: &GrayImage) -> Self {
+        let mut texture = Self::default();
+        texture.repack(picture);
+        texture
+    }
+
+    /// Packs another picture. If it has the size of the one before, nothing is allocated: fresh memory costs more than packing does.
+    pub fn repack(&mut self, picture: &GrayImage) {
         let (width, height) = picture.dimensions();
         let values = picture.as_raw();
+        if (self.width, self.height) != (width, height) {
+            // Padded to a power of two, and by one more, which is read together with the one at its left, see `gather`.
+            let texels = vec![[0; 2]; values.len().next_power_of_two() + 1];
+            *self = Self { width, height, texels };
+        }
         let row_length = width.max(1) as usize;
         let below = values.get(row_length..).unwrap_or_default();
         let last_row = &values[below.len()..];
-        // Padded to a power of two, and by one more, which is read together with the one at its left, see `gather`.
-        let mut texels = vec![[0; 2]; values.len().next_power_of_two() + 1];
         let rows_below = below.par_chunks(row_length).chain(last_row.par_chunks(row_length));
-        let rows = texels.par_chunks_mut(row_length).zip(values.par_chunks(row_length).zip(rows_below));
+        let rows = self.texels.par_chunks_mut(row_length).zip(values.par_chunks(row_length).zip(rows_below));
         rows.for_each(|(row, (own, below))| {
             for (texel, (&own, &below)) in row.iter_mut().zip(own.iter().zip(below)) {
                 *texel = [own, below];
             }
         });
-        Self { width, height, texels }
     }
 
     /// Returns the values at these indices, counted row by row, and those of their lower, right and lower right neighbours, from the lowest

@@ -2,6 +2,7 @@
 //! distance model.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::{field::VisibleSample, preprocess::Texture};
 
@@ -9,6 +10,9 @@ use crate::{field::VisibleSample, preprocess::Texture};
 const STEP_PX: f64 = 0.5;
 /// Allowed ratio of measured to projected width; anything else is not the line.
 const WIDTH_RATIO: std::ops::RangeInclusive<f64> = 0.6..=1.7;
+
+/// Least number of samples measured by one task: enough work to outweigh the cost of starting it.
+const SAMPLES_PER_TASK: usize = 16;
 
 /// Settings of [`measure_offsets`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,8 +40,13 @@ pub fn measure_offsets(
     samples: &[VisibleSample],
     config: MeasureConfig,
 ) -> Vec<LineOffset> {
-    let mut profile = Profile::default();
-    samples.iter().filter_map(|sample| measure(texture, sample, config, &mut profile)).collect()
+    let offset = |profile: &mut Profile, sample| measure(texture, sample, config, profile);
+    samples
+        .par_iter()
+        .with_min_len(SAMPLES_PER_TASK)
+        .map_init(Profile::default, offset)
+        .flatten_iter()
+        .collect()
 }
 
 fn measure(
