@@ -1,7 +1,7 @@
 //! What grows with a database, from 300 pictures to a million:
 //!
 //! `cargo run --release --example database_size` writes `docs/figures/database_size.md` and `database_size.svg`. It takes some minutes, and
-//! 6 GB of the folder for temporary files.
+//! 7 GB of the folder for temporary files.
 //!
 //! The pictures are those of the demonstration walk at a quarter of their size, over and over with poses that were never taken. Every
 //! picture that is drawn decodes its neighbours anew, as at the first visit of a place.
@@ -54,18 +54,23 @@ struct Row {
     opening: Duration,
     held_bytes: usize,
     most_bytes: usize,
-    /// Median time of a picture, milliseconds.
-    picture_ms: f64,
+    /// Median times of a picture from six neighbours and from one, milliseconds.
+    blend_ms: f64,
+    plane_ms: f64,
     coverage: Duration,
 }
 
 fn main() -> anyhow::Result<()> {
     let folder = tempfile::tempdir()?;
     let walk = smaller(&Sequence::open(Path::new("assets/walk"))?, folder.path())?;
-    let rows = IMAGES
-        .map(|images| row(&walk, images, folder.path()))
-        .into_iter()
-        .collect::<anyhow::Result<Vec<_>>>()?;
+    let databases = IMAGES.map(|images| measured_database(&walk, images, folder.path()));
+    let (mut rows, synthesizers): (Vec<Row>, Vec<Synthesizer>) =
+        databases.into_iter().collect::<anyhow::Result<Vec<_>>>()?.into_iter().unzip();
+    let blend_ms = pictures_ms(&synthesizers, &MethodKind::Blend, 1)?;
+    let plane_ms = pictures_ms(&synthesizers, &MethodKind::Plane, 2)?;
+    for (row, (blend_ms, plane_ms)) in rows.iter_mut().zip(blend_ms.into_iter().zip(plane_ms)) {
+        (row.blend_ms, row.plane_ms) = (blend_ms, plane_ms);
+    }
     write_table(&rows)?;
     plot(&rows)
 }
@@ -82,8 +87,8 @@ fn smaller(walk: &Sequence, folder: &Path) -> anyhow::Result<Sequence> {
     Ok(small)
 }
 
-/// Makes a database of so many pictures, and measures it.
-fn row(walk: &Sequence, images: usize, folder: &Path) -> anyhow::Result<Row> {
+/// Makes a database of so many pictures, and measures it; no pictures are drawn yet.
+fn measured_database(walk: &Sequence, images: usize, folder: &Path) -> anyhow::Result<(Row, Synthesizer)> {
     let file = folder.join(format!("{images}.db"));
     fill(&file, walk, images)?;
     let start = Instant::now();
@@ -92,10 +97,10 @@ fn row(walk: &Sequence, images: usize, folder: &Path) -> anyhow::Result<Row> {
     let start = Instant::now();
     black_box(Coverage::new(archive.index(), archive.field(), archive.usual_pose(), CELL_M));
     let coverage = start.elapsed();
-    let picture_ms = picture_ms(&Synthesizer::new(Arc::new(archive)))?;
     let file_bytes = fs::metadata(&file)?.len();
-    fs::remove_file(&file)?;
-    Ok(Row { images, file_bytes, opening, held_bytes, most_bytes, picture_ms, coverage })
+    let [blend_ms, plane_ms] = [f64::NAN; 2];
+    let row = Row { images, file_bytes, opening, held_bytes, most_bytes, blend_ms, plane_ms, coverage };
+    Ok((row, Synthesizer::new(Arc::new(archive))))
 }
 
 fn fill(file: &Path, walk: &Sequence, images: usize) -> anyhow::Result<()> {
@@ -109,39 +114,50 @@ fn fill(file: &Path, walk: &Sequence, images: usize) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the median time of a picture at a random pose.
-fn picture_ms(synthesizer: &Synthesizer) -> anyhow::Result<f64> {
-    let mut times_ms = Vec::new();
-    for pose in random_poses(DRAWN, 1) {
-        let start = Instant::now();
-        if synthesizer.image_at(pose, &MethodKind::Blend).is_ok() {
-            times_ms.push(1e3 * start.elapsed().as_secs_f64());
+/// Returns the median time of a picture at a random pose for each database, milliseconds. Only poses count at which all of them can draw one.
+fn pictures_ms(synthesizers: &[Synthesizer], method: &MethodKind, seed: u64) -> anyhow::Result<Vec<f64>> {
+    let mut times_ms = vec![Vec::new(); synthesizers.len()];
+    for pose in random_poses(DRAWN, seed) {
+        let timed = |synthesizer: &Synthesizer| {
+            let start = Instant::now();
+            let is_drawn = synthesizer.image_at(pose, method).is_ok();
+            is_drawn.then(|| milliseconds(start.elapsed()))
+        };
+        // In turns: the machine's speed changes from minute to minute.
+        let each: Vec<f64> = synthesizers.iter().map_while(timed).collect();
+        if each.len() == synthesizers.len() {
+            times_ms.iter_mut().zip(each).for_each(|(times_ms, time_ms)| times_ms.push(time_ms));
         }
     }
-    times_ms.sort_by(f64::total_cmp);
-    percentile(&times_ms, 0.5).context("no picture could be made")
+    let median = |mut times_ms: Vec<f64>| {
+        times_ms.sort_by(f64::total_cmp);
+        percentile(&times_ms, 0.5).context("no picture could be made")
+    };
+    times_ms.into_iter().map(median).collect()
 }
 
 fn write_table(rows: &[Row]) -> anyhow::Result<()> {
     let [width, height] = SIZE;
     let mut text = format!(
         "Made by `cargo run --release --example database_size`: pictures of {width} × {height} at random poses with covariances. A picture is \
-         `blend` of six at a random pose, its neighbours decoded anew, the median of {DRAWN}. Memory is what a counting allocator has handed \
-         out, without decoded pictures.\n\n\
-         | pictures | file, bytes a picture | opening | memory, bytes a picture; most while opening | a picture | coverage |\n\
-         |---|---|---|---|---|---|\n"
+         made at a random pose where none was before, its neighbours read and decoded, the median of {DRAWN}, the databases in turns: `blend` of six \
+         neighbours, which overlap more where there are many pictures, and `plane` of one. Memory is what a counting allocator has handed out, \
+         without decoded pictures.\n\n\
+         | pictures | file, bytes a picture | opening | memory, bytes a picture; most while opening | `blend` | `plane` | coverage |\n\
+         |---|---|---|---|---|---|---|\n"
     );
     for row in rows {
         let each = |bytes: usize| bytes / row.images;
         writeln!(
             text,
-            "| {} | {} | {:.1} ms | {}; {} | {:.2} ms | {:.1} ms |",
+            "| {} | {} | {:.1} ms | {}; {} | {:.2} ms | {:.2} ms | {:.1} ms |",
             row.images,
             row.file_bytes / row.images as u64,
             milliseconds(row.opening),
             each(row.held_bytes),
             each(row.most_bytes),
-            row.picture_ms,
+            row.blend_ms,
+            row.plane_ms,
             milliseconds(row.coverage),
         )?;
     }
@@ -152,9 +168,10 @@ fn write_table(rows: &[Row]) -> anyhow::Result<()> {
 /// Plots the times over the number of pictures.
 fn plot(rows: &[Row]) -> anyhow::Result<()> {
     type Value = fn(&Row) -> f64;
-    let of: [(&str, Value); 3] = [
+    let of: [(&str, Value); 4] = [
         ("opening", |row| milliseconds(row.opening)),
-        ("a picture", |row| row.picture_ms),
+        ("a picture: blend", |row| row.blend_ms),
+        ("a picture: plane", |row| row.plane_ms),
         ("coverage", |row| milliseconds(row.coverage)),
     ];
     let curves =

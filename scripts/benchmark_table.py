@@ -47,8 +47,13 @@ def shown(seconds):
     return f"{seconds * 1e9:.3g} ns"
 
 
-def millions(count):
-    return f"{count / 1e6:.3g} million"
+def counted(number):
+    """Returns a number with three digits, in words where it is large."""
+    number = float(f"{number:.3g}")
+    for unit, word in ((1e9, " billion"), (1e6, " million"), (1e3, " thousand"), (1, "")):
+        if number >= unit:
+            return f"{number / unit:.3g}{word}"
+    return f"{number:.2g}"
 
 
 def processor():
@@ -94,7 +99,7 @@ def main():
             ratio = f"{on_processor[one.group] / one.seconds:.2g} times as fast"
         print(
             f"| {one.group} | {one.name} | {shown(one.seconds)} ({shown(one.low)} to {shown(one.high)}) "
-            f"| {millions(rate) if rate else ''} | {ratio} |"
+            f"| {counted(rate) if rate else ''} | {ratio} |"
         )
     scored = [
         (f"{one.group}, {one.name}", LOOKUPS.get(one.name, 1) * one.per_second())
@@ -104,7 +109,7 @@ def main():
     if scored:
         print("\n## Look-ups a second: particles × samples\n\n| what | look-ups a second |\n|---|---|")
         for name, rate in scored + BELUGA:
-            print(f"| {name} | {millions(rate)} |")
+            print(f"| {name} | {counted(rate)} |")
 
 
 if __name__ == "__main__":

@@ -89,7 +89,9 @@ impl Resampling {
             copies.push(copies_so_far);
             rests.push(rest_so_far);
         }
-        Shares { copies, rests }
+        // Rounding may leave the last position beyond the last sum: the last particle with any share takes it.
+        let last = rests.partition_point(|&rest| rest < rest_so_far);
+        Shares { copies, rests, last }
     }
 }
 
@@ -99,15 +101,15 @@ struct Shares {
     copies: Vec<usize>,
     /// Expected number of copies beyond those.
     rests: Vec<f64>,
+    /// Last particle whose number is not 0.
+    last: usize,
 }
 
 impl Shares {
     /// Returns the particle at a position in [0, 1) of the drawn shares.
     fn drawn_at(&self, place: f64) -> usize {
         let all = self.rests.last().copied().unwrap_or(0.0);
-        let index = self.rests.partition_point(|&rest| rest <= place * all);
-        // Rounding may leave the last position beyond the last sum: the last particle with any share takes it.
-        index.min(self.rests.partition_point(|&rest| rest < all))
+        self.rests.partition_point(|&rest| rest <= place * all).min(self.last)
     }
 }
 
