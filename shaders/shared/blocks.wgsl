@@ -49,7 +49,6 @@ fn cubic_of(camera: Camera, pose: CameraFromGround, block: Block, nodes: array<v
     let b = place_of_point(camera, is_radial, in_camera(pose, nodes[1]));
     let c = place_of_point(camera, is_radial, in_camera(pose, nodes[2]));
     let d = place_of_point(camera, is_radial, in_camera(pose, nodes[3]));
-    // Any comparison with NaN is false.
     let nearness = vec4<f32>(a.nearness, b.nearness, c.nearness, d.nearness);
     let cosine = vec4<f32>(a.cosine, b.cosine, c.cosine, d.cosine);
     let is_right = all(nearness <= vec4<f32>(block.largest_nearness)) && all(cosine >= vec4<f32>(block.min_cos));

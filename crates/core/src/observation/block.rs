@@ -11,8 +11,8 @@ pub type SamplePoints = [[f32; 2]; 2];
 pub struct LineBlock {
     /// The samples, at least one. The i-th is at t = 2 i/15 − 1 along the line.
     pub samples: Vec<SamplePoints>,
-    /// Points on the same line at t = −1, −1/3, 1/3 and 1: a cubic through their places in the picture gives those of the samples. They are NaN where
-    /// the samples are not even.
+    /// Points on the same line at t = −1, −1/3, 1/3 and 1: a cubic through their places in the picture gives those of the samples. Where the samples
+    /// are not even, they are all the first sample, and outside of the limits.
     pub nodes: [SamplePoints; NODES],
     /// Where the cubic is right.
     pub limits: Limits,

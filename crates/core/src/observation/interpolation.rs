@@ -79,8 +79,8 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Limits of a block that is never interpolated.
-    pub const NOWHERE: Self = Self { largest_nearness: f32::NEG_INFINITY, min_cos: f32::INFINITY };
+    /// Limits of a block that is never interpolated: no point has such a nearness or cosine.
+    pub const NOWHERE: Self = Self { largest_nearness: -1.0, min_cos: 2.0 };
 
     /// Returns the limits where both hold.
     pub fn and(self, other: Self) -> Self {

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{
-    block::LineBlock,
+    block::{LineBlock, SamplePoints},
     interpolation::{CameraLimits, Limits, NODE_LANES, NODES},
     path::Path,
 };
@@ -149,10 +149,17 @@ impl<const N: usize> Samples<N> {
         let numbered = self.quads.iter().flat_map(|quad| (0..NODES).map(move |block| (quad, block)));
         let blocks = numbered.map(move |(quad, number)| {
             let block = &quad.blocks[number];
-            let samples = (0..LANES).filter(|lane| block.is_sample[*lane] > 0.0);
+            let is_sample = |lane: &usize| block.is_sample[*lane] > 0.0;
+            let samples: Vec<SamplePoints> =
+                (0..LANES).filter(is_sample).map(|lane| two(&block.points, lane)).collect();
+            let first_sample = samples.first().copied().unwrap_or_default();
+            // Not every graphics device knows NaN.
+            let node = |node: SamplePoints| {
+                if node.as_flattened().iter().all(|number| number.is_finite()) { node } else { first_sample }
+            };
             LineBlock {
-                samples: samples.map(|lane| two(&block.points, lane)).collect(),
-                nodes: std::array::from_fn(|node| two(&quad.nodes, NODES * number + node)),
+                samples,
+                nodes: std::array::from_fn(|lane| node(two(&quad.nodes, NODES * number + lane))),
                 limits: quad.limits,
                 centre: block.circle.centre,
                 radius_m: block.circle.radius,

@@ -46,26 +46,17 @@ fn blur_band(values: &[u8], first: usize, kernel: &[f32], out: &mut [u8], width:
     for (y, out) in (first..).zip(out.chunks_exact_mut(width)) {
         while next < height && next <= y + radius {
             let target = &mut across[next % kernel.len() * width..][..width];
-            blur_row(&values[next * width..][..width], kernel, &mut padded, target);
+            blur_rows(&values[next * width..][..width], kernel, &mut padded, target);
             next += 1;
         }
-        // Half a level, since the fraction is cut off.
-        sums.fill(0.5);
-        for (offset, &weight) in kernel.iter().enumerate() {
-            let source = (y + offset).saturating_sub(radius).min(height - 1);
-            for (sum, &value) in sums.iter_mut().zip(&across[source % kernel.len() * width..][..width]) {
-                *sum += weight * value;
-            }
-        }
-        for (out, &sum) in out.iter_mut().zip(&sums) {
-            *out = sum as u8;
-        }
+        let place = |offset: usize| (y + offset).saturating_sub(radius).min(height - 1) % kernel.len();
+        blur_columns(&across, place, kernel, &mut sums, out);
     }
 }
 
-/// Blurs a row along itself, with room for its values and those repeated on both sides.
+/// Blurs along the rows: one row, with room for its values and those repeated on both sides.
 #[inline(always)]
-fn blur_row(row: &[u8], kernel: &[f32], padded: &mut [f32], out: &mut [f32]) {
+fn blur_rows(row: &[u8], kernel: &[f32], padded: &mut [f32], out: &mut [f32]) {
     let radius = kernel.len() / 2;
     padded[..radius].fill(f32::from(row[0]));
     padded[radius + row.len()..].fill(f32::from(row[row.len() - 1]));
@@ -77,6 +68,28 @@ fn blur_row(row: &[u8], kernel: &[f32], padded: &mut [f32], out: &mut [f32]) {
         for (sum, &value) in out.iter_mut().zip(&padded[offset..]) {
             *sum += weight * value;
         }
+    }
+}
+
+/// Blurs along the columns: one row, from rows whose place among those kept `place` tells for each weight of the kernel, with room for sums.
+#[inline(always)]
+fn blur_columns(
+    across: &[f32],
+    place: impl Fn(usize) -> usize,
+    kernel: &[f32],
+    sums: &mut [f32],
+    out: &mut [u8],
+) {
+    let width = out.len();
+    // Half a level, since the fraction is cut off.
+    sums.fill(0.5);
+    for (offset, &weight) in kernel.iter().enumerate() {
+        for (sum, &value) in sums.iter_mut().zip(&across[place(offset) * width..][..width]) {
+            *sum += weight * value;
+        }
+    }
+    for (out, &sum) in out.iter_mut().zip(&*sums) {
+        *out = sum as u8;
     }
 }
 
