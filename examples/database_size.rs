@@ -47,30 +47,35 @@ const CELL_M: f64 = 0.25;
 const CACHE_BYTES: usize = 0;
 const OUT: &str = "docs/figures";
 
-/// What was measured of one database.
-struct Row {
+/// What was measured of one database while it was opened.
+struct Opened {
     images: usize,
     file_bytes: u64,
     opening: Duration,
     held_bytes: usize,
     most_bytes: usize,
+    coverage: Duration,
+}
+
+/// What was measured of one database.
+struct Row {
+    opened: Opened,
     /// Median times of a picture from six neighbours and from one, milliseconds.
     blend_ms: f64,
     plane_ms: f64,
-    coverage: Duration,
 }
 
 fn main() -> anyhow::Result<()> {
     let folder = tempfile::tempdir()?;
     let walk = smaller(&Sequence::open(Path::new("assets/walk"))?, folder.path())?;
-    let databases = IMAGES.map(|images| measured_database(&walk, images, folder.path()));
-    let (mut rows, synthesizers): (Vec<Row>, Vec<Synthesizer>) =
+    let databases = IMAGES.map(|images| open_measured(&walk, images, folder.path()));
+    let (opened, synthesizers): (Vec<Opened>, Vec<Synthesizer>) =
         databases.into_iter().collect::<anyhow::Result<Vec<_>>>()?.into_iter().unzip();
     let blend_ms = pictures_ms(&synthesizers, &MethodKind::Blend, 1)?;
     let plane_ms = pictures_ms(&synthesizers, &MethodKind::Plane, 2)?;
-    for (row, (blend_ms, plane_ms)) in rows.iter_mut().zip(blend_ms.into_iter().zip(plane_ms)) {
-        (row.blend_ms, row.plane_ms) = (blend_ms, plane_ms);
-    }
+    let times_ms = blend_ms.into_iter().zip(plane_ms);
+    let row = |(opened, (blend_ms, plane_ms))| Row { opened, blend_ms, plane_ms };
+    let rows: Vec<Row> = opened.into_iter().zip(times_ms).map(row).collect();
     write_table(&rows)?;
     plot(&rows)
 }
@@ -88,7 +93,7 @@ fn smaller(walk: &Sequence, folder: &Path) -> anyhow::Result<Sequence> {
 }
 
 /// Makes a database of so many pictures, and measures it; no pictures are drawn yet.
-fn measured_database(walk: &Sequence, images: usize, folder: &Path) -> anyhow::Result<(Row, Synthesizer)> {
+fn open_measured(walk: &Sequence, images: usize, folder: &Path) -> anyhow::Result<(Opened, Synthesizer)> {
     let file = folder.join(format!("{images}.db"));
     fill(&file, walk, images)?;
     let start = Instant::now();
@@ -98,9 +103,8 @@ fn measured_database(walk: &Sequence, images: usize, folder: &Path) -> anyhow::R
     black_box(Coverage::new(archive.index(), archive.field(), archive.usual_pose(), CELL_M));
     let coverage = start.elapsed();
     let file_bytes = fs::metadata(&file)?.len();
-    let [blend_ms, plane_ms] = [f64::NAN; 2];
-    let row = Row { images, file_bytes, opening, held_bytes, most_bytes, blend_ms, plane_ms, coverage };
-    Ok((row, Synthesizer::new(Arc::new(archive))))
+    let opened = Opened { images, file_bytes, opening, held_bytes, most_bytes, coverage };
+    Ok((opened, Synthesizer::new(Arc::new(archive))))
 }
 
 fn fill(file: &Path, walk: &Sequence, images: usize) -> anyhow::Result<()> {
@@ -146,19 +150,19 @@ fn write_table(rows: &[Row]) -> anyhow::Result<()> {
          | pictures | file, bytes a picture | opening | memory, bytes a picture; most while opening | `blend` | `plane` | coverage |\n\
          |---|---|---|---|---|---|---|\n"
     );
-    for row in rows {
-        let each = |bytes: usize| bytes / row.images;
+    for Row { opened, blend_ms, plane_ms } in rows {
+        let each = |bytes: usize| bytes / opened.images;
         writeln!(
             text,
             "| {} | {} | {:.1} ms | {}; {} | {:.2} ms | {:.2} ms | {:.1} ms |",
-            row.images,
-            row.file_bytes / row.images as u64,
-            milliseconds(row.opening),
-            each(row.held_bytes),
-            each(row.most_bytes),
-            row.blend_ms,
-            row.plane_ms,
-            milliseconds(row.coverage),
+            opened.images,
+            opened.file_bytes / opened.images as u64,
+            milliseconds(opened.opening),
+            each(opened.held_bytes),
+            each(opened.most_bytes),
+            blend_ms,
+            plane_ms,
+            milliseconds(opened.coverage),
         )?;
     }
     let file = format!("{OUT}/database_size.md");
@@ -169,13 +173,13 @@ fn write_table(rows: &[Row]) -> anyhow::Result<()> {
 fn plot(rows: &[Row]) -> anyhow::Result<()> {
     type Value = fn(&Row) -> f64;
     let of: [(&str, Value); 4] = [
-        ("opening", |row| milliseconds(row.opening)),
+        ("opening", |row| milliseconds(row.opened.opening)),
         ("a picture: blend", |row| row.blend_ms),
         ("a picture: plane", |row| row.plane_ms),
-        ("coverage", |row| milliseconds(row.coverage)),
+        ("coverage", |row| milliseconds(row.opened.coverage)),
     ];
-    let curves =
-        of.map(|(name, value)| (name, rows.iter().map(|row| (row.images as f64, value(row))).collect()));
+    let curves = of
+        .map(|(name, value)| (name, rows.iter().map(|row| (row.opened.images as f64, value(row))).collect()));
     let axes = Axes { x: "pictures", y: "milliseconds", x_range: 250.0..1_200_000.0 };
     let file = Path::new(OUT).join("database_size.svg");
     curves::plot(&file, axes, &curves, &[], SeriesLabelPosition::UpperLeft)
