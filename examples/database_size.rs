@@ -4,7 +4,8 @@
 //! 7 GB of the folder for temporary files.
 //!
 //! The pictures are those of the demonstration walk at a quarter of their size, over and over with poses that were never taken. Every
-//! picture that is drawn decodes its neighbours anew, as at the first visit of a place.
+//! picture that is drawn decodes its neighbours anew, as at the first visit of a place. How much an opening reads of the file is known on
+//! Linux only; it is what a system that does not hold the file in memory waits for.
 
 #[path = "../benches/counting.rs"]
 mod counting;
@@ -52,6 +53,8 @@ struct Opened {
     images: usize,
     file_bytes: u64,
     opening: Duration,
+    /// Bytes that the opening read of the file, where the system tells.
+    read_bytes: Option<u64>,
     held_bytes: usize,
     most_bytes: usize,
     coverage: Duration,
@@ -96,15 +99,22 @@ fn smaller(walk: &Sequence, folder: &Path) -> anyhow::Result<Sequence> {
 fn open_measured(walk: &Sequence, images: usize, folder: &Path) -> anyhow::Result<(Opened, Synthesizer)> {
     let file = folder.join(format!("{images}.db"));
     fill(&file, walk, images)?;
-    let start = Instant::now();
+    let (start, read_before) = (Instant::now(), read_so_far_bytes());
     let (archive, held_bytes, most_bytes) = measured(|| Archive::open(&file, CACHE_BYTES));
     let (archive, opening) = (archive?, start.elapsed());
+    let read_bytes = read_so_far_bytes().zip(read_before).map(|(after, before)| after - before);
     let start = Instant::now();
     black_box(Coverage::new(archive.index(), archive.field(), archive.usual_pose(), CELL_M));
     let coverage = start.elapsed();
     let file_bytes = fs::metadata(&file)?.len();
-    let opened = Opened { images, file_bytes, opening, held_bytes, most_bytes, coverage };
+    let opened = Opened { images, file_bytes, opening, read_bytes, held_bytes, most_bytes, coverage };
     Ok((opened, Synthesizer::new(Arc::new(archive))))
+}
+
+/// Returns how much this process has read of files, in memory or not.
+fn read_so_far_bytes() -> Option<u64> {
+    let counters = fs::read_to_string("/proc/self/io").ok()?;
+    counters.lines().find_map(|line| line.strip_prefix("rchar: "))?.parse().ok()
 }
 
 fn fill(file: &Path, walk: &Sequence, images: usize) -> anyhow::Result<()> {
@@ -146,18 +156,19 @@ fn write_table(rows: &[Row]) -> anyhow::Result<()> {
         "Made by `cargo run --release --example database_size`: pictures of {width} × {height} at random poses with covariances. A picture is \
          made at a random pose where none was before, its neighbours read and decoded, the median of {DRAWN}, the databases in turns: `blend` of six \
          neighbours, which overlap more where there are many pictures, and `plane` of one. Memory is what a counting allocator has handed out, \
-         without decoded pictures.\n\n\
-         | pictures | file, bytes a picture | opening | memory, bytes a picture; most while opening | `blend` | `plane` | coverage |\n\
-         |---|---|---|---|---|---|---|\n"
+         without decoded pictures. The system holds most of each file in memory, as it was just written.\n\n\
+         | pictures | file, bytes a picture | opening | read by it, bytes a picture | memory, bytes a picture; most while opening | `blend` | `plane` | coverage |\n\
+         |---|---|---|---|---|---|---|---|\n"
     );
     for Row { opened, blend_ms, plane_ms } in rows {
         let each = |bytes: usize| bytes / opened.images;
         writeln!(
             text,
-            "| {} | {} | {:.1} ms | {}; {} | {:.2} ms | {:.2} ms | {:.1} ms |",
+            "| {} | {} | {:.1} ms | {} | {}; {} | {:.2} ms | {:.2} ms | {:.1} ms |",
             opened.images,
             opened.file_bytes / opened.images as u64,
             milliseconds(opened.opening),
+            opened.read_bytes.map_or("–".to_owned(), |bytes| (bytes / opened.images as u64).to_string()),
             each(opened.held_bytes),
             each(opened.most_bytes),
             blend_ms,

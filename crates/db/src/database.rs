@@ -19,7 +19,9 @@ use rusqlite::{Connection, OpenFlags, OptionalExtension, Row, Transaction, Trans
 
 use crate::{
     error::{DbError, DbFault},
-    record::{DETAIL_COLUMNS, IMAGE_COLUMNS, IMAGE_WIDTH, ImageDetails, ImageRecord, PoseSource},
+    record::{
+        DETAIL_COLUMNS, IMAGE_COLUMNS, IMAGE_WIDTH, ImageDetails, ImageRecord, POSE_SOURCE_COLUMN, PoseSource,
+    },
     schema,
     work_limit::WorkLimit,
 };
@@ -68,7 +70,7 @@ impl Database {
     pub fn images(&self) -> Result<Vec<ImageRecord>, DbError> {
         self.read(|transaction| {
             let mut images = Vec::new();
-            each_record(transaction, "pose_source_id", |image, _| {
+            each_record(transaction, POSE_SOURCE_COLUMN, |image, _| {
                 images.push(image);
                 Ok(())
             })?;
@@ -181,31 +183,32 @@ impl Database {
 
     /// Returns the JPEG or PNG file of an image, as it was recorded.
     pub fn image_bytes(&self, id: i64) -> Result<Vec<u8>, DbError> {
-        Ok(self.stored_image(id)?.bytes)
+        self.read(|transaction| {
+            let query = "SELECT bytes FROM image_bytes WHERE image_id = ?1";
+            let bytes = transaction.query_row(query, [id], |row| row.get(0)).optional()?;
+            bytes.map_or_else(|| Err(why_no_bytes(transaction, id)?), Ok)
+        })
     }
 
     /// Decodes an image, in its camera's size.
     pub fn picture(&self, id: i64) -> Result<RgbImage, DbError> {
-        let stored = self.stored_image(id)?;
-        let camera = CameraSetup::from_toml(&self.origin("camera", stored.camera_id), &stored.camera)?.camera;
-        Ok(decode_image(&self.origin("image", id), &stored.bytes, [camera.width, camera.height])?)
+        let (camera_id, text) = self.read(|transaction| {
+            let query = "SELECT camera_id, toml FROM images LEFT JOIN cameras ON cameras.id = camera_id \
+                 WHERE images.id = ?1";
+            let row = |row: &Row<'_>| Ok((row.get::<_, i64>(0)?, row.get::<_, Option<String>>(1)?));
+            let (camera_id, text) =
+                transaction.query_row(query, [id], row).optional()?.ok_or(DbFault::NoSuchImage { id })?;
+            let missing = DbFault::BadRow { table: "image", id, problem: "its camera is missing" };
+            Ok((camera_id, text.ok_or(missing)?))
+        })?;
+        let camera = CameraSetup::from_toml(&self.origin("camera", camera_id), &text)?.camera;
+        self.picture_of_size(id, [camera.width, camera.height])
     }
 
-    fn stored_image(&self, id: i64) -> Result<StoredImage, DbError> {
-        self.read(|transaction| {
-            let query = "SELECT bytes, camera_id, toml FROM images \
-                 LEFT JOIN image_bytes ON image_bytes.image_id = images.id \
-                 LEFT JOIN cameras ON cameras.id = images.camera_id WHERE images.id = ?1";
-            let row = |row: &Row<'_>| Ok((row.get(0)?, row.get(1)?, row.get(2)?));
-            let (bytes, camera_id, camera): (Option<_>, i64, Option<_>) =
-                transaction.query_row(query, [id], row).optional()?.ok_or(DbFault::NoSuchImage { id })?;
-            let bad = |problem| DbFault::BadRow { table: "image", id, problem };
-            Ok(StoredImage {
-                bytes: bytes.ok_or(bad("its bytes are missing"))?,
-                camera_id,
-                camera: camera.ok_or(bad("its camera is missing"))?,
-            })
-        })
+    /// Decodes an image whose camera is known to have pictures of this size: width, height. Faster than [`Database::picture`], which
+    /// looks the camera up.
+    pub fn picture_of_size(&self, id: i64, size: [u32; 2]) -> Result<RgbImage, DbError> {
+        Ok(decode_image(&self.origin("image", id), &self.image_bytes(id)?, size)?)
     }
 
     /// Runs queries that all see the same state of the database.
@@ -275,11 +278,13 @@ impl Database {
     }
 }
 
-/// Row of an image with everything needed to decode it.
-struct StoredImage {
-    bytes: Vec<u8>,
-    camera_id: i64,
-    camera: String,
+/// Returns why there are no bytes of an image.
+fn why_no_bytes(transaction: &Transaction<'_>, id: i64) -> rusqlite::Result<DbFault> {
+    let is_stored = transaction.prepare("SELECT 1 FROM images WHERE id = ?1")?.exists([id])?;
+    Ok(match is_stored {
+        true => DbFault::BadRow { table: "image", id, problem: "its bytes are missing" },
+        false => DbFault::NoSuchImage { id },
+    })
 }
 
 /// Returns the length of a file, bytes; 0 where there is none yet.
@@ -307,8 +312,7 @@ fn each_record(
     mut take: impl FnMut(ImageRecord, &Row<'_>) -> Result<(), DbFault>,
 ) -> Result<(), DbFault> {
     let known = References::read(transaction)?;
-    let mut statement =
-        transaction.prepare(&format!("SELECT {IMAGE_COLUMNS}, {further} FROM images ORDER BY id"))?;
+    let mut statement = transaction.prepare(&query_of_records(further))?;
     let mut rows = statement.query([])?;
     while let Some(row) = rows.next()? {
         let image = ImageRecord::from_row(row)?;
@@ -319,6 +323,12 @@ fn each_record(
         take(image, row)?;
     }
     Ok(())
+}
+
+/// Returns the query of all records in the order of their ids, with `further` columns. If those are no more than the id of the pose's source,
+/// it is answered from the index of records.
+pub(crate) fn query_of_records(further: &str) -> String {
+    format!("SELECT {IMAGE_COLUMNS}, {further} FROM images ORDER BY id")
 }
 
 /// Ids that images refer to.

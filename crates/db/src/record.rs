@@ -156,7 +156,10 @@ pub(crate) const IMAGE_COLUMNS: &str = "id, sequence_id, frame_index, camera_id,
 /// Number of [`IMAGE_COLUMNS`].
 pub(crate) const IMAGE_WIDTH: usize = 12;
 
-/// Columns of details, in the order in which [`ImageDetails::from_row`] takes them; the first is checked with the record.
+/// Column that is checked with every record: the id of the pose's source.
+pub(crate) const POSE_SOURCE_COLUMN: &str = "pose_source_id";
+
+/// Columns of details, in the order in which [`ImageDetails::from_row`] takes them; the first is [`POSE_SOURCE_COLUMN`].
 pub(crate) const DETAIL_COLUMNS: &str = "pose_source_id, file_name, byte_length, covariance";
 
 impl ImageRecord {

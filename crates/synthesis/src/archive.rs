@@ -220,9 +220,9 @@ impl Archive {
 
     /// Decodes a picture. It does not stay in the cache.
     pub(crate) fn decoded(&self, image: ImageIndex) -> Result<RgbImage, SynthesisError> {
-        let record = &self.images[image as usize];
-        let mut picture = self.database.picture(record.id)?;
-        if let Some(shading) = self.shading_of(self.camera_of(image)) {
+        let (record, camera) = (&self.images[image as usize], self.camera_of(image));
+        let mut picture = self.database.picture_of_size(record.id, [camera.width, camera.height])?;
+        if let Some(shading) = self.shading_of(camera) {
             let (colors, _) = picture.as_chunks_mut();
             shading.take_out(colors, record.timestamp_s);
         }

@@ -218,8 +218,7 @@ impl Synthesizer {
         let target = self.target(pose, &proxy);
         let metric = self.archive.index().metric();
         let is_kept = memory.kept(metric, pose, count).is_some();
-        let Choice { images, gains, .. } = self.choice(&target, pose, count, memory)?;
-        let pictures = self.pictures(&images)?;
+        let (Choice { images, gains, .. }, pictures) = self.choice(&target, pose, count, memory)?;
         let sources = self.sources(&images, &pictures, &gains);
         let mut origins = self.warper.blend_into(&target, &sources, &self.config.weights, colors)?;
         if let Some(view) = self.clean_view()? {
@@ -253,25 +252,25 @@ impl Synthesizer {
         self.check(pose)?;
         let proxy = self.archive.proxy_geometry().holding(pose);
         let target = self.target(pose, &proxy);
-        let Choice { images, gains, .. } = self.choice(&target, pose, self.config.sources, memory)?;
-        let pictures = self.pictures(&images)?;
+        let (Choice { images, gains, .. }, pictures) =
+            self.choice(&target, pose, self.config.sources, memory)?;
         Ok(draw(&target, &self.sources(&images, &pictures, &gains), &self.config.weights))
     }
 
-    /// Returns the neighbours that a memory keeps for a pose, or chooses others.
+    /// Returns the neighbours that a memory keeps for a pose, or chooses others; with their pictures.
     fn choice(
         &self,
         target: &Target,
         pose: CameraPose,
         count: usize,
         memory: &mut Memory,
-    ) -> Result<Choice, SynthesisError> {
+    ) -> Result<(Choice, Vec<Arc<Picture>>), SynthesisError> {
         if let Some(kept) = memory.kept(self.archive.index().metric(), pose, count) {
-            return Ok(kept.clone());
+            return Ok((kept.clone(), self.pictures(&kept.images)?));
         }
-        let choice = self.choose(target, pose, count)?;
+        let (choice, pictures) = self.choose(target, pose, count)?;
         memory.keep(choice.clone());
-        Ok(choice)
+        Ok((choice, pictures))
     }
 
     fn sources<'a>(
@@ -291,7 +290,12 @@ impl Synthesizer {
     }
 
     /// Chooses the neighbours to draw from, and measures how bright they are.
-    fn choose(&self, target: &Target, pose: CameraPose, count: usize) -> Result<Choice, SynthesisError> {
+    fn choose(
+        &self,
+        target: &Target,
+        pose: CameraPose,
+        count: usize,
+    ) -> Result<(Choice, Vec<Arc<Picture>>), SynthesisError> {
         let look = Look::new(target);
         let images = self.chosen(&look, pose, count)?;
         let pictures = self.pictures(&images)?;
@@ -301,7 +305,7 @@ impl Synthesizer {
             .map(|(&image, picture)| self.archive.source(image, picture))
             .collect();
         let gains = if sources.len() > 1 { gains(&look, &sources) } else { vec![[1.0; 3]; sources.len()] };
-        Ok(Choice { pose, count, images, gains })
+        Ok((Choice { pose, count, images, gains }, pictures))
     }
 
     /// Chooses the neighbours to draw from: those of the nearest and the natural ones that together show most.

@@ -36,7 +36,8 @@ pub fn with_clean_stage() -> (TempDir, PathBuf) {
 
 /// Turns a database into one of the first version.
 fn of_first_version(path: &Path) {
-    tamper(path, "DROP TABLE grounds; DROP TABLE image_masks; PRAGMA user_version = 1");
+    let later = "DROP INDEX image_records; DROP TABLE grounds; DROP TABLE image_masks";
+    tamper(path, &format!("{later}; PRAGMA user_version = 1"));
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use std::error::Error;
 
 use super::*;
+use crate::{database::query_of_records, record::POSE_SOURCE_COLUMN};
 
 #[test]
 fn what_is_not_a_database_is_refused_and_left_alone() {
@@ -117,4 +118,24 @@ fn names_that_sqlite_takes_for_something_else_are_files() {
         assert!(path.is_file(), "{name}");
         Database::open(&path).unwrap();
     }
+}
+
+/// Returns how SQLite reads the records of all images.
+fn plan_of_records(path: &Path) -> String {
+    let connection = rusqlite::Connection::open(path).unwrap();
+    let query = format!("EXPLAIN QUERY PLAN {}", query_of_records(POSE_SOURCE_COLUMN));
+    connection.query_row(&query, [], |row| row.get("detail")).unwrap()
+}
+
+#[test]
+fn records_are_read_from_their_own_pages_and_in_a_database_of_the_second_version_from_those_of_the_images() {
+    let (_folder, path) = database_of(&short_walk(3));
+    let records = Database::open(&path).unwrap().images().unwrap();
+    assert_eq!(plan_of_records(&path), "SCAN images USING COVERING INDEX image_records");
+    tamper(&path, "DROP INDEX image_records; PRAGMA user_version = 2");
+    assert_eq!(plan_of_records(&path), "SCAN images");
+    assert_eq!(Database::open(&path).unwrap().images().unwrap(), records);
+    Database::create_or_open(&path).unwrap();
+    assert_eq!(plan_of_records(&path), "SCAN images USING COVERING INDEX image_records");
+    assert_eq!(Database::open(&path).unwrap().images().unwrap(), records);
 }
