@@ -4,7 +4,7 @@
 //! 7 GB of the folder for temporary files.
 //!
 //! The pictures are those of the demonstration walk at a quarter of their size, over and over with poses that were never taken. Every
-//! picture that is drawn decodes its neighbours anew, as at the first visit of a place. How much an opening reads of the file is known on
+//! picture that is drawn decodes its neighbours anew, as where a place was not visited for long. How much an opening reads of the file is known on
 //! Linux only; it is what a system that does not hold the file in memory waits for.
 
 #[path = "../benches/counting.rs"]
@@ -63,9 +63,16 @@ struct Opened {
 /// What was measured of one database.
 struct Row {
     opened: Opened,
-    /// Median times of a picture from six neighbours and from one, milliseconds.
-    blend_ms: f64,
-    plane_ms: f64,
+    blend: Visits,
+    plane: Visits,
+}
+
+/// Median times of a picture by a method, milliseconds.
+struct Visits {
+    /// Where nothing was drawn before: some of the file may have to come from the disk.
+    first_ms: f64,
+    /// The same pictures once more: the system holds in memory what they are made of.
+    again_ms: f64,
 }
 
 fn main() -> anyhow::Result<()> {
@@ -74,11 +81,10 @@ fn main() -> anyhow::Result<()> {
     let databases = IMAGES.map(|images| open_measured(&walk, images, folder.path()));
     let (opened, synthesizers): (Vec<Opened>, Vec<Synthesizer>) =
         databases.into_iter().collect::<anyhow::Result<Vec<_>>>()?.into_iter().unzip();
-    let blend_ms = pictures_ms(&synthesizers, &MethodKind::Blend, 1)?;
-    let plane_ms = pictures_ms(&synthesizers, &MethodKind::Plane, 2)?;
-    let times_ms = blend_ms.into_iter().zip(plane_ms);
-    let row = |(opened, (blend_ms, plane_ms))| Row { opened, blend_ms, plane_ms };
-    let rows: Vec<Row> = opened.into_iter().zip(times_ms).map(row).collect();
+    let blend = visits(&synthesizers, &MethodKind::Blend, 1)?;
+    let plane = visits(&synthesizers, &MethodKind::Plane, 2)?;
+    let row = |(opened, (blend, plane))| Row { opened, blend, plane };
+    let rows: Vec<Row> = opened.into_iter().zip(blend.into_iter().zip(plane)).map(row).collect();
     write_table(&rows)?;
     plot(&rows)
 }
@@ -128,6 +134,14 @@ fn fill(file: &Path, walk: &Sequence, images: usize) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Draws the same pictures twice from each database.
+fn visits(synthesizers: &[Synthesizer], method: &MethodKind, seed: u64) -> anyhow::Result<Vec<Visits>> {
+    let first = pictures_ms(synthesizers, method, seed)?;
+    let again = pictures_ms(synthesizers, method, seed)?;
+    let visits = first.into_iter().zip(again).map(|(first_ms, again_ms)| Visits { first_ms, again_ms });
+    Ok(visits.collect())
+}
+
 /// Returns the median time of a picture at a random pose for each database, milliseconds. Only poses count at which all of them can draw one.
 fn pictures_ms(synthesizers: &[Synthesizer], method: &MethodKind, seed: u64) -> anyhow::Result<Vec<f64>> {
     let mut times_ms = vec![Vec::new(); synthesizers.len()];
@@ -154,25 +168,28 @@ fn write_table(rows: &[Row]) -> anyhow::Result<()> {
     let [width, height] = SIZE;
     let mut text = format!(
         "Made by `cargo run --release --example database_size`: pictures of {width} × {height} at random poses with covariances. A picture is \
-         made at a random pose where none was before, its neighbours read and decoded, the median of {DRAWN}, the databases in turns: `blend` of six \
-         neighbours, which overlap more where there are many pictures, and `plane` of one. Memory is what a counting allocator has handed out, \
-         without decoded pictures. The system holds most of each file in memory, as it was just written.\n\n\
-         | pictures | file, bytes a picture | opening | read by it, bytes a picture | memory, bytes a picture; most while opening | `blend` | `plane` | coverage |\n\
+         made at a random pose, its neighbours read and decoded, the median of {DRAWN}, the databases in turns: `blend` of six \
+         neighbours, which overlap more where there are many pictures, and `plane` of one. The first visit of a pose waits for what the system no \
+         longer holds of the file; the second one finds it in memory. Memory is what a counting allocator has handed out, without decoded \
+         pictures.\n\n\
+         | pictures | file, bytes a picture | opening | read by it, bytes a picture | memory, bytes a picture; most while opening | `blend`, first visit; second | `plane`, first visit; second | coverage |\n\
          |---|---|---|---|---|---|---|---|\n"
     );
-    for Row { opened, blend_ms, plane_ms } in rows {
+    for Row { opened, blend, plane } in rows {
         let each = |bytes: usize| bytes / opened.images;
         writeln!(
             text,
-            "| {} | {} | {:.1} ms | {} | {}; {} | {:.2} ms | {:.2} ms | {:.1} ms |",
+            "| {} | {} | {:.1} ms | {} | {}; {} | {:.2}; {:.2} ms | {:.2}; {:.2} ms | {:.1} ms |",
             opened.images,
             opened.file_bytes / opened.images as u64,
             milliseconds(opened.opening),
             opened.read_bytes.map_or("–".to_owned(), |bytes| (bytes / opened.images as u64).to_string()),
             each(opened.held_bytes),
             each(opened.most_bytes),
-            blend_ms,
-            plane_ms,
+            blend.first_ms,
+            blend.again_ms,
+            plane.first_ms,
+            plane.again_ms,
             milliseconds(opened.coverage),
         )?;
     }
@@ -185,8 +202,8 @@ fn plot(rows: &[Row]) -> anyhow::Result<()> {
     type Value = fn(&Row) -> f64;
     let of: [(&str, Value); 4] = [
         ("opening", |row| milliseconds(row.opened.opening)),
-        ("a picture: blend", |row| row.blend_ms),
-        ("a picture: plane", |row| row.plane_ms),
+        ("a picture: blend", |row| row.blend.first_ms),
+        ("a picture: plane", |row| row.plane.first_ms),
         ("coverage", |row| milliseconds(row.opened.coverage)),
     ];
     let curves = of
