@@ -183,26 +183,17 @@ impl Database {
 
     /// Returns the JPEG or PNG file of an image, as it was recorded.
     pub fn image_bytes(&self, id: i64) -> Result<Vec<u8>, DbError> {
-        self.read(|transaction| {
-            let query = "SELECT bytes FROM image_bytes WHERE image_id = ?1";
-            let bytes = transaction.query_row(query, [id], |row| row.get(0)).optional()?;
-            bytes.map_or_else(|| Err(why_no_bytes(transaction, id)?), Ok)
-        })
+        self.read(|transaction| bytes_of(transaction, id))
     }
 
     /// Decodes an image, in its camera's size.
     pub fn picture(&self, id: i64) -> Result<RgbImage, DbError> {
-        let (camera_id, text) = self.read(|transaction| {
-            let query = "SELECT camera_id, toml FROM images LEFT JOIN cameras ON cameras.id = camera_id \
-                 WHERE images.id = ?1";
-            let row = |row: &Row<'_>| Ok((row.get::<_, i64>(0)?, row.get::<_, Option<String>>(1)?));
-            let (camera_id, text) =
-                transaction.query_row(query, [id], row).optional()?.ok_or(DbFault::NoSuchImage { id })?;
-            let missing = DbFault::BadRow { table: "image", id, problem: "its camera is missing" };
-            Ok((camera_id, text.ok_or(missing)?))
+        let (camera_id, text, bytes) = self.read(|transaction| {
+            let (camera_id, text) = camera_of(transaction, id)?;
+            Ok((camera_id, text, bytes_of(transaction, id)?))
         })?;
         let camera = CameraSetup::from_toml(&self.origin("camera", camera_id), &text)?.camera;
-        self.picture_of_size(id, [camera.width, camera.height])
+        Ok(decode_image(&self.origin("image", id), &bytes, [camera.width, camera.height])?)
     }
 
     /// Decodes an image whose camera is known to have pictures of this size: width, height. Faster than [`Database::picture`], which
@@ -278,13 +269,28 @@ impl Database {
     }
 }
 
-/// Returns why there are no bytes of an image.
-fn why_no_bytes(transaction: &Transaction<'_>, id: i64) -> rusqlite::Result<DbFault> {
+/// Reads the file of an image.
+fn bytes_of(transaction: &Transaction<'_>, id: i64) -> Result<Vec<u8>, DbFault> {
+    let query = "SELECT bytes FROM image_bytes WHERE image_id = ?1";
+    if let Some(bytes) = transaction.query_row(query, [id], |row| row.get(0)).optional()? {
+        return Ok(bytes);
+    }
     let is_stored = transaction.prepare("SELECT 1 FROM images WHERE id = ?1")?.exists([id])?;
-    Ok(match is_stored {
+    Err(match is_stored {
         true => DbFault::BadRow { table: "image", id, problem: "its bytes are missing" },
         false => DbFault::NoSuchImage { id },
     })
+}
+
+/// Reads the camera of an image: its id and its text.
+fn camera_of(transaction: &Transaction<'_>, id: i64) -> Result<(i64, String), DbFault> {
+    let query = "SELECT camera_id, toml FROM images LEFT JOIN cameras ON cameras.id = camera_id \
+         WHERE images.id = ?1";
+    let row = |row: &Row<'_>| Ok((row.get(0)?, row.get::<_, Option<String>>(1)?));
+    let (camera_id, text) =
+        transaction.query_row(query, [id], row).optional()?.ok_or(DbFault::NoSuchImage { id })?;
+    let missing = DbFault::BadRow { table: "image", id, problem: "its camera is missing" };
+    Ok((camera_id, text.ok_or(missing)?))
 }
 
 /// Returns the length of a file, bytes; 0 where there is none yet.

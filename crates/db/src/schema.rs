@@ -96,8 +96,8 @@ const VERSION_2: &str = "
     ) STRICT;
 ";
 
-/// Columns of [`crate::ImageRecord`] and the id of the pose's source once more, next to each other: opening reads these alone, a quarter
-/// of the pages, which counts where the system does not hold the file in memory.
+/// Columns of [`crate::ImageRecord`] and the id of the pose's source once more, next to each other: opening reads these alone, of images
+/// with covariances a quarter of the pages, which counts where the system does not hold the file in memory.
 const VERSION_3: &str = "
     CREATE INDEX image_records ON images (
         id, sequence_id, frame_index, camera_id, field_id, timestamp_s,
