@@ -15,7 +15,8 @@ pub struct RefineConfig {
     /// covers a flank.
     pub min_clearance_line_widths: f64,
     /// Search range of each round, starting from a rough guess, 12 to 4 px: the wider it is, the more often a neighbouring
-    /// line is taken for the line, so that it shrinks as the pose gets better.
+    /// line is taken for the line, so that it shrinks as the pose gets better. Rounds that a good pose does not need are left
+    /// out, see [`RefineConfig::search_per_move`].
     pub wide_search_px: [f64; 5],
     /// Search range of each round, starting from a good guess, 4 px: an error of 1° at a focal length of 230 px.
     pub narrow_search_px: [f64; 5],
@@ -31,6 +32,12 @@ pub struct RefineConfig {
     /// Number of reweighted least-squares steps on one set of offsets, 4: further ones change the pose by less than its
     /// error.
     pub iterations: u32,
+    /// Search range that a round needs, in moves of the lines by the round before it, 2: a step leaves less to move than it
+    /// moved, and from a guess 2 px off it leaves a fiftieth. Wider rounds are left out.
+    pub search_per_move: f64,
+    /// Farthest move of a line by a round of the narrowest range below which the pose is found, 0.04 px: half of the error of
+    /// one offset, see [`RefineConfig::offset_sigma_px`].
+    pub still_px: f64,
     /// Minimum number of offsets for a fit, 12: twice as many as numbers are fitted.
     pub min_offsets: usize,
     /// Minimum height of a fitted pose, 0.3 of the mount's: a fit that sinks farther has slipped to other lines.
@@ -47,6 +54,8 @@ setters!(RefineConfig {
     with_offset_sigma_px: offset_sigma_px = f64,
     with_correlation_px: correlation_px = f64,
     with_iterations: iterations = u32,
+    with_search_per_move: search_per_move = f64,
+    with_still_px: still_px = f64,
     with_min_offsets: min_offsets = usize,
     with_min_height_ratio: min_height_ratio = f64,
 });
@@ -63,6 +72,8 @@ impl Default for RefineConfig {
             offset_sigma_px: 0.08,
             correlation_px: 40.0,
             iterations: 4,
+            search_per_move: 2.0,
+            still_px: 0.04,
             min_offsets: 12,
             min_height_ratio: 0.3,
         }

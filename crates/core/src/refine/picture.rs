@@ -150,16 +150,20 @@ impl Refiner {
         contrast: f64,
         reach: Reach,
     ) -> Option<PoseFit> {
-        let rounds = match reach {
+        let ranges_px = match reach {
             Reach::Wide => self.config.wide_search_px,
             Reach::Narrow => self.config.narrow_search_px,
         };
         let mut pose = guess;
         let mut last = None;
-        for search_px in rounds {
+        let mut next = Some(0);
+        while let Some(round) = next {
             let visible =
                 visible_samples(&self.field, &self.samples, &self.camera, pose, self.config.spacing_px);
-            let measure = MeasureConfig { search_px, min_contrast: self.config.min_contrast * contrast };
+            let measure = MeasureConfig {
+                search_px: ranges_px[round],
+                min_contrast: self.config.min_contrast * contrast,
+            };
             let offsets = measure_offsets(texture, &visible, measure);
             if offsets.len() < self.config.min_offsets {
                 return None;
@@ -170,6 +174,7 @@ impl Refiner {
             if !pose.is_finite() || pose.height_m < self.config.min_height_ratio * mount.height_m {
                 return None;
             }
+            next = self.next_round(&ranges_px, round, step.moved_px());
             last = Some((from, step, offsets.len(), visible.len()));
         }
         let (from, step, offsets, visible) = last?;
@@ -184,6 +189,18 @@ impl Refiner {
             offsets,
         };
         Some(fit.with_calibration(self.calibration.as_ref()))
+    }
+
+    /// Returns the round after one whose step moved the lines by at most `moved_px`; `None` if the pose is found.
+    ///
+    /// A step leaves less to move than it moved: the next round is the first that searches no farther than that needs, and
+    /// none is needed where the narrowest has left the lines where they are.
+    fn next_round(&self, ranges_px: &[f64; 5], round: usize, moved_px: f64) -> Option<usize> {
+        let needed_px = self.config.search_per_move * moved_px;
+        let narrowest_px = ranges_px[round..].iter().copied().filter(|&range_px| range_px >= needed_px);
+        let range_px = narrowest_px.fold(ranges_px[round], f64::min);
+        let is_found = range_px == ranges_px[round] && moved_px < self.config.still_px;
+        (round + 1..ranges_px.len()).find(|&next| !is_found && ranges_px[next] <= range_px)
     }
 
     /// Runs iteratively reweighted Gauss–Newton steps on one set of offsets.
@@ -264,6 +281,13 @@ struct Step {
     rows: Vec<(Vector6<f64>, LineOffset)>,
 }
 
+impl Step {
+    /// Returns the farthest move of a line along its normal, pixels.
+    fn moved_px(&self) -> f64 {
+        self.rows.iter().map(|(gradient, _)| gradient.dot(&self.step).abs()).fold(0.0, f64::max)
+    }
+}
+
 pub(super) fn mount_error(pose: CameraPose, mount: MountPose) -> Vector6<f64> {
     Vector6::new(
         0.0,
@@ -297,6 +321,29 @@ mod tests {
             let nees = (error.transpose() * fit.covariance.try_inverse().unwrap() * error)[0];
             // χ² with six degrees of freedom exceeds 30 once in 25,000 times.
             assert!(nees < 30.0, "covariance too small: {nees}");
+        }
+    }
+
+    /// The truth is a fit with all rounds.
+    #[test]
+    fn rounds_left_out_change_a_pose_by_a_fraction_of_its_error() {
+        let (camera, field) = (test_scene::fisheye(), test_scene::field());
+        let refiner = |config| Refiner::new(&camera, &field, config, MountPoseSigma::default());
+        let few = refiner(RefineConfig::default());
+        let all = refiner(RefineConfig::default().with_search_per_move(f64::MAX).with_still_px(0.0));
+        for pose in test_scene::poses() {
+            let texture = Texture::pack(&whiteness(&test_scene::render(&camera, pose, &field)));
+            for far in [0.0, 0.3, 1.0] {
+                let guess = moved(pose, &(far * Vector6::new(0.02, -0.03, 0.015, 0.01, 0.006, -0.005)));
+                let mount = MountPose::of(guess);
+                let [few, all] = [&few, &all]
+                    .map(|refiner| refiner.fit(&texture, guess, mount, 160.0, Reach::Wide).unwrap());
+                let off = pose_difference(all.pose, few.pose);
+                let sigmas = (off.transpose() * all.covariance.try_inverse().unwrap() * off)[0].sqrt();
+                // The error of a fit is √6 of them on average.
+                assert!(sigmas < 0.6, "{sigmas} standard deviations");
+                assert!(few.offsets.abs_diff(all.offsets) * 20 <= all.offsets, "{few:?} {all:?}");
+            }
         }
     }
 
