@@ -5,7 +5,7 @@
 //! Multiplications and additions are never fused, so that every processor gives the same bits.
 
 use super::{
-    interpolation::{NODES, interpolate},
+    interpolation::{Cubic, NODES},
     samples::{Block, Circle, Ground, Quad, Samples},
 };
 use crate::{
@@ -83,15 +83,16 @@ pub(super) fn project_block<const N: usize>(
 /// Interpolates one block of four between its nodes; `None` if the picture contains none of its lanes.
 #[inline(always)]
 fn interpolate_block(
+    cubic: &Cubic,
     camera: &KernelCamera,
     nodes: &Places,
     block: usize,
     is_sample: &Lanes,
 ) -> Option<Pixels> {
     let mut pixels = Pixels {
-        u: interpolate(&nodes.u, block),
-        v: interpolate(&nodes.v, block),
-        nearness: interpolate(&nodes.nearness, block),
+        u: cubic.interpolate(&nodes.u, block),
+        v: cubic.interpolate(&nodes.v, block),
+        nearness: cubic.interpolate(&nodes.nearness, block),
         seen: [0.0; LANES],
     };
     if !inside_lanes(camera, &mut pixels) {
@@ -108,6 +109,7 @@ fn interpolate_block(
 // Returning a struct of all nodes and their blocks instead, which would read better, takes a third longer: it is kept in memory.
 #[inline(always)]
 pub(super) fn see_block<const N: usize>(
+    cubic: &Cubic,
     camera: &KernelCamera,
     pose: &CameraFromGround,
     quad: &Quad<N>,
@@ -116,7 +118,7 @@ pub(super) fn see_block<const N: usize>(
     [block, point]: [usize; 2],
 ) -> Option<Pixels> {
     if is_right {
-        interpolate_block(camera, nodes, block, &quad.blocks[block].is_sample)
+        interpolate_block(cubic, camera, nodes, block, &quad.blocks[block].is_sample)
     } else {
         project_block(camera, pose, &quad.blocks[block], point)
     }
@@ -180,6 +182,7 @@ pub(super) fn sum_on_any_processor(
     poses: &[CameraFromGround],
     samples: &Samples<1>,
 ) -> Vec<[f32; 2]> {
+    let cubic = Cubic::new();
     let mut all: Vec<Sums> = vec![[[0.0; LANES]; 2]; poses.len()];
     // All poses take a block before the next one: they mostly see the same blocks, so that the processor foresees which.
     for quad in &samples.quads {
@@ -189,7 +192,8 @@ pub(super) fn sum_on_any_processor(
             }
             let nodes = place_lanes(camera, &pose.in_camera(&quad.nodes[0]));
             for (block, wrong) in quad.limits.wrong(&nodes).into_iter().enumerate() {
-                let Some(pixels) = see_block(camera, pose, quad, &nodes, wrong == 0, [block, 0]) else {
+                let Some(pixels) = see_block(&cubic, camera, pose, quad, &nodes, wrong == 0, [block, 0])
+                else {
                     continue;
                 };
                 add_values(texture, &pixels, sums);
@@ -251,6 +255,7 @@ pub(super) fn contrast_on_any_processor(
     samples: &Samples<3>,
     scale: ContrastScale,
 ) -> Vec<[f32; 2]> {
+    let cubic = Cubic::new();
     let mut all: Vec<Sums> = vec![[[0.0; LANES]; 2]; poses.len()];
     for quad in &samples.quads {
         for (pose, sums) in poses.iter().zip(&mut all) {
@@ -266,11 +271,14 @@ pub(super) fn contrast_on_any_processor(
             let wrong: [u32; NODES] = std::array::from_fn(|block| a[block] | b[block] | c[block]);
             for (block, wrong) in wrong.into_iter().enumerate() {
                 let is_right = wrong == 0;
-                let Some(centre) = see_block(camera, pose, quad, &centre, is_right, [block, 0]) else {
+                let Some(centre) = see_block(&cubic, camera, pose, quad, &centre, is_right, [block, 0])
+                else {
                     continue;
                 };
-                let Some(left) = see_block(camera, pose, quad, &left, is_right, [block, 1]) else { continue };
-                let Some(right) = see_block(camera, pose, quad, &right, is_right, [block, 2]) else {
+                let Some(left) = see_block(&cubic, camera, pose, quad, &left, is_right, [block, 1]) else {
+                    continue;
+                };
+                let Some(right) = see_block(&cubic, camera, pose, quad, &right, is_right, [block, 2]) else {
                     continue;
                 };
                 add_contrasts(texture, &scale, pose, [&centre, &left, &right], sums);

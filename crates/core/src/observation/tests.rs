@@ -2,7 +2,7 @@ use image::GrayImage;
 use proptest::prelude::*;
 
 use super::{
-    interpolation::{CameraLimits, TOLERANCE_PX},
+    interpolation::{CameraLimits, Cubic, TOLERANCE_PX},
     kernel::{
         contrast_along_lines, contrast_on_any_processor, see_block, sum_along_lines, sum_on_any_processor,
     },
@@ -83,7 +83,9 @@ fn views<const N: usize>(camera: &KernelCamera, pose: CameraPose, samples: &Samp
         let pose = &pose;
         (0..quad.blocks.len()).map(move |block| {
             let is_interpolated = wrong.iter().all(|wrong| wrong[block] == 0);
-            let see = |point| see_block(camera, pose, quad, &nodes[point], is_interpolated, [block, point]);
+            let see = |point| {
+                see_block(&Cubic::new(), camera, pose, quad, &nodes[point], is_interpolated, [block, point])
+            };
             View { points: quad.blocks[block].points, pixels: std::array::from_fn(see), is_interpolated }
         })
     });
