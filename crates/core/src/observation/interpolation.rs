@@ -61,8 +61,8 @@ pub(super) struct Cubic([Lanes; NODES]);
 
 impl Cubic {
     /// Returns the cubic, whose [`basis`] the compiler does not know: where it sees the ones and zeros at the nodes, it leaves out their
-    /// multiplications, and puts the vectors of the other lanes together by shuffles. On a processor with AVX2, a frame then takes a fifth
-    /// longer (`cargo bench -- scoring`).
+    /// multiplications, and puts the vectors of the other lanes together by shuffles. On a processor with AVX2, a frame of
+    /// `tag --observation gauss` then takes a fifth longer.
     #[inline(always)]
     pub(super) fn new() -> Self {
         Self(std::hint::black_box(const { basis() }))
