@@ -208,8 +208,8 @@ impl Line {
             return true;
         }
         let nodes = place_lanes(camera, &lanes(|lane| point(NODE_LANES[lane % NODES])));
-        let [u, v, nearness] =
-            [&nodes.u, &nodes.v, &nodes.nearness].map(|nodes| Cubic::new().interpolate(nodes, 0));
+        let cubic = Cubic::new();
+        let [u, v, nearness] = [&nodes.u, &nodes.v, &nodes.nearness].map(|nodes| cubic.interpolate(nodes, 0));
         let contains =
             |u: f32, v: f32| (0.0..=camera.max_u).contains(&u) && (0.0..=camera.max_v).contains(&v);
         (0..LANES).filter(|i| contains(u[*i], v[*i]) || contains(exact.u[*i], exact.v[*i])).all(|i| {

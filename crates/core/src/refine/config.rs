@@ -33,7 +33,8 @@ pub struct RefineConfig {
     /// error.
     pub iterations: u32,
     /// Search range that a round needs, in moves of the lines by the round before it, 2: a step leaves less to move than it
-    /// moved, and from a guess 2 px off it leaves a fiftieth. Wider rounds are left out.
+    /// moved (from guesses 2 to 3 px off, in pictures of a ray-traced walk, a thirty-fifth of it at most). Wider rounds are
+    /// left out.
     pub search_per_move: f64,
     /// Farthest move of a line by a round of the narrowest range below which the pose is found, 0.04 px: half of the error of
     /// one offset, see [`RefineConfig::offset_sigma_px`].

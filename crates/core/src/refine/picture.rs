@@ -193,14 +193,19 @@ impl Refiner {
 
     /// Returns the round after one whose step moved the lines by at most `moved_px`; `None` if the pose is found.
     ///
-    /// A step leaves less to move than it moved: the next round is the first that searches no farther than that needs, and
-    /// none is needed where the narrowest has left the lines where they are.
+    /// A step leaves less to move than it moved: a round is left out if a narrower one after it searches far enough, and no
+    /// other is needed once one of the narrowest has left the lines where they are.
     fn next_round(&self, ranges_px: &[f64; 5], round: usize, moved_px: f64) -> Option<usize> {
+        let [.., narrowest_px] = *ranges_px;
+        if ranges_px[round] <= narrowest_px && moved_px < self.config.still_px {
+            return None;
+        }
         let needed_px = self.config.search_per_move * moved_px;
-        let narrowest_px = ranges_px[round..].iter().copied().filter(|&range_px| range_px >= needed_px);
-        let range_px = narrowest_px.fold(ranges_px[round], f64::min);
-        let is_found = range_px == ranges_px[round] && moved_px < self.config.still_px;
-        (round + 1..ranges_px.len()).find(|&next| !is_found && ranges_px[next] <= range_px)
+        let is_needed = |next: &usize| {
+            let after = ranges_px.get(next + 1);
+            !after.is_some_and(|&after_px| after_px < ranges_px[*next] && after_px >= needed_px)
+        };
+        (round + 1..ranges_px.len()).find(is_needed)
     }
 
     /// Runs iteratively reweighted Gauss–Newton steps on one set of offsets.
