@@ -1,6 +1,6 @@
 //! Monte Carlo localization, one picture at a time.
 
-use std::{cell::LazyCell, fmt, sync::Arc, time::Instant};
+use std::{fmt, sync::Arc, time::Instant};
 
 use image::RgbImage;
 
@@ -65,7 +65,7 @@ impl Localizer {
         let Posterior { mut track, estimate, motion, searched } = posterior;
         let refined = self.refine(&track, mount, estimate.pose)?;
         let (pose, fit) = self.weigh_rivals(&mut track, mount, refined)?;
-        let agreement = self.agreement(pose, &|| self.search.best_near(pose, mount).pose, track.fits_from());
+        let agreement = self.agreement(pose, mount, track.fits_from());
         let Agreement { line_fraction, explained_fraction, .. } = agreement;
         let settled = track.settle(pose.planar(), agreement);
         let mut frame = LocalizedFrame {
@@ -193,10 +193,12 @@ impl Localizer {
 
         let mut estimate = self.filter.update(mount, diffusion)?;
 
-        if self.config.relocalizes
-            && !searched
-            && (is_long_way || self.is_in_doubt(&track, estimate.pose, mount))
-        {
+        let asks_for_search = || {
+            is_long_way
+                || self.may_be_lost(&track, estimate.pose, mount)
+                || self.may_be_elsewhere(&track, estimate.pose, mount)
+        };
+        if self.config.relocalizes && !searched && asks_for_search() {
             searched = true;
             estimate = self.recover(&mut track, picture, mount, estimate)?;
         }
@@ -207,26 +209,32 @@ impl Localizer {
         observation.odometry.filter(|_| self.config.uses_odometry)
     }
 
-    /// Returns whether the picture leaves so much open that the field has to be searched.
-    fn is_in_doubt(&self, track: &Track, pose: CameraPose, mount: MountPose) -> bool {
-        // A fit takes longer than all of the rest, and most pictures need none.
-        let fitted = LazyCell::new(|| self.search.best_near(pose, mount).pose);
-        let nearest = || *fitted;
-        self.may_be_lost(track, pose, &nearest) || self.may_be_elsewhere(track, pose, &nearest)
-    }
-
-    fn may_be_lost(&self, track: &Track, pose: CameraPose, nearest: &dyn Fn() -> CameraPose) -> bool {
+    fn may_be_lost(&self, track: &Track, pose: CameraPose, mount: MountPose) -> bool {
         let least = track.lost_below();
-        // With a mount pose that is wrong by a degree, narrow lines are missed even from the right place.
-        let is_line_seen = |pose| self.search.line_fraction(pose) >= least;
         track.is_unconfirmed()
             || self.search.explained_fraction(pose) < track.lost_unless_explained()
-            || !is_line_seen(pose) && !is_line_seen(nearest())
+            || self.line_fraction_near(pose, mount, least) < least
     }
 
-    /// Returns whether the place was never verified, and others may fit the picture as well.
-    fn may_be_elsewhere(&self, track: &Track, pose: CameraPose, nearest: &dyn Fn() -> CameraPose) -> bool {
-        !track.is_verified() && !track.is_convincing(self.agreement(pose, nearest, track.fits_from()))
+    /// Returns whether the place was never verified, and the picture leaves so much open that the field has to be searched for
+    /// others.
+    fn may_be_elsewhere(&self, track: &Track, pose: CameraPose, mount: MountPose) -> bool {
+        !track.is_verified() && !track.is_convincing(self.agreement(pose, mount, track.fits_from()))
+    }
+
+    /// Returns the line fraction of a pose. If it is less than `enough`, returns that of the pose next to it that fits the
+    /// picture best: with a mount pose that is wrong by a degree, narrow lines are missed even from the right place.
+    fn line_fraction_near(&self, pose: CameraPose, mount: MountPose, enough: f64) -> f64 {
+        let own = self.search.line_fraction(pose);
+        if own >= enough {
+            return own;
+        }
+        match self.search.best_of(&[pose], mount, None) {
+            Some(near) if self.config.relocalization.is_same_place(near.pose, pose) => {
+                own.max(self.search.line_fraction(near.pose))
+            }
+            _ => own,
+        }
     }
 
     /// Searches the field; moves the particles only if another place fits clearly better than the filter's own.
@@ -358,13 +366,12 @@ impl Localizer {
         Ok(found)
     }
 
-    /// Returns how well a pose and the picture agree. `nearest` finds the pose next to it that fits the picture best, and
-    /// `enough` is the line fraction from which the pose fits as it is.
-    fn agreement(&self, pose: CameraPose, nearest: &dyn Fn() -> CameraPose, enough: f64) -> Agreement {
+    /// Returns how well a pose and the picture agree; `enough` is the line fraction from which the pose fits.
+    fn agreement(&self, pose: CameraPose, mount: MountPose, enough: f64) -> Agreement {
         // Where enough lines coincide, the pose is right to a line's width. With a mount pose that is wrong by a degree, narrow
         // lines are missed even from the right place.
         let coincides = self.search.line_fraction(pose) >= enough;
-        let near = if coincides { pose } else { nearest() };
+        let near = if coincides { pose } else { self.search.best_near(pose, mount).pose };
         let most = self.config.track.fit_distance;
         let is_at_fit = (pose.x_m - near.x_m).hypot(pose.y_m - near.y_m) <= most.position_m
             && wrap_angle(pose.yaw_rad - near.yaw_rad).abs() <= most.yaw_rad;
